@@ -1,0 +1,8 @@
+// The JSON type of reports, traces and device events: nlohmann's, with keys in the order of insertion.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+namespace vam {
+using Json = nlohmann::ordered_json;
+}

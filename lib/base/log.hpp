@@ -1,0 +1,39 @@
+// Talk to the person: warnings and progress on stderr. stdout is for data; silence is success.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <string>
+
+namespace vam {
+
+/// The name that begins every line on stderr ("vam-slice: ..."); set once by cli::App.
+void set_program_name(const std::string& name);
+
+/// One line on stderr: "<program>: warning: <line>".
+void warn(const std::string& line);
+
+/// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
+[[nodiscard]] std::string format_number(double value, int digits = 6);
+
+/// A progress bar on stderr, only when stderr is a terminal and the work lasts longer than half a second.
+/// tick() may be called from any thread.
+class Progress {
+ public:
+  Progress(std::string what, long total);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void tick(long steps = 1);
+
+ private:
+  void draw(long done);
+  std::string what_;
+  long total_;
+  bool terminal_;
+  std::atomic<long> done_{0};
+  std::atomic<long> drawn_ms_{0};
+  std::chrono::steady_clock::time_point start_;
+};
+
+}  // namespace vam

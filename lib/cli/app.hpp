@@ -1,0 +1,69 @@
+// One declaration per tool gives the parser, --help, --version, the manual page (--man) and completions
+// (--completion bash|zsh|fish). run() is the only place that catches.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vam::cli {
+
+/// What the manual says beside the options. Paragraphs are plain text.
+struct Manual {
+  std::string name;                                            // vam-slice
+  std::string summary;                                         // one line, lower case, no full stop
+  std::vector<std::string> description;                        // paragraphs
+  std::vector<std::pair<std::string, std::string>> examples;   // sentence, shell command; run by a test, in this order
+  std::vector<std::string> notes;                              // paragraphs: memory, accuracy, sources
+  std::vector<std::string> see_also;                           // vam-sinogram, ...
+};
+
+struct Range {
+  double low;
+  double high;
+  bool open_low = false;  // low itself is not allowed
+};
+inline constexpr Range any{-1e300, 1e300};
+inline constexpr Range positive{0, 1e300, true};
+inline constexpr Range non_negative{0, 1e300};
+
+/// Options are bound to variables whose values are the defaults shown to the user. Value names carry the unit (MM, DEG).
+class App {
+ public:
+  explicit App(Manual manual);
+  ~App();
+
+  App& group(const std::string& title);  // heading of the options that follow
+  App& positional(const std::string& value_name, std::string& target, const std::string& help);  // default shown
+  App& positionals(const std::string& value_name, std::vector<std::string>& target, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, double& target, Range range, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, int& target, Range range, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::vector<double>& target, int count, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::vector<std::string>& target, const std::string& help);  // repeatable
+  App& choice(const std::string& flag, std::string& target, const std::vector<std::string>& values, const std::string& help);
+  App& flag(const std::string& name, bool& target, const std::string& help);
+  /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
+  /// chosen is set to the name when the user names it. Without any, the tool runs its plain form.
+  App& subcommand(const std::string& name, const std::string& summary, std::string& chosen);
+
+  /// Parses, calls body, maps every exception to one line on stderr and its exit status.
+  int run(int argc, char** argv, const std::function<void()>& body);
+
+  /// "vam-slice 0.1.0 part.stl --voxel 0.1": the line for vam:history; known once run() has parsed. No paths of other
+  /// machines, time stamps or host names are added.
+  [[nodiscard]] std::string history() const;
+  /// Did the user give this option?
+  [[nodiscard]] bool given(const std::string& flag) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vam::cli

@@ -1,0 +1,52 @@
+// Stacks of images as one standard multi-part scanline OpenEXR file, in a file or through a pipe (FILES in the manuals).
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/image.hpp"
+#include "model/stack.hpp"
+
+namespace vam::io {
+
+struct StackOptions {
+  bool half = false;                // store 16-bit floats
+  std::string compression = "rle";  // none, rle, zip, zips, piz, pxr24; a pipe is always uncompressed
+};
+
+/// Reads a stack front to back. "-" is stdin; file or pipe, seekable or not, in constant memory.
+/// Throws Error: no_input, data (not an EXR, truncated, no channel Y, no vam:kind, sizes beyond the limits), io.
+class StackReader {
+ public:
+  explicit StackReader(const std::string& path);
+  ~StackReader();
+  [[nodiscard]] const model::StackInfo& info() const;
+  /// The next image in ascending order; false after the last. Throws Fault::data where the stream is cut.
+  bool next(Image& image, model::ImageInfo& about);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Writes a stack front to back; info.count images must follow. "-" is stdout. A file appears under its final name only
+/// at commit(), complete; without commit() nothing is left. Throws Error: no_output, io.
+class StackWriter {
+ public:
+  StackWriter(const std::string& path, const model::StackInfo& info, const StackOptions& options = {});
+  ~StackWriter();
+  void write(const Image& image);
+  void write(const Image& image, const model::ImageInfo& about);
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Throws Fault::data unless the stack is of this kind and space: "frames.exr holds frames (projector), but vam-resample
+/// needs a sinogram (virtual)".
+void require(const std::string& path, const model::StackInfo& info, model::Kind kind, model::Space space);
+void require(const std::string& path, const model::StackInfo& info, model::Kind kind);
+
+}  // namespace vam::io

@@ -1,0 +1,55 @@
+// Volumes as OpenVDB grids in mm, sparse in memory; dense only slab by slab.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/grid.hpp"
+
+namespace vam::io {
+
+/// One float grid. `name` is target, insert, weight, dose, scatter or sdf. Slices are dense row-major images (x fastest,
+/// then y), one after the other.
+class SparseVolume {
+ public:
+  SparseVolume(std::string name, const model::Grid& grid, float background = 0.0F);
+  SparseVolume(SparseVolume&&) noexcept;
+  SparseVolume& operator=(SparseVolume&&) noexcept;
+  ~SparseVolume();
+
+  [[nodiscard]] const std::string& name() const;
+  [[nodiscard]] const model::Grid& grid() const;
+
+  /// Copies slices k0 .. k0 + count - 1 out. Several threads may read at once.
+  void read_slices(int k0, int count, float* out) const;
+  /// Copies slices in; background values are not stored. One thread at a time; whole multiples of 8 slices from a
+  /// multiple of 8 are fastest.
+  void write_slices(int k0, int count, const float* in);
+  /// Collapses constant blocks to tiles; done by write_volumes.
+  void prune();
+
+  std::vector<std::string> history;             // vam:history
+  std::string units = "relative";               // vam:units
+  std::map<std::string, std::string> metadata;  // other string metadata, vam:printer and vam:stretch_z among them
+
+  struct State;  // holds the openvdb grid
+  [[nodiscard]] State& state() const { return *state_; }
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// All float grids of a file or of the archives on stdin ("-"). Throws Error: no_input, data (not VDB, truncated, not
+/// float, non-uniform or rotated transform, NaN values), io.
+std::vector<SparseVolume> read_volumes(const std::string& path);
+
+/// The grid of that name; the only grid when name is empty. Throws Fault::data naming the grids that are there.
+SparseVolume read_volume(const std::string& path, const std::string& name);
+
+/// Writes one archive. "-" is stdout. A file appears under its final name only when complete.
+void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes);
+void write_volume(const std::string& path, SparseVolume& volume);
+
+}  // namespace vam::io

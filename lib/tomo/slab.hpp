@@ -1,0 +1,48 @@
+// Slab storage: 16 slices side by side, the slice index fastest. Geometry is worked out once per (pixel, angle) and
+// applied to 16 contiguous lanes; this is where the speed comes from.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <vector>
+
+namespace vam::tomo {
+
+inline constexpr int lanes = 16;
+
+/// Memory on cache-line boundaries, so that one lane group is one aligned line.
+template <class T>
+struct CacheAligned {
+  using value_type = T;
+  static constexpr std::align_val_t alignment{64};
+  CacheAligned() = default;
+  template <class U>
+  explicit CacheAligned(const CacheAligned<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
+  void deallocate(T* p, std::size_t) { ::operator delete(p, alignment); }
+  bool operator==(const CacheAligned&) const = default;
+};
+
+/// 16 images of width x height: pixel (x, y) of slice s is values[(y * width + x) * 16 + s]. An object slab has the
+/// voxels of 16 z slices; a sinogram slab has width = columns and height = angles. Unused lanes are zero.
+struct Slab {
+  int width = 0;
+  int height = 0;
+  std::vector<float, CacheAligned<float>> values;
+
+  Slab() = default;
+  Slab(int w, int h)
+      : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * lanes, 0.0F) {}
+  float* at(int x, int y) { return values.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * lanes; }
+  [[nodiscard]] const float* at(int x, int y) const { return const_cast<Slab*>(this)->at(x, y); }
+};
+
+/// Copies `count` <= 16 row-major images of slab.width x slab.height, one after the other, into lanes 0..count-1 and
+/// zeroes the rest.
+void pack(const float* images, int count, Slab& slab);
+
+/// The inverse of pack: lanes 0..count-1 to `count` images one after the other.
+void unpack(const Slab& slab, int count, float* images);
+
+}  // namespace vam::tomo

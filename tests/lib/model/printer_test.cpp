@@ -1,0 +1,24 @@
+#include "model/printer.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace vam::model;
+
+TEST_CASE("the default printer is that of RAY21") {
+  const Printer printer;
+  CHECK(*lens_distance_mm(printer.projector) == doctest::Approx(1.8 * 1024 * 0.065));
+  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7 / 1.53));
+}
+
+TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric lens") {
+  Printer printer;
+  CHECK(vertical_magnification(printer) == doctest::Approx(1 - 12.7 * (1 - 1 / 1.53) / 119.808));
+  printer.projector.telecentric = true;
+  CHECK(vertical_magnification(printer) == 1.0);
+}
+
+TEST_CASE("a matched bath opens the whole vial") {
+  Printer printer;
+  printer.bath.index = 1.53;
+  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7));
+}
