@@ -14,7 +14,9 @@ struct Image {
 
   Image() = default;
   Image(int columns, int rows, float fill = 0.0F)
-      : width(columns), height(rows), values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill) {}
+      : width(columns),
+        height(rows),
+        values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill) {}
 
   [[nodiscard]] std::size_t size() const { return values.size(); }
   [[nodiscard]] std::size_t index(int x, int y) const {

@@ -12,9 +12,12 @@ std::unique_ptr<tbb::global_control> limit;  // NOLINT: one per process, like th
 }  // namespace
 
 void parallel_for(int count, const std::function<void(int)>& work) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
-    for (int i = range.begin(); i != range.end(); ++i) work(i);
-  }, tbb::simple_partitioner{});
+  tbb::parallel_for(
+      tbb::blocked_range<int>(0, count, 1),
+      [&](const tbb::blocked_range<int>& range) {
+        for (int i = range.begin(); i != range.end(); ++i) work(i);
+      },
+      tbb::simple_partitioner{});
 }
 
 void set_threads(int count) {

@@ -13,12 +13,12 @@ namespace vam::cli {
 
 /// What the manual says beside the options. Paragraphs are plain text.
 struct Manual {
-  std::string name;                                            // vam-slice
-  std::string summary;                                         // one line, lower case, no full stop
-  std::vector<std::string> description;                        // paragraphs
-  std::vector<std::pair<std::string, std::string>> examples;   // sentence, shell command; run by a test, in this order
-  std::vector<std::string> notes;                              // paragraphs: memory, accuracy, sources
-  std::vector<std::string> see_also;                           // vam-sinogram, ...
+  std::string name;                                           // vam-slice
+  std::string summary;                                        // one line, lower case, no full stop
+  std::vector<std::string> description;                       // paragraphs
+  std::vector<std::pair<std::string, std::string>> examples;  // sentence, shell command; run by a test, in this order
+  std::vector<std::string> notes;                             // paragraphs: memory, accuracy, sources
+  std::vector<std::string> see_also;                          // vam-sinogram, ...
 };
 
 struct Range {
@@ -30,7 +30,11 @@ inline constexpr Range any{-1e300, 1e300};
 inline constexpr Range positive{0, 1e300, true};
 inline constexpr Range non_negative{0, 1e300};
 
-/// Options are bound to variables whose values are the defaults shown to the user. Value names carry the unit (MM, DEG).
+struct Option;  // cli/declaration.hpp
+struct Declaration;
+
+/// Options are bound to variables whose values are the defaults shown to the user. Value names carry the unit (MM,
+/// DEG).
 class App {
  public:
   explicit App(Manual manual);
@@ -40,13 +44,22 @@ class App {
   App& positional(const std::string& value_name, std::string& target, const std::string& help);  // default shown
   App& positionals(const std::string& value_name, std::vector<std::string>& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, double& target, Range range, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, int& target, Range range, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, std::vector<double>& target, int count, const std::string& help);
-  App& option(const std::string& flag, const std::string& value_name, std::vector<std::string>& target, const std::string& help);  // repeatable
-  App& choice(const std::string& flag, std::string& target, const std::vector<std::string>& values, const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, double& target, Range range,
+              const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, int& target, Range range,
+              const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range,
+              const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range,
+              const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::vector<double>& target, int count,
+              const std::string& help);
+  App& option(const std::string& flag, const std::string& value_name, std::vector<std::string>& target,
+              const std::string& help);  // repeatable
+  App& option(const std::string& flag, const std::string& value_name, Range range,
+              const std::function<void(int)>& store, const std::string& help, const std::string& default_text);
+  App& choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
+              const std::string& help);
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
   /// chosen is set to the name when the user names it. Without any, the tool runs its plain form.
@@ -63,6 +76,12 @@ class App {
 
  private:
   struct State;
+  App& declare(Option option, const std::function<void(const std::string&)>& store);
+  void parse(int argc, char** argv);
+  bool print_about(int argc, char** argv) const;
+  [[noreturn]] void fail_on_unknown(const std::vector<std::string>& words) const;
+  [[nodiscard]] Declaration whole() const;
+
   std::unique_ptr<State> state_;
 };
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
 #include "cli/app.hpp"
 
 namespace vam::cli {
@@ -23,8 +22,8 @@ App& add_printer(App& app, PrinterOptions& options);
 /// --report FILE.json
 App& add_report(App& app, std::string& report);
 
-/// --threads N (0 = all cores), applied when parsed.
-App& add_threads(App& app, int& threads);
+/// --threads N (0 = all cores), applied while parsing.
+App& add_threads(App& app);
 
 /// --half, --compression for tools that write stacks.
 App& add_stack_output(App& app, bool& half, std::string& compression);

@@ -35,7 +35,9 @@ struct Volume {
   Grid grid;
   std::vector<float> values;
 
-  [[nodiscard]] const float* slice(int k) const { return values.data() + static_cast<std::size_t>(k) * grid.slice_size(); }
+  [[nodiscard]] const float* slice(int k) const {
+    return values.data() + static_cast<std::size_t>(k) * grid.slice_size();
+  }
   float* slice(int k) { return values.data() + static_cast<std::size_t>(k) * grid.slice_size(); }
 };
 

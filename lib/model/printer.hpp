@@ -11,29 +11,29 @@ namespace vam::model {
 struct Projector {
   int columns = 1024;
   int rows = 768;
-  double pixel_mm = 0.065;                  // pitch in the plane of the rotation axis
-  double throw_ratio = 1.8;                 // lens distance / image width; ignored when one of the next two is given
-  std::optional<double> lens_distance_mm;   // lens to rotation axis
+  double pixel_mm = 0.065;                 // pitch in the plane of the rotation axis
+  double throw_ratio = 1.8;                // lens distance / image width; ignored when one of the next two is given
+  std::optional<double> lens_distance_mm;  // lens to rotation axis
   bool telecentric = false;
-  double min_intensity_mw_cm2 = 0;          // at grey 0: 0 or the contrast limit
-  double max_intensity_mw_cm2 = 3.8;        // at full grey
-  std::string response;                     // CSV "grey,intensity"; empty = linear
+  double min_intensity_mw_cm2 = 0;    // at grey 0: 0 or the contrast limit
+  double max_intensity_mw_cm2 = 3.8;  // at full grey
+  std::string response;               // CSV "grey,intensity"; empty = linear
   int bits = 8;
   double fps = 16;
-  double axis_column = 511.5;               // where the rotation axis appears
-  double axis_row = 383.5;                  // the row of z = 0 of a centred part
-  std::string orientation = "normal";       // normal, flip-columns, flip-rows, rotate-180
+  double axis_column = 511.5;          // where the rotation axis appears
+  double axis_row = 383.5;             // the row of z = 0 of a centred part
+  std::string orientation = "normal";  // normal, flip-columns, flip-rows, rotate-180
 };
 
 struct Vial {
-  double radius_mm = 12.7;   // outer
-  double wall_mm = 0;        // 0: glass and resin matched, one shell
+  double radius_mm = 12.7;  // outer
+  double wall_mm = 0;       // 0: glass and resin matched, one shell
   double index_glass = 1.53;
 };
 
 struct Bath {
-  double index = 1.0;         // 1 = no bath, the vial stands in air
-  double window_mm = 0;       // flat window, distance before the axis
+  double index = 1.0;    // 1 = no bath, the vial stands in air
+  double window_mm = 0;  // flat window, distance before the axis
 };
 
 struct Resin {
@@ -41,7 +41,7 @@ struct Resin {
   double index = 1.53;
   double absorption_per_mm = 0;
   std::optional<double> critical_dose_mj_cm3;
-  double psf_mm = 0;               // Gaussian sigma of the beam, across it and along z
+  double psf_mm = 0;  // Gaussian sigma of the beam, across it and along z
   double diffusion_mm2_s = 0;
 };
 
@@ -49,13 +49,13 @@ struct Stage {
   std::string device = "sim:";
   double speed_deg_s = 10;
   int turns = 1;
-  int direction = 1;   // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
+  int direction = 1;  // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
 };
 
 struct Camera {
   std::string device = "sim:";
-  double distance_mm = 200;   // entrance pupil to rotation axis
-  double pixel_mm = 0.039;    // at the axis
+  double distance_mm = 200;  // entrance pupil to rotation axis
+  double pixel_mm = 0.039;   // at the axis
   double azimuth_deg = 90;
   int binning = 1;
   double exposure_us = 20000;

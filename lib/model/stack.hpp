@@ -26,8 +26,8 @@ struct StackInfo {
   double z_start_mm = 0;       // z of slice 0 (sinogram) or of the centre of row 0 (frames)
   double angle_start_deg = 0;  // stage angle of row 0 (sinogram) or frame 0 (frames)
   double angle_step_deg = 0;
-  std::string units = "relative";     // of the pixel values
-  std::vector<std::string> history;   // one line per command that touched the data
+  std::string units = "relative";            // of the pixel values
+  std::vector<std::string> history;          // one line per command that touched the data
   std::map<std::string, std::string> extra;  // unknown text attributes, copied through
 };
 

@@ -34,7 +34,10 @@ struct Slab {
   Slab() = default;
   Slab(int w, int h)
       : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * lanes, 0.0F) {}
-  float* at(int x, int y) { return values.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * lanes; }
+  float* at(int x, int y) {
+    return values.data() +
+           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * lanes;
+  }
   [[nodiscard]] const float* at(int x, int y) const { return const_cast<Slab*>(this)->at(x, y); }
 };
 

@@ -13,7 +13,11 @@ TEST_CASE("parallel_for visits every index once") {
 }
 
 TEST_CASE("parallel_for passes an item's exception on") {
-  CHECK_THROWS_AS(vam::parallel_for(10, [](int i) { if (i == 7) throw std::runtime_error("7"); }), std::runtime_error);
+  CHECK_THROWS_AS(vam::parallel_for(10,
+                                    [](int i) {
+                                      if (i == 7) throw std::runtime_error("7");
+                                    }),
+                  std::runtime_error);
 }
 
 TEST_CASE("set_threads limits and 0 restores") {

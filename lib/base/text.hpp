@@ -1,0 +1,29 @@
+// Small text helpers for messages and option values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vam {
+
+/// The whole of `text` as a finite or infinite decimal number in the C locale; nothing when any character is left over.
+[[nodiscard]] std::optional<double> parse_number(std::string_view text);
+
+/// "a,b,c" to its parts; an empty text has none.
+[[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
+
+/// The candidate with the smallest edit distance to `word`, empty when none is within a third of its length.
+[[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "; did you mean --voxel?" or nothing.
+[[nodiscard]] std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+/// "a, b, c"
+[[nodiscard]] std::string join(const std::vector<std::string>& parts, std::string_view separator);
+
+/// `text` broken at blanks into lines of at most `width` bytes, `indent` blanks before each.
+[[nodiscard]] std::string wrap(std::string_view text, int width, int indent);
+
+}  // namespace vam

@@ -1,0 +1,305 @@
+#include "cli/app.hpp"
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "cli/declaration.hpp"
+
+namespace vam::cli {
+
+struct App::State {
+  Declaration tool;
+  CLI::App* parser = nullptr;
+  std::unique_ptr<CLI::App> owned;                // the root's parser
+  std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
+  std::string history;
+
+  Group& current_group() {
+    if (tool.groups.empty()) tool.groups.push_back({"Options", {}});
+    return tool.groups.back();
+  }
+};
+
+namespace {
+
+std::string describe(const Range& range) {
+  const bool has_low = range.low > any.low;
+  const bool has_high = range.high < any.high;
+  const std::string low = format_number(range.low);
+  const std::string high = format_number(range.high);
+  if (has_low && has_high) return (range.open_low ? "more than " + low + ", at most " : low + " to ") + high;
+  if (has_low) return (range.open_low ? "more than " : "at least ") + low;
+  if (has_high) return "at most " + high;
+  return "";
+}
+
+double checked_number(const std::string& flag, const std::string& text, const Range& range) {
+  const auto value = parse_number(text);
+  if (!value) throw Error{Fault::usage, flag + ": '" + text + "' is not a number"};
+  const bool low_ok = range.open_low ? *value > range.low : *value >= range.low;
+  if (!low_ok || *value > range.high) {
+    throw Error{Fault::usage, flag + ": " + text + " is out of range; give " + describe(range)};
+  }
+  return *value;
+}
+
+int checked_integer(const std::string& flag, const std::string& text, const Range& range) {
+  const double value = checked_number(flag, text, range);
+  const int whole = value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()
+                        ? static_cast<int>(value)
+                        : 0;
+  if (static_cast<double>(whole) != value) throw Error{Fault::usage, flag + ": '" + text + "' is not a whole number"};
+  return whole;
+}
+
+// Shell quoting for the history line: words of harmless characters stay as they are.
+std::string quoted(const std::string& word) {
+  const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
+  if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::vector<std::string> all_flags(const Declaration& tool) {
+  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
+  for (const auto& group : tool.groups) {
+    for (const auto& option : group.options) flags.push_back(long_flag(option));
+  }
+  return flags;
+}
+
+}  // namespace
+
+App::App(Manual manual) : state_(std::make_unique<State>()) {
+  state_->owned = std::make_unique<CLI::App>();
+  state_->parser = state_->owned.get();
+  state_->parser->set_help_flag();
+  state_->parser->option_defaults()->always_capture_default(false);
+  state_->tool.manual = std::move(manual);
+}
+
+App::~App() = default;
+
+App& App::group(const std::string& title) {
+  state_->tool.groups.push_back({title, {}});
+  return *this;
+}
+
+// Every option takes its text through one function that converts, checks and stores it.
+App& App::declare(Option option, const std::function<void(const std::string&)>& store) {
+  const std::string flag = long_flag(option);
+  auto* parsed = state_->parser->add_option_function<std::vector<std::string>>(
+      option.flag, [store](const std::vector<std::string>& texts) {
+        for (const auto& text : texts) store(text);
+      });
+  parsed->expected(option.repeatable ? -1 : 1)->type_size(1)->allow_extra_args(false);
+  parsed->multi_option_policy(option.repeatable ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::Throw);
+  state_->current_group().options.push_back(std::move(option));
+  return *this;
+}
+
+App& App::positional(const std::string& value_name, std::string& target, const std::string& help) {
+  state_->parser->add_option(value_name, target)->type_size(1)->expected(1);
+  state_->tool.positionals.push_back({value_name, help, false});
+  return *this;
+}
+
+App& App::positionals(const std::string& value_name, std::vector<std::string>& target, const std::string& help) {
+  state_->parser->add_option(value_name, target);
+  state_->tool.positionals.push_back({value_name, help, true});
+  return *this;
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
+  return declare({flag, value_name, help, target, "", {}, false},
+                 [&target](const std::string& text) { target = text; });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, double& target, Range range,
+                 const std::string& help) {
+  return declare({flag, value_name, help, format_number(target), describe(range), {}, false},
+                 [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, int& target, Range range,
+                 const std::string& help) {
+  return declare({flag, value_name, help, std::to_string(target), describe(range), {}, false},
+                 [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range,
+                 const std::string& help) {
+  return declare({flag, value_name, help, target ? format_number(*target) : "", describe(range), {}, false},
+                 [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range,
+                 const std::string& help) {
+  return declare({flag, value_name, help, target ? std::to_string(*target) : "", describe(range), {}, false},
+                 [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, std::vector<double>& target, int count,
+                 const std::string& help) {
+  std::vector<std::string> defaults;
+  for (const double value : target) defaults.push_back(format_number(value));
+  return declare({flag, value_name, help, join(defaults, ","), "", {}, false},
+                 [&target, flag, count](const std::string& text) {
+                   const auto parts = split(text, ',');
+                   if (count > 0 && static_cast<int>(parts.size()) != count) {
+                     throw Error{Fault::usage, flag + ": '" + text + "' has " + std::to_string(parts.size()) +
+                                                   " numbers; give " + std::to_string(count) + ", separated by commas"};
+                   }
+                   target.clear();
+                   for (const auto& part : parts) target.push_back(checked_number(flag, part, any));
+                 });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, std::vector<std::string>& target,
+                 const std::string& help) {
+  return declare({flag, value_name, help, "", "", {}, true},
+                 [&target](const std::string& text) { target.push_back(text); });
+}
+
+App& App::option(const std::string& flag, const std::string& value_name, Range range,
+                 const std::function<void(int)>& store, const std::string& help, const std::string& default_text) {
+  return declare({flag, value_name, help, default_text, describe(range), {}, false},
+                 [store, flag, range](const std::string& text) { store(checked_integer(flag, text, range)); });
+}
+
+App& App::choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
+                 const std::string& help) {
+  return declare({flag, "WORD", help, target, "", values, false}, [&target, flag, values](const std::string& text) {
+    if (std::find(values.begin(), values.end(), text) == values.end()) {
+      throw Error{Fault::usage,
+                  flag + ": '" + text + "' is not one of " + join(values, ", ") + did_you_mean(text, values)};
+    }
+    target = text;
+  });
+}
+
+App& App::flag(const std::string& name, bool& target, const std::string& help) {
+  state_->parser->add_flag(name, target);
+  state_->current_group().options.push_back({name, "", help, "", "", {}, false});
+  return *this;
+}
+
+App& App::subcommand(const std::string& name, const std::string& summary, std::string& chosen) {
+  auto nested = std::unique_ptr<App>(new App(Manual{name, summary, {}, {}, {}, {}}));
+  nested->state_->owned.reset();
+  nested->state_->parser = state_->parser->add_subcommand(name, summary);
+  nested->state_->parser->set_help_flag();
+  nested->state_->parser->callback([&chosen, name] { chosen = name; });
+  state_->subcommands.push_back(std::move(nested));
+  return *state_->subcommands.back();
+}
+
+bool App::given(const std::string& flag) const { return state_->parser->get_option(flag)->count() > 0; }
+
+std::string App::history() const { return state_->history; }
+
+// The declaration with those of its subcommands, for printing.
+Declaration App::whole() const {
+  Declaration tool = state_->tool;
+  for (const auto& nested : state_->subcommands) tool.subcommands.push_back(nested->whole());
+  return tool;
+}
+
+// The flags of the subcommand that the words name, else of the tool: for "did you mean".
+void App::fail_on_unknown(const std::vector<std::string>& words) const {
+  const Declaration tool = whole();
+  std::vector<std::string> known = all_flags(tool);
+  for (const auto& nested : tool.subcommands) {
+    known.push_back(nested.manual.name);
+    for (const auto& flag : all_flags(nested)) known.push_back(flag);
+  }
+  const std::string word = words.empty() ? "" : split(words.front(), '=').front();
+  const bool option = word.rfind('-', 0) == 0;
+  throw Error{Fault::usage, word + (option ? ": unknown option" : ": unexpected argument") + did_you_mean(word, known) +
+                                " (" + tool.manual.name + " --help lists all)"};
+}
+
+void App::parse(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  state_->history = state_->tool.manual.name + " " + VAM_VERSION;
+  for (const auto& word : words) state_->history += " " + quoted(word);
+  std::reverse(words.begin(), words.end());  // CLI11 takes them last first
+  try {
+    state_->parser->parse(words);
+  } catch (const CLI::ExtrasError&) {
+    fail_on_unknown(state_->parser->remaining(true));
+  } catch (const CLI::ParseError& error) {
+    throw Error{Fault::usage, std::string(error.what()) + " (" + state_->tool.manual.name + " --help lists all)"};
+  }
+}
+
+// --help, --version, --man and --completion print and end; they win over every other option. True when one was given.
+bool App::print_about(int argc, char** argv) const {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--") return false;
+    if (word == "--help" || word == "-h") {
+      Declaration tool = whole();
+      for (const auto& nested : tool.subcommands) {
+        if (i > 1 && nested.manual.name == argv[1]) {
+          Declaration one = nested;
+          one.manual.name = tool.manual.name + " " + nested.manual.name;
+          tool = one;
+          break;
+        }
+      }
+      std::fputs(help_text(tool).c_str(), stdout);
+    } else if (word == "--version") {
+      std::printf("%s %s\n", state_->tool.manual.name.c_str(), VAM_VERSION);
+    } else if (word == "--man") {
+      std::fputs(manual_page(whole()).c_str(), stdout);
+    } else if (word == "--completion") {
+      std::fputs(completion(whole(), i + 1 < argc ? argv[i + 1] : "").c_str(), stdout);
+    } else {
+      continue;
+    }
+    return true;
+  }
+  return false;
+}
+
+int App::run(int argc, char** argv, const std::function<void()>& body) {
+  const std::string& name = state_->tool.manual.name;
+  set_program_name(name);
+  std::string line;
+  Fault fault = Fault::bug;
+  try {
+    if (!print_about(argc, argv)) {
+      parse(argc, argv);
+      body();
+    }
+    errno = 0;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw Error{Fault::io, std::string("standard output: write failed (") + std::strerror(errno) + ")"};
+    }
+    return 0;
+  } catch (const Error& error) {
+    line = error.what();
+    fault = error.fault;
+  } catch (const std::bad_alloc&) {
+    line = "out of memory";
+    fault = Fault::memory;
+  } catch (const std::exception& error) {
+    line = std::string("internal error: ") + error.what() + "; please report this";
+  }
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+  return static_cast<int>(fault);
+}
+
+}  // namespace vam::cli

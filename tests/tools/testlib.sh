@@ -1,0 +1,72 @@
+# Helpers of the end-to-end tests (POSIX sh). A test sources this file, runs in a fresh scratch directory that is
+# removed at the end, prints TAP and ends with done_testing.
+set -u
+LC_ALL=C; export LC_ALL
+unset VAM_PRINTER
+scratch=$(mktemp -d "${TMPDIR:-/tmp}/vam-test.XXXXXX") || exit 1
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+mkdir .log
+number=0
+failures=0
+
+report() {  # report STATUS NAME: one TAP line
+  number=$((number + 1))
+  if [ "$1" -eq 0 ]; then echo "ok $number - $2"; else echo "not ok $number - $2"; failures=$((failures + 1)); fi
+}
+
+ok() {  # ok NAME COMMAND...: the command succeeds
+  name=$1; shift
+  "$@" >.log/out 2>.log/err; status=$?
+  report $status "$name"
+  [ $status -eq 0 ] || { echo "# status $status: $*"; sed 's/^/# /' .log/err .log/out | head -n 20; }
+}
+
+quiet() {  # quiet NAME COMMAND...: it succeeds and says nothing on stderr
+  name=$1; shift
+  "$@" >.log/out 2>.log/err; status=$?
+  if [ $status -eq 0 ] && [ ! -s .log/err ]; then report 0 "$name"; else
+    report 1 "$name"; echo "# status $status: $*"; sed 's/^/# /' .log/err | head -n 20
+  fi
+}
+
+fails() {  # fails STATUS REGEX COMMAND...: that exit status, one line on stderr that matches, nothing new in the folder
+  want=$1; regex=$2; shift 2
+  ls -A >.log/before
+  "$@" >.log/out 2>.log/err; status=$?
+  ls -A >.log/after
+  lines=$(wc -l <.log/err)
+  problem=
+  [ "$status" -eq "$want" ] || problem="status $status instead of $want"
+  [ "$lines" -eq 1 ] || problem="$problem; $lines lines on stderr instead of 1"
+  grep -Eq -- "$regex" .log/err || problem="$problem; stderr does not match '$regex'"
+  cmp -s .log/before .log/after || problem="$problem; left behind: $(comm -13 .log/before .log/after | tr '\n' ' ')"
+  if [ -z "$problem" ]; then report 0 "$want: $*"; else
+    report 1 "$want: $*"; echo "# $problem"; sed 's/^/# /' .log/err | head -n 10
+  fi
+}
+
+is() {  # is NAME GOT WANT
+  if [ "$2" = "$3" ]; then report 0 "$1"; else report 1 "$1"; echo "# got '$2', want '$3'"; fi
+}
+
+same() {  # same NAME FILE FILE: identical bytes
+  if cmp -s "$2" "$3"; then report 0 "$1"; else report 1 "$1"; echo "# $2 and $3 differ"; fi
+}
+
+holds() {  # holds NAME EXPRESSION: arithmetic truth, by awk: holds "volume" "$v > 0.99 && $v < 1.01"
+  if awk "BEGIN { exit !($2) }"; then report 0 "$1"; else report 1 "$1"; echo "# not true: $2"; fi
+}
+
+json() {  # json FILE KEY: the number, text or truth at that dotted key
+  python3 -c 'import json,sys
+value=json.load(open(sys.argv[1]))
+for key in sys.argv[2].split("."): value=value[int(key)] if isinstance(value,list) else value[key]
+print(str(value).lower() if isinstance(value,bool) else value)' "$1" "$2"
+}
+
+done_testing() {
+  echo "1..$number"
+  [ "$number" -gt 0 ] && [ "$failures" -eq 0 ]
+  exit $?
+}
