@@ -1,0 +1,154 @@
+#include "optics/vial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace vam::optics {
+
+namespace {
+
+// The ray in front of the vial, in the medium n_0 that surrounds it.
+struct Approach {
+  double impact_mm = 0;      // b, signed distance from the axis
+  double phi_rad = 0;        // angle with the optical axis, in n_0
+  double impact_rate = 1;    // db / dx_p
+  double phi_rate = 0;       // dphi / dx_p, rad/mm
+  double transmittance = 1;  // of the window
+};
+
+// 1 - (r_s^2 + r_p^2) / 2 with the cosines of the angles before and after the interface.
+double fresnel(double n1, double cos1, double n2, double cos2) {
+  const double r_s = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
+  const double r_p = (n1 * cos2 - n2 * cos1) / (n1 * cos2 + n2 * cos1);
+  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
+}
+
+Approach approach(const View& view, double x_p) {
+  if (!view.lens_mm) {  // telecentric: square on the window
+    return {x_p, 0, 1, 0, fresnel(1, 1, view.bath_index, 1)};
+  }
+  const double d = *view.lens_mm;
+  const double l = view.bath_index == 1.0 ? 0.0 : view.window_mm;
+  const double tan_phi = x_p / d;
+  const double cos_phi = 1.0 / std::sqrt(1.0 + tan_phi * tan_phi);
+  const double sin_b = tan_phi * cos_phi / view.bath_index;  // sin phi_b = sin phi / n_b [RAY21 appendix 1]
+  const double cos_b = std::sqrt(1.0 - sin_b * sin_b);
+  const double x_w = x_p * (1.0 - l / d);  // where the ray meets the window
+  Approach ray;
+  ray.impact_mm = x_w * cos_b + l * sin_b;
+  ray.phi_rad = std::asin(sin_b);
+  ray.phi_rate = cos_phi * cos_phi * cos_phi / (d * view.bath_index * cos_b);
+  ray.impact_rate = (1.0 - l / d) * cos_b + (l * cos_b - x_w * sin_b) * ray.phi_rate;
+  ray.transmittance = fresnel(1, cos_phi, view.bath_index, cos_b);
+  return ray;
+}
+
+// Largest |b| n_0 that passes every shell: n b is conserved and sin = n b / (n_k R_k) <= 1 on both sides of each.
+double largest_invariant(const View& view) {
+  double outside = view.bath_index;
+  double most = outside * view.shells.front().radius_mm;
+  for (const Shell& shell : view.shells) {
+    most = std::min(most, std::min(outside, shell.index) * shell.radius_mm);
+    outside = shell.index;
+  }
+  return most;
+}
+
+void check(const View& view) {
+  const double radius = view.shells.front().radius_mm;
+  const auto mm = [](double value) { return format_number(value) + " mm"; };
+  double outside = radius;
+  for (const Shell& shell : view.shells) {
+    if (!(shell.radius_mm > 0 && shell.radius_mm <= outside)) {
+      throw Error{Fault::data, "vial: a shell of " + mm(shell.radius_mm) + " does not fit into one of " + mm(outside) +
+                                   "; check vial.radius_mm and vial.wall_mm"};
+    }
+    outside = shell.radius_mm;
+  }
+  if (!view.lens_mm) return;
+  if (!(*view.lens_mm > radius)) {
+    throw Error{Fault::data, "lens: " + mm(*view.lens_mm) + " from the axis is inside the vial of " + mm(radius) +
+                                 "; move it or make it telecentric"};
+  }
+  if (view.bath_index == 1.0) return;
+  if (!(view.window_mm >= radius && view.window_mm < *view.lens_mm)) {
+    throw Error{Fault::data, "bath: its window stands " + mm(view.window_mm) +
+                                 " before the axis, but the vial ends at " + mm(radius) + " and the lens is at " +
+                                 mm(*view.lens_mm) + "; set bath.window_mm"};
+  }
+}
+
+View make_view(const model::Printer& printer, std::optional<double> lens_mm, double index_resin) {
+  View view;
+  view.lens_mm = lens_mm;
+  view.bath_index = printer.bath.index;
+  view.window_mm = printer.bath.window_mm;
+  if (printer.vial.wall_mm > 0) view.shells.push_back({printer.vial.radius_mm, printer.vial.index_glass});
+  view.shells.push_back({model::resin_radius_mm(printer.vial), index_resin});
+  check(view);
+  return view;
+}
+
+}  // namespace
+
+View projector_view(const model::Printer& printer) {
+  return make_view(printer, model::lens_distance_mm(printer.projector), printer.resin.index);
+}
+
+View camera_view(const model::Printer& printer) {
+  return make_view(printer, printer.camera.distance_mm, printer.camera.index_resin);
+}
+
+ChiefRay chief_ray(const View& view, double x_p_mm) {
+  const Approach before = approach(view, x_p_mm);
+  const double nb = view.bath_index * before.impact_mm;
+  if (!(std::abs(nb) < largest_invariant(view))) return {};
+
+  ChiefRay ray{true, 0, -before.phi_rad, before.transmittance, 0, -before.phi_rate};
+  const double nb_rate = view.bath_index * before.impact_rate;
+  double n = view.bath_index;
+  for (const Shell& shell : view.shells) {
+    const double sin_in = nb / (n * shell.radius_mm);
+    const double sin_out = nb / (shell.index * shell.radius_mm);
+    const double cos_in = std::sqrt((1.0 - sin_in) * (1.0 + sin_in));
+    const double cos_out = std::sqrt((1.0 - sin_out) * (1.0 + sin_out));
+    ray.delta_rad += std::asin(sin_in) - std::asin(sin_out);
+    ray.delta_rate += nb_rate / shell.radius_mm * (1.0 / (n * cos_in) - 1.0 / (shell.index * cos_out));
+    ray.transmittance *= fresnel(n, cos_in, shell.index, cos_out);
+    n = shell.index;
+  }
+  ray.x_v_mm = nb / n;  // (n_0 / n_last) b
+  ray.jacobian = nb_rate / n;
+  return ray;
+}
+
+std::optional<double> column_of(const View& view, double x_v_mm) {
+  if (!(std::abs(x_v_mm) < reach_mm(view))) return std::nullopt;
+  const double b = x_v_mm * view.shells.back().index / view.bath_index;
+  if (!view.lens_mm) return b;
+  if (view.bath_index == 1.0) {  // b = x_p cos(atan(x_p / D)) solved for x_p
+    const double sine = b / *view.lens_mm;
+    return b / std::sqrt((1.0 - sine) * (1.0 + sine));
+  }
+  // b is monotone and nearly linear in x_p: Newton settles in a handful of steps.
+  double x_p = b;
+  for (int step = 0; step < 50; ++step) {
+    const Approach ray = approach(view, x_p);
+    const double move = (b - ray.impact_mm) / ray.impact_rate;
+    x_p += move;
+    if (std::abs(move) <= 1e-14 * view.shells.front().radius_mm) break;
+  }
+  return x_p;
+}
+
+double reach_mm(const View& view) { return largest_invariant(view) / view.shells.back().index; }
+
+double resin_radius_mm(const View& view) { return view.shells.back().radius_mm; }
+
+double impact_mm(const View& view, double x_p_mm) { return approach(view, x_p_mm).impact_mm; }
+
+}  // namespace vam::optics

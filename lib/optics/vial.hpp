@@ -1,0 +1,60 @@
+// Chief rays through the vial in closed form: from a column of the projector (or camera) to a line of the part.
+// Sources: [RAY21] Orth et al., Correcting ray distortion in tomographic additive manufacturing, 2021, eq 4-7 (one
+// shell); Bouguer's invariant n b for any number of concentric shells.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "model/printer.hpp"
+
+namespace vam::optics {
+
+/// A cylinder around the axis and what fills it, up to the next shell.
+struct Shell {
+  double radius_mm = 0;
+  double index = 1;
+};
+
+/// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
+struct View {
+  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis; empty = telecentric
+  double bath_index = 1;          // n_0, what the outermost shell stands in
+  double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
+  std::vector<Shell> shells;      // outermost first; the last is the resin
+};
+
+/// One chief ray. In the lab it runs along the line of offset x_v at angle delta, so at stage angle theta it lights
+/// the part's line L(x_v, theta + delta) = { x_v (cos, sin) + u (-sin, cos) } [physics section 2].
+struct ChiefRay {
+  bool hits = false;         // false: passes beside the resin or is totally reflected; the rest is 0 then
+  double x_v_mm = 0;         // signed offset from the axis in the resin
+  double delta_rad = 0;      // angle of the line
+  double transmittance = 0;  // T, unpolarised intensity transmittance of all interfaces [0, 1]
+  double jacobian = 0;       // J = d x_v / d x_p
+  double delta_rate = 0;     // d delta / d x_p in rad/mm
+};
+
+/// The view of the projector, or of the camera by reversal of the light (with the resin's index at its wavelength).
+/// Throws Fault::data where lens, window and vial cannot stand like that.
+[[nodiscard]] View projector_view(const model::Printer& printer);
+[[nodiscard]] View camera_view(const model::Printer& printer);
+
+/// The ray of the column at x_p_mm.
+[[nodiscard]] ChiefRay chief_ray(const View& view, double x_p_mm);
+
+/// The column whose ray has offset x_v_mm in the resin: the inverse of chief_ray, which is monotone in x_p.
+/// Empty beyond reach_mm.
+[[nodiscard]] std::optional<double> column_of(const View& view, double x_v_mm);
+
+/// Largest |x_v| of any ray in the resin; inside this radius every point is lit from all sides.
+[[nodiscard]] double reach_mm(const View& view);
+
+/// Radius of the resin.
+[[nodiscard]] double resin_radius_mm(const View& view);
+
+/// Distance from the axis to the ray of column x_p_mm before it meets the vial. The column R_e that is tangent to a
+/// vial of radius R gives R: in air R = R_e / sqrt(1 + (R_e / D)^2); [RAY21 eq 9] has the sign of the square wrong.
+[[nodiscard]] double impact_mm(const View& view, double x_p_mm);
+
+}  // namespace vam::optics
