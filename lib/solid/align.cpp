@@ -1,0 +1,281 @@
+#include "solid/align.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <numbers>
+
+#include "base/parallel.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using Vector7d = Eigen::Matrix<double, 7, 1>;
+using Matrix7d = Eigen::Matrix<double, 7, 7>;
+
+struct Pose {
+  double scale = 1;
+  Matrix3d rotation = Matrix3d::Identity();
+  Vector3d shift = Vector3d::Zero();
+  [[nodiscard]] Vector3d operator()(const Vector3d& x) const { return scale * (rotation * x) + shift; }
+};
+
+Vector3d to_eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
+Vector3 from_eigen(const Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+Similarity to_similarity(const Pose& pose) {
+  Similarity result;
+  result.scale = pose.scale;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c)
+      result.rotation[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = pose.rotation(r, c);
+  }
+  result.shift_mm = from_eigen(pose.shift);
+  return result;
+}
+
+std::vector<Vector3d> points_of(const model::TriangleSoup& mesh, int count) {
+  std::vector<Vector3d> points;
+  for (const auto& sample : sample_surface(mesh, count)) points.push_back(to_eigen(sample.point));
+  return points;
+}
+
+Vector3d mean_of(const std::vector<Vector3d>& points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const auto& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+struct Pairs {
+  std::vector<Vector3d> moved;
+  std::vector<Vector3d> foot;
+  std::vector<Vector3d> normal;
+  std::vector<double> distance;  // along the normal
+  double rms = 0;                // full distances
+};
+
+Pairs pair_up(const std::vector<Vector3d>& points, const Pose& pose, const Surface& reference) {
+  const std::size_t n = points.size();
+  Pairs pairs{std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<double>(n), 0};
+  constexpr std::size_t chunk = 256;
+  const auto chunks = static_cast<int>((n + chunk - 1) / chunk);
+  parallel_for(chunks, [&](int c) {
+    const std::size_t begin = static_cast<std::size_t>(c) * chunk;
+    for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) {
+      pairs.moved[i] = pose(points[i]);
+      const Foot foot = reference.closest(from_eigen(pairs.moved[i]));
+      pairs.foot[i] = to_eigen(foot.point);
+      pairs.normal[i] = to_eigen(foot.normal);
+      pairs.distance[i] = (pairs.moved[i] - pairs.foot[i]).dot(pairs.normal[i]);
+    }
+  });
+  double sum = 0;
+  for (std::size_t i = 0; i < n; ++i) sum += (pairs.moved[i] - pairs.foot[i]).squaredNorm();
+  pairs.rms = std::sqrt(sum / static_cast<double>(n));
+  return pairs;
+}
+
+// Distances beyond three robust standard deviations (MAD) are outliers of the print, not of the pose.
+double outlier_limit(const Pairs& pairs) {
+  std::vector<double> sizes(pairs.distance.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = (pairs.moved[i] - pairs.foot[i]).norm();
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return 3 * 1.4826 * *middle + 1e-12;
+}
+
+// One Gauss-Newton step of the point-to-plane error (Chen & Medioni 1992), linearised about `centre`: unknowns are
+// rotation vector, shift and relative scale. Returns how far the step moves the farthest point.
+double step(const Pairs& pairs, bool with_scale, Pose& pose) {
+  const Vector3d centre = mean_of(pairs.moved);
+  const double limit = outlier_limit(pairs);
+  Matrix7d normal = Matrix7d::Zero();
+  Vector7d right = Vector7d::Zero();
+  double reach = 0;
+  for (std::size_t i = 0; i < pairs.moved.size(); ++i) {
+    const Vector3d arm = pairs.moved[i] - centre;
+    reach = std::max(reach, arm.norm());
+    if ((pairs.moved[i] - pairs.foot[i]).norm() > limit) continue;
+    Vector7d row;
+    row << arm.cross(pairs.normal[i]), pairs.normal[i], with_scale ? arm.dot(pairs.normal[i]) : 0.0;
+    normal += row * row.transpose();
+    right -= row * pairs.distance[i];
+  }
+  // Directions in which the surface slides on itself (a sphere, a cylinder) get no motion: minimum-norm solution.
+  const double arm_unit = reach > 0 ? reach : 1;
+  Vector7d units;
+  units << 1 / arm_unit, 1 / arm_unit, 1 / arm_unit, 1, 1, 1, 1 / arm_unit;
+  const Matrix7d scaled = units.asDiagonal() * normal * units.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<Matrix7d> solver(scaled);
+  const double floor = 1e-6 * solver.eigenvalues().maxCoeff();
+  Vector7d inverse = Vector7d::Zero();
+  for (int k = 0; k < 7; ++k) {
+    if (solver.eigenvalues()[k] > floor) inverse[k] = 1 / solver.eigenvalues()[k];
+  }
+  const Vector7d x = units.asDiagonal() *
+                     (solver.eigenvectors() *
+                      (inverse.asDiagonal() * (solver.eigenvectors().transpose() * (units.asDiagonal() * right))));
+  const Vector3d turn = x.head<3>();
+  const double angle = turn.norm();
+  const Matrix3d rotation =
+      angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3d::Identity();
+  const double growth = 1 + x[6];
+  pose.shift = growth * (rotation * (pose.shift - centre)) + centre + x.segment<3>(3);
+  pose.rotation = rotation * pose.rotation;
+  pose.scale *= growth;
+  return angle * reach + x.segment<3>(3).norm() + std::abs(x[6]) * reach;
+}
+
+Alignment iterate(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
+                  int max_iterations, double size, Pose& pose) {
+  Alignment result;
+  for (result.iterations = 0; result.iterations < max_iterations; ++result.iterations) {
+    const Pairs pairs = pair_up(points, pose, reference);
+    if (step(pairs, options.with_scale, pose) < options.tolerance * size) {
+      result.converged = true;
+      break;
+    }
+  }
+  result.rms_mm = pair_up(points, pose, reference).rms;
+  result.transform = to_similarity(pose);
+  return result;
+}
+
+struct Frame {
+  Vector3d centre;
+  Matrix3d axes;    // columns, ascending spread, right-handed
+  Vector3d spread;  // standard deviations
+};
+
+Frame principal_frame(const std::vector<Vector3d>& points) {
+  Frame frame;
+  frame.centre = mean_of(points);
+  Matrix3d covariance = Matrix3d::Zero();
+  for (const auto& p : points) covariance += (p - frame.centre) * (p - frame.centre).transpose();
+  Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance / static_cast<double>(points.size()));
+  frame.axes = solver.eigenvectors();
+  if (frame.axes.determinant() < 0) frame.axes.col(0) *= -1;
+  frame.spread = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
+  return frame;
+}
+
+// The 24 rotations that map a cube onto itself.
+std::vector<Matrix3d> cube_rotations() {
+  std::vector<Matrix3d> rotations;
+  std::array<int, 3> order{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      Matrix3d m = Matrix3d::Zero();
+      for (int r = 0; r < 3; ++r) m(r, order[static_cast<std::size_t>(r)]) = (signs >> r & 1) != 0 ? -1 : 1;
+      if (m.determinant() > 0) rotations.push_back(m);
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return rotations;
+}
+
+// Turns about `axis` by steps that a short ICP can bridge.
+void add_turns(const Vector3d& axis, std::vector<Matrix3d>& turns) {
+  constexpr int steps = 18;  // a quarter turn is in the 24 already: 5 degrees between starts
+  for (int k = 1; k < steps; ++k) {
+    turns.push_back(Eigen::AngleAxisd(k * std::numbers::pi / 2 / steps, axis).toRotationMatrix());
+  }
+}
+
+// Rotations, in the reference's principal frame, that the second moments cannot tell from the identity.
+std::vector<Matrix3d> undetermined_turns(const Vector3d& spread) {
+  constexpr double alike = 0.1;  // relative difference of spreads up to which the axes may be mixed up
+  const bool low_pair = spread[1] - spread[0] < alike * spread[1];
+  const bool high_pair = spread[2] - spread[1] < alike * spread[2];
+  std::vector<Matrix3d> turns{Matrix3d::Identity()};
+  if (low_pair && high_pair) {
+    constexpr double coarse_deg = 30;
+    for (double a = 0; a < 90; a += coarse_deg) {
+      for (double b = 0; b < 90; b += coarse_deg) {
+        for (double c = 0; c < 90; c += coarse_deg) {
+          if (a + b + c == 0) continue;
+          const double rad = std::numbers::pi / 180;
+          turns.push_back(
+              (Eigen::AngleAxisd(a * rad, Vector3d::UnitX()) * Eigen::AngleAxisd(b * rad, Vector3d::UnitY()) *
+               Eigen::AngleAxisd(c * rad, Vector3d::UnitZ()))
+                  .toRotationMatrix());
+        }
+      }
+    }
+  } else if (low_pair) {
+    add_turns(Vector3d::UnitZ(), turns);
+  } else if (high_pair) {
+    add_turns(Vector3d::UnitX(), turns);
+  }
+  return turns;
+}
+
+}  // namespace
+
+Vector3 Similarity::operator()(const Vector3& x) const {
+  return {scale * dot(rotation[0], x) + shift_mm[0], scale * dot(rotation[1], x) + shift_mm[1],
+          scale * dot(rotation[2], x) + shift_mm[2]};
+}
+
+std::array<std::array<double, 4>, 4> Similarity::matrix() const {
+  std::array<std::array<double, 4>, 4> m{};
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 3; ++c) m[r][c] = scale * rotation[r][c];
+    m[r][3] = shift_mm[r];
+  }
+  m[3][3] = 1;
+  return m;
+}
+
+Alignment refine(const model::TriangleSoup& print, const Surface& reference, const AlignOptions& options) {
+  Pose pose;
+  return iterate(points_of(print, options.samples), reference, options, options.max_iterations,
+                 bounding_box(print).largest_side(), pose);
+}
+
+Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh, const Surface& reference,
+                const AlignOptions& options) {
+  const std::vector<Vector3d> all = points_of(print, options.samples);
+  const Frame from = principal_frame(all);
+  const Frame to = principal_frame(points_of(reference_mesh, options.samples));
+  const std::vector<Vector3d> few = points_of(print, 400);
+  const double size = bounding_box(reference_mesh).largest_side();
+  AlignOptions rigid = options;
+  rigid.with_scale = false;
+
+  struct Start {
+    double rms;
+    Pose pose;
+  };
+  std::vector<Start> starts;
+  for (const Matrix3d& turn : undetermined_turns(to.spread)) {
+    for (const Matrix3d& cube : cube_rotations()) {
+      Pose pose;
+      if (options.with_scale) pose.scale = to.spread.norm() / from.spread.norm();
+      pose.rotation = to.axes * turn * cube * from.axes.transpose();
+      pose.shift = to.centre - pose.scale * (pose.rotation * from.centre);
+      starts.push_back({pair_up(few, pose, reference).rms, pose});
+    }
+  }
+  const auto better = [](const Start& a, const Start& b) { return a.rms < b.rms; };
+  const auto keep = [&](std::size_t count) {
+    std::sort(starts.begin(), starts.end(), better);
+    starts.resize(std::min(starts.size(), count));
+  };
+  keep(96);
+  for (Start& start : starts) start.rms = iterate(few, reference, rigid, 6, size, start.pose).rms_mm;
+  keep(12);
+  for (Start& start : starts) start.rms = iterate(few, reference, rigid, 20, size, start.pose).rms_mm;
+  keep(3);
+
+  Alignment best;
+  for (Start& start : starts) {
+    if (&start != &starts.front() && start.rms > 1.5 * starts.front().rms) break;  // clearly another pose
+    const Alignment candidate = iterate(all, reference, options, options.max_iterations, size, start.pose);
+    if (&start == &starts.front() || candidate.rms_mm < best.rms_mm) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,57 @@
+// A reference surface that answers "how far, and on which side?".
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/vector3.hpp"
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+/// The foot of a point on the surface.
+struct Foot {
+  Vector3 point{};
+  Vector3 normal{};  // of the triangle it lies on, unit length; zero where the triangle is degenerate
+  int triangle = 0;
+};
+
+/// Closest points by CGAL's AABB tree, sides by the generalised winding number, so that a reference with holes works.
+/// All calls may come from several threads.
+class Surface {
+ public:
+  /// Degenerate triangles are left out. Throws Fault::data when none remains.
+  explicit Surface(const model::TriangleSoup& mesh);
+  ~Surface();
+
+  [[nodiscard]] Foot closest(const Vector3& point) const;
+  /// mm, positive outside the surface, negative inside (MeshLab's, CloudCompare's and Open3D's sign).
+  [[nodiscard]] double signed_distance(const Vector3& point) const;
+  /// signed_distance of all points, in parallel.
+  [[nodiscard]] std::vector<float> signed_distances(std::span<const Vector3> points) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// A point spread evenly over a surface, and the unit normal of its triangle.
+struct SurfaceSample {
+  Vector3 point;
+  Vector3 normal;
+};
+
+/// About `count` points, each standing for the same area (vertices would overweight fine triangles): stratified along
+/// the running area, with a seeded position inside the triangle; the same points for the same mesh and count.
+[[nodiscard]] std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int count);
+
+/// Axis-aligned box; high - low is the size.
+struct Box {
+  Vector3 low;
+  Vector3 high;
+  [[nodiscard]] double largest_side() const;
+};
+[[nodiscard]] Box bounding_box(const model::TriangleSoup& mesh);
+
+}  // namespace vam::solid

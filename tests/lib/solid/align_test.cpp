@@ -1,0 +1,145 @@
+#include "solid/align.hpp"
+
+#include <doctest/doctest.h>
+
+#include <numbers>
+
+#include "solid/surface.hpp"
+#include "solid/winding.hpp"
+
+using namespace vam;
+using vam::model::TriangleSoup;
+
+namespace {
+
+// A sphere by latitude and longitude, radius r about c, with 2 * rings * rings triangles less the poles' empty ones.
+TriangleSoup sphere(const Vector3& c, double r, int rings) {
+  TriangleSoup mesh;
+  const int around = 2 * rings;
+  for (int i = 0; i <= rings; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const double theta = std::numbers::pi * i / rings;
+      const double phi = 2 * std::numbers::pi * j / around;
+      mesh.points.push_back({c[0] + r * std::sin(theta) * std::cos(phi), c[1] + r * std::sin(theta) * std::sin(phi),
+                             c[2] + r * std::cos(theta)});
+    }
+  }
+  for (int i = 0; i < rings; ++i) {
+    for (int j = 0; j < around; ++j) {
+      const int a = i * around + j;
+      const int b = i * around + (j + 1) % around;
+      if (i > 0) mesh.triangles.push_back({a, a + around, b});
+      if (i + 1 < rings) mesh.triangles.push_back({b, a + around, b + around});
+    }
+  }
+  return mesh;
+}
+
+// Three blocks of different sizes: no symmetry at all.
+TriangleSoup blocks() {
+  TriangleSoup mesh;
+  const auto add = [&](const Vector3& low, const Vector3& high) {
+    const int first = static_cast<int>(mesh.points.size());
+    for (int k = 0; k < 8; ++k) {
+      mesh.points.push_back(
+          {(k & 1) != 0 ? high[0] : low[0], (k & 2) != 0 ? high[1] : low[1], (k & 4) != 0 ? high[2] : low[2]});
+    }
+    const int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                              {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    for (const auto& f : faces) mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
+  };
+  add({0, 0, 0}, {10, 4, 3});
+  add({0, 4.5, 0}, {3, 9, 6});
+  add({7, -3, 4}, {9, 3, 5});
+  return mesh;
+}
+
+TriangleSoup moved(TriangleSoup mesh, const solid::Similarity& motion) {
+  for (auto& p : mesh.points) p = motion(p);
+  return mesh;
+}
+
+solid::Similarity turn(const Vector3& axis, double degrees, const Vector3& shift, double scale = 1) {
+  const double a = degrees * std::numbers::pi / 180;
+  const Vector3 u = (1 / length(axis)) * axis;
+  solid::Similarity s;
+  s.scale = scale;
+  s.shift_mm = shift;
+  for (std::size_t r = 0; r < 3; ++r) {
+    Vector3 unit{};
+    unit[r] = 1;
+    const Vector3 row = std::cos(a) * unit + (1 - std::cos(a)) * u[r] * u + std::sin(a) * cross(unit, u);
+    s.rotation[r] = row;  // Rodrigues: row r of cos I + (1 - cos) u u^T + sin [u]x
+  }
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("winding number of a sphere, closed and with a hole") {
+  TriangleSoup mesh = sphere({1, 2, 3}, 5, 60);
+  const solid::WindingNumber whole(mesh);
+  for (double x = -8; x <= 10; x += 0.7) {
+    const double r = std::abs(x - 1);
+    if (std::abs(r - 5) < 0.05) continue;  // on the surface it is undefined
+    CHECK(whole({x, 2, 3}) == doctest::Approx(r < 5 ? 1.0 : 0.0).epsilon(0.05).scale(1));
+  }
+  mesh.triangles.erase(mesh.triangles.begin(), mesh.triangles.begin() + 400);  // the polar cap
+  const solid::WindingNumber open(mesh);
+  CHECK(open({1, 2, 3}) > 0.5);
+  CHECK(open({1, 2, -1}) > 0.5);
+  CHECK(open({1, 2, 9}) < 0.5);
+  CHECK(open({8, 2, 3}) < 0.5);
+}
+
+TEST_CASE("signed distances to a sphere are |x| - r, positive outside") {
+  const solid::Surface surface(sphere({0, 0, 0}, 5, 200));
+  // The facets of 200 rings lie up to r (pi/200)^2 / 8 x 2 = 3e-4 inside the sphere.
+  for (const double r : {0.5, 2.0, 4.9, 5.1, 9.0}) {
+    CHECK(surface.signed_distance({0.6 * r, 0, 0.8 * r}) == doctest::Approx(r - 5).epsilon(4e-4).scale(1));
+  }
+}
+
+TEST_CASE("samples spread evenly over the area") {
+  TriangleSoup mesh;  // a fine half and a coarse half of a rectangle 2 x 1
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  constexpr int n = 20;
+  for (int i = 0; i < n; ++i) {
+    const int first = static_cast<int>(mesh.points.size());
+    const double x = 1 + static_cast<double>(i) / n;
+    for (const auto& [dx, y] : {std::pair{0.0, 0.0}, {1.0 / n, 0.0}, {1.0 / n, 1.0}, {0.0, 1.0}})
+      mesh.points.push_back({x + dx, y, 0});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  }
+  double sum = 0;
+  const auto samples = solid::sample_surface(mesh, 10000);
+  for (const auto& sample : samples) sum += sample.point[0];
+  CHECK(samples.size() == 10000);
+  CHECK(sum / 10000 == doctest::Approx(1.0).epsilon(0.005));
+}
+
+TEST_CASE("a pose scrambled by 170 degrees about any axis is found again") {
+  const TriangleSoup reference = blocks();
+  const solid::Surface surface(reference);
+  for (const Vector3& axis : {Vector3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {-1, 2, 0.5}}) {
+    const TriangleSoup print = moved(reference, turn(axis, 170, {30, -12, 4}));
+    const auto found = solid::align(print, reference, surface, {});
+    CHECK(found.converged);
+    double worst = 0;
+    for (std::size_t i = 0; i < print.points.size(); ++i) {
+      worst = std::max(worst, length(found.transform(print.points[i]) - reference.points[i]));
+    }
+    CHECK(worst < 1e-4);  // 1e-5 of the size: the stopping tolerance, amplified by linear convergence
+  }
+}
+
+TEST_CASE("shrinkage is measured with the scale") {
+  const TriangleSoup reference = blocks();
+  const solid::Surface surface(reference);
+  const TriangleSoup print = moved(reference, turn({1, 2, 3}, 40, {1, 2, 3}, 0.97));
+  solid::AlignOptions options;
+  options.with_scale = true;
+  CHECK(solid::align(print, reference, surface, options).transform.scale == doctest::Approx(1 / 0.97).epsilon(1e-4));
+}
