@@ -2,8 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <numbers>
-
+#include "lib/meshes.hpp"
 #include "solid/surface.hpp"
 #include "solid/winding.hpp"
 
@@ -12,45 +11,12 @@ using vam::model::TriangleSoup;
 
 namespace {
 
-// A sphere by latitude and longitude, radius r about c, with 2 * rings * rings triangles less the poles' empty ones.
-TriangleSoup sphere(const Vector3& c, double r, int rings) {
-  TriangleSoup mesh;
-  const int around = 2 * rings;
-  for (int i = 0; i <= rings; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const double theta = std::numbers::pi * i / rings;
-      const double phi = 2 * std::numbers::pi * j / around;
-      mesh.points.push_back({c[0] + r * std::sin(theta) * std::cos(phi), c[1] + r * std::sin(theta) * std::sin(phi),
-                             c[2] + r * std::cos(theta)});
-    }
-  }
-  for (int i = 0; i < rings; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const int a = i * around + j;
-      const int b = i * around + (j + 1) % around;
-      if (i > 0) mesh.triangles.push_back({a, a + around, b});
-      if (i + 1 < rings) mesh.triangles.push_back({b, a + around, b + around});
-    }
-  }
-  return mesh;
-}
-
 // Three blocks of different sizes: no symmetry at all.
 TriangleSoup blocks() {
   TriangleSoup mesh;
-  const auto add = [&](const Vector3& low, const Vector3& high) {
-    const int first = static_cast<int>(mesh.points.size());
-    for (int k = 0; k < 8; ++k) {
-      mesh.points.push_back(
-          {(k & 1) != 0 ? high[0] : low[0], (k & 2) != 0 ? high[1] : low[1], (k & 4) != 0 ? high[2] : low[2]});
-    }
-    const int faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                              {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    for (const auto& f : faces) mesh.triangles.push_back({first + f[0], first + f[1], first + f[2]});
-  };
-  add({0, 0, 0}, {10, 4, 3});
-  add({0, 4.5, 0}, {3, 9, 6});
-  add({7, -3, 4}, {9, 3, 5});
+  test::add_box({0, 0, 0}, {10, 4, 3}, mesh);
+  test::add_box({0, 4.5, 0}, {3, 9, 6}, mesh);
+  test::add_box({7, -3, 4}, {9, 3, 5}, mesh);
   return mesh;
 }
 
@@ -77,7 +43,7 @@ solid::Similarity turn(const Vector3& axis, double degrees, const Vector3& shift
 }  // namespace
 
 TEST_CASE("winding number of a sphere, closed and with a hole") {
-  TriangleSoup mesh = sphere({1, 2, 3}, 5, 60);
+  TriangleSoup mesh = test::sphere({1, 2, 3}, 5, 60);
   const solid::WindingNumber whole(mesh);
   for (double x = -8; x <= 10; x += 0.7) {
     const double r = std::abs(x - 1);
@@ -93,7 +59,7 @@ TEST_CASE("winding number of a sphere, closed and with a hole") {
 }
 
 TEST_CASE("signed distances to a sphere are |x| - r, positive outside") {
-  const solid::Surface surface(sphere({0, 0, 0}, 5, 200));
+  const solid::Surface surface(test::sphere({0, 0, 0}, 5, 200));
   // The facets of 200 rings lie up to r (pi/200)^2 / 8 x 2 = 3e-4 inside the sphere.
   for (const double r : {0.5, 2.0, 4.9, 5.1, 9.0}) {
     CHECK(surface.signed_distance({0.6 * r, 0, 0.8 * r}) == doctest::Approx(r - 5).epsilon(4e-4).scale(1));

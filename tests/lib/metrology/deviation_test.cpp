@@ -1,0 +1,62 @@
+#include "metrology/deviation.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/error.hpp"
+#include "lib/meshes.hpp"
+
+using namespace vam;
+
+TEST_CASE("two equal spheres, one shifted: closed form") {
+  // At radius R and shift d, the distance |p| - R has mean d^2/(3R) and RMS d/sqrt(3). 120 rings leave the facets
+  // R (pi/120)^2 / 4 = 9e-4 inside the sphere, on both; 40,000 samples leave d/sqrt(3)/200 = 1.4e-3 of chance.
+  const double radius = 5;
+  const double shift = 0.5;
+  const auto reference = test::sphere({0, 0, 0}, radius, 120);
+  const solid::Surface surface(reference);
+  const auto found = metrology::compare(test::sphere({0, 0, shift}, radius, 120), reference, surface, 40000);
+  CHECK(found.print_to_reference.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
+  CHECK(found.print_to_reference.mean_mm == doctest::Approx(shift * shift / (3 * radius)).scale(1).epsilon(0.003));
+  CHECK(found.print_to_reference.max_mm == doctest::Approx(shift).epsilon(0.005));
+  CHECK(found.hausdorff_mm == doctest::Approx(shift).epsilon(0.005));
+  CHECK(found.largest_dimension_mm == doctest::Approx(2 * radius));
+  // The way back mirrors it: the print stands out where its centre moved to.
+  CHECK(found.reference_to_print.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
+  CHECK(found.reference_to_print.mean_mm == doctest::Approx(-shift * shift / (3 * radius)).scale(1).epsilon(0.003));
+}
+
+TEST_CASE("a sphere that grew is outside everywhere, both ways positive") {
+  const auto reference = test::sphere({1, 2, 3}, 5, 120);
+  const solid::Surface surface(reference);
+  const auto found = metrology::compare(test::sphere({1, 2, 3}, 5.2, 120), reference, surface, 10000);
+  for (const auto& d : {found.print_to_reference, found.reference_to_print}) {
+    CHECK(d.mean_mm == doctest::Approx(0.2).epsilon(0.005));  // chord error 1e-3 of 0.2
+    CHECK(d.sigma_mm < 1e-3);
+    CHECK(d.min_mm > 0.19);
+  }
+}
+
+TEST_CASE("statistics of known numbers") {
+  const std::vector<float> values{-2, -1, 0, 1, 7};
+  const auto d = metrology::deviation(values);
+  CHECK(d.mean_mm == doctest::Approx(1));
+  CHECK(d.rms_mm == doctest::Approx(std::sqrt(55.0 / 5)));
+  CHECK(d.sigma_mm == doctest::Approx(std::sqrt(10.0)));
+  CHECK(d.mad_mm == doctest::Approx(1));
+  CHECK(d.max_abs_mm == 7);
+  CHECK(d.percentiles_mm[3].second == doctest::Approx(0));
+  CHECK_THROWS_AS((void)metrology::deviation({}), Error);
+}
+
+TEST_CASE("the histogram holds all of the area, the ends what lies beyond") {
+  const std::vector<float> values{-9, -0.4F, 0.1F, 0.1F, 9};
+  const auto h = metrology::histogram(values, 4, 1.0);
+  CHECK(h.share == std::vector<double>{20, 20, 40, 20});
+  CHECK(h.bin_mm() == 0.5);
+}
+
+TEST_CASE("colours: blue inside, white at zero, red outside") {
+  CHECK(metrology::blue_white_red(-2, 1) == std::array<std::uint8_t, 3>{0, 0, 255});
+  CHECK(metrology::blue_white_red(0, 1) == std::array<std::uint8_t, 3>{255, 255, 255});
+  CHECK(metrology::blue_white_red(1, 1) == std::array<std::uint8_t, 3>{255, 0, 0});
+}
