@@ -1,0 +1,41 @@
+// The one table of the printer file's keys: it drives parsing, validation and printing.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "model/printer.hpp"
+
+namespace vam::io {
+
+/// Where a setting lives in the Printer; the alternative is its type in the file.
+using Slot = std::variant<int*, double*, std::optional<double>*, bool*, std::string*>;
+
+struct PrinterField {
+  const char* section;
+  const char* key;
+  Slot (*slot)(model::Printer&);
+  const char* comment;  // meaning and unit
+  double low = -1e300;  // allowed numbers, low itself included unless open_low
+  double high = 1e300;
+  bool open_low = false;
+  std::vector<std::string> words{};  // when not empty: the only values allowed, as text
+};
+
+/// All fields, grouped by section in the order in which the file is printed.
+[[nodiscard]] std::span<const PrinterField> printer_fields();
+
+/// "vial.radius_mm"
+[[nodiscard]] std::string dotted_name(const PrinterField& field);
+
+/// Why the number or the word in the slot is not allowed: "must be above 0"; empty when it is.
+[[nodiscard]] std::string objection(const PrinterField& field, const Slot& slot);
+
+/// What no single field can tell (a wall thicker than the vial, a lens inside it): the first contradiction in words
+/// that name both settings and their numbers; empty when there is none.
+[[nodiscard]] std::string contradiction(const model::Printer& printer);
+
+}  // namespace vam::io

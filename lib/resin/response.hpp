@@ -1,0 +1,57 @@
+// The projector's response: grey level to intensity and back.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "model/printer.hpp"
+#include "model/response_table.hpp"
+
+namespace vam::resin {
+
+/// A monotone curve from grey to intensity, both as fractions of full grey in [0, 1]: a monotone cubic through the
+/// measured points (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980), so it never overshoots between them.
+class Response {
+ public:
+  /// A straight line from dark_fraction (what leaks at grey 0) to 1.
+  explicit Response(double dark_fraction = 0.0);
+
+  /// The curve through a measured table. Throws Fault::data when it does not begin at grey 0, grey does not rise,
+  /// intensity falls anywhere, or there is no light.
+  explicit Response(const model::ResponseTable& table);
+
+  /// Intensity in [intensity(0), 1] at a grey in [0, 1]; greys outside are clamped.
+  [[nodiscard]] double intensity(double grey) const;
+
+  /// The inverse: the lowest grey that gives this intensity; 0 below intensity(0), the lowest full grey above 1.
+  [[nodiscard]] double grey(double intensity) const;
+
+ private:
+  std::vector<double> grey_;
+  std::vector<double> intensity_;
+  std::vector<double> slope_;  // d intensity / d grey at each point
+};
+
+/// Straight from min/max_intensity_mw_cm2, for a projector without a measured table.
+[[nodiscard]] Response projector_response(const model::Projector& projector);
+
+/// The 2^bits grey levels of a projector and the intensity of each.
+class GreyLevels {
+ public:
+  /// bits in 1..16; throws Fault::usage otherwise.
+  GreyLevels(const Response& response, int bits);
+
+  [[nodiscard]] int count() const { return static_cast<int>(intensity_.size()); }
+
+  /// The level whose intensity is nearest to the wanted one (fraction of full, clamped to what the projector can do):
+  /// nearest in intensity, since that is what the resin counts. Of two equally near ones the lower.
+  [[nodiscard]] int level(float intensity) const;
+
+  /// What a level gives, as a fraction of full intensity.
+  [[nodiscard]] float intensity(int level) const { return intensity_[static_cast<std::size_t>(level)]; }
+
+ private:
+  std::vector<float> intensity_;  // rising with the level
+};
+
+}  // namespace vam::resin

@@ -1,0 +1,160 @@
+#include "io/printer_file.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "io/printer_fields.hpp"
+#include "io/response_file.hpp"
+
+using vam::Error;
+using vam::Fault;
+using vam::io::load_printer;
+using vam::io::parse_printer;
+using vam::io::printer_toml;
+
+namespace {
+
+template <class Call>
+std::string error_of(Call call, Fault expected) {
+  try {
+    call();
+  } catch (const Error& error) {
+    CHECK(error.fault == expected);
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string refusal(const std::string& toml) {
+  return error_of([&] { (void)parse_printer(toml, "p.toml"); }, Fault::data);
+}
+
+std::string set_refusal(const std::string& set) {
+  return error_of([&] { (void)load_printer("", {set}); }, Fault::usage);
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+struct Scratch {
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("printer_file_test." + std::to_string(getpid()));
+  Scratch() { std::filesystem::create_directories(folder); }
+  ~Scratch() { std::filesystem::remove_all(folder); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder / name) << text;
+    return (folder / name).string();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the default printer prints and parses back to itself, text for text") {
+  const std::string text = printer_toml({});
+  CHECK(printer_toml(parse_printer(text, "default")) == text);
+  CHECK(has(text, "radius_mm = 12.7"));
+  CHECK(has(text, "# lens_distance_mm ="));
+}
+
+TEST_CASE("every field changed survives the round trip") {
+  vam::model::Printer printer;
+  for (const auto& field : vam::io::printer_fields()) {
+    const auto slot = field.slot(printer);
+    if (auto* const* text = std::get_if<std::string*>(&slot))
+      **text = field.words.empty() ? "a \"b\"\\\n" : field.words.back();
+    if (auto* const* flag = std::get_if<bool*>(&slot)) **flag = !**flag;
+    if (auto* const* whole = std::get_if<int*>(&slot)) **whole = field.words.empty() ? **whole + 1 : 10;
+    if (auto* const* number = std::get_if<double*>(&slot)) **number *= 1 + 1e-3 / 3;
+    if (auto* const* maybe = std::get_if<std::optional<double>*>(&slot)) **maybe = 1e3 / 7;
+  }
+  printer.stage.direction = -1;
+  const auto back = parse_printer(printer_toml(printer), "changed");
+  CHECK(printer_toml(back) == printer_toml(printer));
+  CHECK(back.vial.radius_mm == printer.vial.radius_mm);
+  CHECK(back.resin.name == printer.resin.name);
+  CHECK(*back.projector.lens_distance_mm == 1e3 / 7);
+  CHECK(back.projector.telecentric);
+}
+
+TEST_CASE("settings that are absent keep their defaults; whole numbers serve as decimals") {
+  const auto printer = parse_printer("[vial]\nradius_mm = 10\n", "p.toml");
+  CHECK(printer.vial.radius_mm == 10);
+  CHECK(printer.projector.columns == 1024);
+}
+
+TEST_CASE("unknown keys name file, line and the nearest known key") {
+  CHECK(refusal("[vial]\n\nradius_m = 12\n") == "p.toml:3: unknown key 'radius_m' in [vial]; did you mean radius_mm?");
+  CHECK(
+      has(refusal("[vail]\nradius_mm = 12\n"), "p.toml:1: unknown section 'vail'; the sections are projector, vial, "));
+  CHECK(has(refusal("[viall]\nradius_mm = 12\n"), "p.toml:1: unknown section 'viall'; did you mean vial?"));
+  CHECK(has(refusal("[vial]\ncolour = 12\n"),
+            "unknown key 'colour' in [vial]; [vial] has radius_mm, wall_mm, index_glass"));
+  CHECK(has(refusal("radius_mm = 12\n"), "did you mean vial.radius_mm?"));
+  CHECK(has(refusal("[resin]\nradius_mm = 12\n"), "did you mean vial.radius_mm?"));
+}
+
+TEST_CASE("wrong types and impossible values name file and line") {
+  CHECK(has(refusal("[projector]\ncolumns = 1024.5\n"), "p.toml:2: projector.columns must be a whole number"));
+  CHECK(has(refusal("[projector]\ncolumns = 99999999999\n"), "p.toml:2: projector.columns must be a whole number"));
+  CHECK(has(refusal("[vial]\nradius_mm = \"12\"\n"), "must be a number, not text"));
+  CHECK(has(refusal("[projector]\ntelecentric = 1\n"), "must be true or false"));
+  CHECK(has(refusal("vial = 3\n"), "must be a section"));
+  CHECK(has(refusal("[vial]\nradius_mm = -1\n"), "p.toml:2: vial.radius_mm: -1 is not between 0"));
+  CHECK(has(refusal("[vial]\nradius_mm = nan\n"), "nan is not between"));
+  CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is none of 1, 2, 4, 8, 10, 16"));
+  CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "none of normal"));
+  CHECK(has(refusal("[vial\n"), "p.toml:1: not TOML"));
+  CHECK(has(refusal("[vial]\nwall_mm = 13\n"), "leaves no room"));
+  CHECK(has(refusal("[projector]\nlens_distance_mm = 5\n"), "is not outside vial.radius_mm"));
+  CHECK(has(refusal("[bath]\nwindow_mm = 5\n"), "cuts into"));
+}
+
+TEST_CASE("--set overrides, takes text with or without quotes, and is a usage error when wrong") {
+  const auto printer = load_printer("", {"vial.radius_mm=10", "resin.name=acrylate 2", "stage.device=\"gcs:/dev/x\""});
+  CHECK(printer.vial.radius_mm == 10);
+  CHECK(printer.resin.name == "acrylate 2");
+  CHECK(printer.stage.device == "gcs:/dev/x");
+  CHECK(has(set_refusal("vial.radius_m=10"), "did you mean radius_mm?"));
+  CHECK(has(set_refusal("vial.radius_mm"), "not section.key=value"));
+  CHECK(has(set_refusal("vial.radius_mm=ten"), "is not a value"));
+  CHECK(has(set_refusal("vial.radius_mm=1\nx=2"), "is not a value"));
+  CHECK(has(set_refusal("vial.radius_mm=-4"), "-4 is not between"));
+  CHECK(has(set_refusal("vial.wall_mm=40"), "leaves no room"));
+}
+
+TEST_CASE("the named file wins over $VAM_PRINTER; a response is relative to the file") {
+  const Scratch scratch;
+  const std::string named = scratch.write("a.toml", "[vial]\nradius_mm = 11\n[projector]\nresponse = \"r.csv\"\n");
+  const std::string exported = scratch.write("b.toml", "[vial]\nradius_mm = 9\n");
+  setenv("VAM_PRINTER", exported.c_str(), 1);
+  CHECK(load_printer(named, {}).vial.radius_mm == 11);
+  CHECK(load_printer("", {}).vial.radius_mm == 9);
+  unsetenv("VAM_PRINTER");
+  CHECK(load_printer(named, {}).projector.response == (scratch.folder / "r.csv").string());
+  error_of([&] { (void)load_printer((scratch.folder / "none.toml").string(), {}); }, Fault::no_input);
+  error_of([&] { (void)load_printer(scratch.folder.string(), {}); }, Fault::no_input);
+}
+
+TEST_CASE("a response table is read with or without a header and refused with its line") {
+  const Scratch scratch;
+  const auto table =
+      vam::io::read_response(scratch.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"));
+  CHECK(table.grey == std::vector<double>{0, 128, 255});
+  CHECK(table.intensity == std::vector<double>{0.1, 1.5, 4});
+  const auto refused = [&](const std::string& csv) {
+    const std::string file = scratch.write("bad.csv", csv);
+    return error_of([&] { (void)vam::io::read_response(file); }, Fault::data);
+  };
+  CHECK(has(refused("0,0\n10,2\n20,1\n"), "bad.csv:3: intensity 1 at grey 20 is below 2"));
+  CHECK(has(refused("0,0\n10,2\n10,3\n"), "bad.csv:3: grey 10 does not rise"));
+  CHECK(has(refused("5,0\n10,2\n"), "must begin at grey 0"));
+  CHECK(has(refused("0,0\n10\n"), "bad.csv:2: '10' is not two numbers"));
+  CHECK(has(refused("0,0\n10,nan\n"), "is not two numbers"));
+  CHECK(has(refused("grey,intensity\n"), "at least two lines"));
+}

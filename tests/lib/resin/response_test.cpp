@@ -1,0 +1,93 @@
+#include "resin/response.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+using vam::resin::GreyLevels;
+using vam::resin::Response;
+
+namespace {
+
+// A display's gamma curve, sampled as a calibration would: 17 levels of 8 bits.
+vam::model::ResponseTable gamma_table(double gamma) {
+  vam::model::ResponseTable table{"gamma", {}, {}};
+  for (int grey = 0; grey <= 255; grey += 15) {
+    table.grey.push_back(grey);
+    table.intensity.push_back(3.8 * std::pow(grey / 255.0, gamma));
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("a monotone cubic through 18 points of a gamma curve follows it and rises everywhere") {
+  const Response response(gamma_table(2.2));
+  double before = -1;
+  for (int i = 0; i <= 1000; ++i) {
+    const double g = i / 1000.0;
+    // Third-order interpolation error h^3 |f'''| / 8 = (1/17)^3 * 0.6 / 8 ~ 2e-5, larger next to 0 where f''' diverges.
+    CHECK(response.intensity(g) == doctest::Approx(std::pow(g, 2.2)).epsilon(1e-3).scale(1));
+    CHECK(response.intensity(g) >= before);
+    before = response.intensity(g);
+  }
+}
+
+TEST_CASE("grey undoes intensity") {
+  const Response response(gamma_table(2.2));
+  for (int i = 0; i <= 1000; ++i) CHECK(response.grey(response.intensity(i / 1000.0)) == doctest::Approx(i / 1000.0));
+}
+
+TEST_CASE("a straight table gives straight lines, and a dark level is the lowest intensity") {
+  const Response response(0.1);
+  CHECK(response.intensity(0) == 0.1);
+  CHECK(response.intensity(0.5) == doctest::Approx(0.55));
+  CHECK(response.grey(0.05) == 0);
+  CHECK(response.grey(0.55) == doctest::Approx(0.5));
+}
+
+TEST_CASE("a saturated end answers with its lowest grey") {
+  const Response response(vam::model::ResponseTable{"t", {0, 100, 200, 255}, {0, 3, 6, 6}});
+  CHECK(response.grey(1.0) == doctest::Approx(200.0 / 255));
+  CHECK(response.intensity(1.0) == 1);
+}
+
+TEST_CASE("tables that fall, or do not rise in grey, are data errors") {
+  const auto fault_of = [](std::vector<double> grey, std::vector<double> intensity) {
+    try {
+      Response{vam::model::ResponseTable{"t.csv", std::move(grey), std::move(intensity)}};
+    } catch (const vam::Error& error) {
+      return error.fault;
+    }
+    return vam::Fault::judged;
+  };
+  CHECK(fault_of({0, 1, 2}, {0, 2, 1}) == vam::Fault::data);
+  CHECK(fault_of({0, 2, 2}, {0, 1, 2}) == vam::Fault::data);
+  CHECK(fault_of({1, 2, 3}, {0, 1, 2}) == vam::Fault::data);
+  CHECK(fault_of({0, 1, 2}, {0, 0, 0}) == vam::Fault::data);
+  CHECK(fault_of({0, 1, 2}, {0, 1, NAN}) == vam::Fault::data);
+}
+
+TEST_CASE("levels are nearest in intensity, by brute force over every level") {
+  const Response response(gamma_table(2.2));
+  for (const int bits : {1, 2, 4, 8, 10}) {
+    const GreyLevels levels(response, bits);
+    REQUIRE(levels.count() == 1 << bits);
+    for (int i = -5; i <= 105; ++i) {
+      const float wanted = static_cast<float>(i) / 100;
+      int best = 0;
+      for (int level = 1; level < levels.count(); ++level) {
+        if (std::abs(levels.intensity(level) - wanted) < std::abs(levels.intensity(best) - wanted)) best = level;
+      }
+      CHECK(std::abs(levels.intensity(levels.level(wanted)) - wanted) ==
+            doctest::Approx(std::abs(levels.intensity(best) - wanted)).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("every level maps to itself") {
+  const GreyLevels levels(Response(), 8);
+  for (int level = 0; level < 256; ++level) CHECK(levels.level(levels.intensity(level)) == level);
+}
