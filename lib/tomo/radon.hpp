@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "base/simd.hpp"
 #include "tomo/slab.hpp"
 
 namespace vam::tomo {
@@ -26,10 +27,12 @@ struct ParallelGeometry {
 
 /// sinogram(t, a) = sum over pixels of w(pixel, t, a) * image(pixel) * e^{alpha u}. Multiply by the voxel size to get
 /// line integrals. All slabs of one call must have the shape of the geometry; several slabs a call share the weights.
-void forward(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<Slab> sinograms);
+void forward(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<Slab> sinograms,
+             Simd level = simd_level());
 
 /// image(pixel) = sum over angles and bins of w(pixel, t, a) * sinogram(t, a) * e^{alpha u}: the transpose of forward.
 /// Multiply by the angle step to get the dose integral of physics section 4; dose in an absorber has alpha = -mu.
-void adjoint(const ParallelGeometry& geometry, std::span<const Slab> sinograms, std::span<Slab> images);
+void adjoint(const ParallelGeometry& geometry, std::span<const Slab> sinograms, std::span<Slab> images,
+             Simd level = simd_level());
 
 }  // namespace vam::tomo

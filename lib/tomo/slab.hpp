@@ -7,9 +7,9 @@
 #include <new>
 #include <vector>
 
-namespace vam::tomo {
+#include "tomo/slab_lanes.hpp"
 
-inline constexpr int lanes = 16;
+namespace vam::tomo {
 
 /// Memory on cache-line boundaries, so that one lane group is one aligned line.
 template <class T>

@@ -1,0 +1,100 @@
+#include "tomo/radon_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace vam::tomo {
+
+namespace {
+
+// Below this flank a trapezoid is a box to float precision; it keeps 1 / flank finite when rays run along the pixels.
+constexpr double least_flank = 1e-6;
+constexpr double largest_exponent = 80;  // e^88 is the largest float
+
+void check_shapes(std::span<const Slab> slabs, int width, int height, const char* what) {
+  for (const Slab& slab : slabs) {
+    if (slab.width == width && slab.height == height) continue;
+    throw Error{Fault::bug, std::string(what) + ": slab of " + std::to_string(slab.width) + " x " +
+                                std::to_string(slab.height) + ", but the geometry has " + std::to_string(width) +
+                                " x " + std::to_string(height)};
+  }
+}
+
+bool is_even_full_turn(const ParallelGeometry& geometry) {
+  const double turn = std::abs(geometry.angles * geometry.angle_step_rad);
+  return geometry.angles % 2 == 0 && std::abs(turn - 2 * std::numbers::pi) < 1e-9;
+}
+
+}  // namespace
+
+Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, std::span<const Slab> sinograms) {
+  check_shapes(images, geometry.nx, geometry.ny, "image");
+  check_shapes(sinograms, geometry.columns, geometry.angles, "sinogram");
+  if (images.size() != sinograms.size()) throw Error{Fault::bug, "radon: numbers of images and sinograms differ"};
+  const double reach = std::hypot(std::max(std::abs(geometry.axis_x), std::abs(geometry.nx - geometry.axis_x)),
+                                  std::max(std::abs(geometry.axis_y), std::abs(geometry.ny - geometry.axis_y)));
+  if (!(std::abs(geometry.alpha_per_px) * reach < largest_exponent)) {
+    throw Error{Fault::data, "attenuation of " + format_number(geometry.alpha_per_px) + " per pixel over " +
+                                 format_number(reach) + " pixels overflows; it is given per mm, with voxels in mm"};
+  }
+  Plan plan;
+  plan.folded = geometry.alpha_per_px == 0 && is_even_full_turn(geometry);
+  const int count = plan.folded ? geometry.angles / 2 : geometry.angles;
+  for (int a = 0; a < count; ++a) {
+    const double theta = geometry.angle_start_rad + a * geometry.angle_step_rad;
+    const double c = std::cos(theta);
+    const double s = std::sin(theta);
+    plan.rays.push_back({c, s, 0.5 * (geometry.columns - 1) - geometry.axis_x * c - geometry.axis_y * s});
+  }
+  return plan;
+}
+
+void set_footprint(Footprints& footprints, int r, double wide, double narrow, double total, double step) {
+  const double flank = std::max(narrow, least_flank);
+  for (int e = r; e < pair_entries; e += gather_rows) {
+    footprints.step[e] = static_cast<float>(step);
+    footprints.half[e] = static_cast<float>((wide + flank) / 2);
+    footprints.flat[e] = static_cast<float>((wide - flank) / 2);
+    footprints.flank[e] = static_cast<float>(flank);
+    footprints.curve[e] = static_cast<float>(total / (2 * flank * wide));
+    footprints.slope[e] = static_cast<float>(total / wide);
+    footprints.total[e] = static_cast<float>(total);
+  }
+}
+
+std::vector<Group> make_groups(std::size_t slabs) {
+  std::vector<Group> groups;
+  int first = 0;
+  for (int left = static_cast<int>(slabs); left > 0;) {
+    const int take = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    groups.push_back({first, take});
+    first += take;
+    left -= take;
+  }
+  return groups;
+}
+
+const RadonKernels& radon_kernels(Simd level) {
+#if defined(__x86_64__)
+  if (level == Simd::avx512) return avx512::radon_kernels;
+  if (level == Simd::avx2) return avx2::radon_kernels;
+#else
+  static_cast<void>(level);
+#endif
+  return baseline::radon_kernels;
+}
+
+Buffer& scratch(int which, std::size_t size) {
+  thread_local std::array<Buffer, 2> buffers;
+  Buffer& buffer = buffers.at(static_cast<std::size_t>(which));
+  if (buffer.size() < size) buffer.resize(size);
+  return buffer;
+}
+
+}  // namespace vam::tomo

@@ -1,0 +1,46 @@
+#include "tomo/slab.hpp"
+
+#include <algorithm>
+
+#include "base/parallel.hpp"
+
+namespace vam::tomo {
+
+namespace {
+
+constexpr int block = 4096;  // pixels a work item: 256 KiB of slab
+
+template <class Work>
+void over_blocks(const Slab& slab, const Work& work) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  const int count = static_cast<int>((pixels + block - 1) / block);
+  parallel_for(count, [&](int item) {
+    const std::size_t first = static_cast<std::size_t>(item) * block;
+    work(first, std::min(first + block, pixels));
+  });
+}
+
+}  // namespace
+
+void pack(const float* images, int count, Slab& slab) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  over_blocks(slab, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      float* to = slab.values.data() + p * lanes;
+      for (int s = 0; s < count; ++s) to[s] = images[static_cast<std::size_t>(s) * pixels + p];
+      for (int s = count; s < lanes; ++s) to[s] = 0;
+    }
+  });
+}
+
+void unpack(const Slab& slab, int count, float* images) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  over_blocks(slab, [&](std::size_t first, std::size_t last) {
+    for (int s = 0; s < count; ++s) {
+      float* to = images + static_cast<std::size_t>(s) * pixels;
+      for (std::size_t p = first; p < last; ++p) to[p] = slab.values[p * lanes + static_cast<std::size_t>(s)];
+    }
+  });
+}
+
+}  // namespace vam::tomo
