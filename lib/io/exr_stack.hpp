@@ -1,8 +1,10 @@
-// Stacks of images as one standard multi-part scanline OpenEXR file, in a file or through a pipe (FILES in the manuals).
+// Stacks of images as one standard multi-part scanline OpenEXR file, in a file or through a pipe (FILES in the
+// manuals).
 #pragma once
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/image.hpp"
 #include "model/stack.hpp"
@@ -21,8 +23,14 @@ class StackReader {
   explicit StackReader(const std::string& path);
   ~StackReader();
   [[nodiscard]] const model::StackInfo& info() const;
-  /// The next image in ascending order; false after the last. Throws Fault::data where the stream is cut.
+  /// The facts of every image, known before the first is read.
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const;
+  /// The next image in ascending order; false after the last. Throws Fault::data where the stream is cut, and where a
+  /// pixel is not a finite number.
   bool next(Image& image, model::ImageInfo& about);
+  /// After the last image: moves on to the stack that follows on the same stream (a live capture sends one per turn).
+  /// False at the end of the stream.
+  bool next_stack();
 
  private:
   struct State;
@@ -30,12 +38,18 @@ class StackReader {
 };
 
 /// Writes a stack front to back; info.count images must follow. "-" is stdout. A file appears under its final name only
-/// at commit(), complete; without commit() nothing is left. Throws Error: no_output, io.
+/// at commit(), complete; without commit() nothing is left. Throws Error: no_output, io, usage (unknown compression,
+/// binary to a terminal), data (a value too large for half).
 class StackWriter {
  public:
   StackWriter(const std::string& path, const model::StackInfo& info, const StackOptions& options = {});
+  /// The same for images whose own facts (measured angles and times) are known before the first: info.count of them.
+  StackWriter(const std::string& path, const model::StackInfo& info, std::vector<model::ImageInfo> about,
+              const StackOptions& options = {});
   ~StackWriter();
   void write(const Image& image);
+  /// Facts that come only with the image. Images of one stack all have a measured angle (time), or none has. As they
+  /// stand before the pixels, a pipe then receives the stack at commit(), out of a temporary file in $TMPDIR or /tmp.
   void write(const Image& image, const model::ImageInfo& about);
   void commit();
 
@@ -44,8 +58,8 @@ class StackWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Throws Fault::data unless the stack is of this kind and space: "frames.exr holds frames (projector), but vam-resample
-/// needs a sinogram (virtual)".
+/// Throws Fault::data unless the stack is of this kind and space: "frames.exr holds frames (projector), but
+/// vam-resample needs a sinogram (virtual)".
 void require(const std::string& path, const model::StackInfo& info, model::Kind kind, model::Space space);
 void require(const std::string& path, const model::StackInfo& info, model::Kind kind);
 

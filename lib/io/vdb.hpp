@@ -10,8 +10,8 @@
 
 namespace vam::io {
 
-/// One float grid. `name` is target, insert, weight, dose, scatter or sdf. Slices are dense row-major images (x fastest,
-/// then y), one after the other.
+/// One float grid. `name` is target, insert, weight, dose, scatter or sdf. Slices are dense row-major images (x
+/// fastest, then y), one after the other.
 class SparseVolume {
  public:
   SparseVolume(std::string name, const model::Grid& grid, float background = 0.0F);

@@ -1,0 +1,32 @@
+// Private to the EXR files: the facts of a stack as header attributes.
+#pragma once
+
+#include <OpenEXR/ImfHeader.h>
+
+#include <string>
+
+#include "model/stack.hpp"
+
+namespace vam::io::exr {
+
+/// What the stack says about image `index`, which has no facts of its own.
+[[nodiscard]] model::ImageInfo implied(const model::StackInfo& info, int index);
+
+/// "z0007" in a sinogram stack, "a0007" among frames; wide enough for `count` parts to sort.
+[[nodiscard]] std::string part_name(const model::StackInfo& info, int index);
+
+/// Sets the facts that all parts share. `layout` has the size and the channel.
+void set_common(Imf::Header& layout, const model::StackInfo& info);
+/// Sets the facts of part `index`.
+void set_own(Imf::Header& header, const model::StackInfo& info, int index, const model::ImageInfo& about);
+
+/// The facts of a stack from its first header; width and height are left to the caller, count is 0 where it is absent.
+/// Throws std::runtime_error: no vam:kind, an unknown space, no positive pixel pitch.
+[[nodiscard]] model::StackInfo stack_info(const Imf::Header& header);
+/// The facts of part `index`. Throws std::runtime_error when the part says that it is another, or of another stack.
+[[nodiscard]] model::ImageInfo image_info(const Imf::Header& header, const model::StackInfo& info, int index);
+
+[[nodiscard]] std::string kind_name(model::Kind kind);
+[[nodiscard]] std::string space_name(model::Space space);
+
+}  // namespace vam::io::exr

@@ -1,0 +1,74 @@
+// Private to the EXR files: what an OpenEXR file looks like on the wire (openexr.com, "OpenEXR File Layout"), and the
+// bridge to the library, which only ever sees memory. A multi-part scanline file is
+//   magic, version | header, header, ..., 0 | offset table of every part | chunks (part number, y, size, data)
+// and a single-part file is the same with one header, no closing 0 and no part numbers. Numbers are little-endian.
+#pragma once
+
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+
+namespace vam::io::exr {
+
+static_assert(std::endian::native == std::endian::little, "EXR numbers are copied as they are");
+
+inline constexpr std::int32_t magic = 20000630;
+inline constexpr std::int32_t version = 2;
+inline constexpr std::int32_t tiled_flag = 0x200;
+inline constexpr std::int32_t long_names_flag = 0x400;  // names of 32 to 255 bytes
+inline constexpr std::int32_t deep_flag = 0x800;
+inline constexpr std::int32_t multi_part_flag = 0x1000;
+
+inline constexpr const char* channel = "Y";
+
+/// Refused beyond these, before memory is taken.
+inline constexpr int max_side = 1 << 16;                               // pixels
+inline constexpr std::int64_t max_pixels = std::int64_t{1} << 28;      // of one image: 1 GiB as float
+inline constexpr std::size_t max_header_bytes = std::size_t{1} << 24;  // of one part
+
+template <class Number>
+void append(std::string& bytes, Number value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class Number>
+Number number_at(const std::string& bytes, std::size_t at) {
+  Number value{};
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
+/// Image rows in one chunk.
+[[nodiscard]] int rows_per_chunk(Imf::Compression compression);
+[[nodiscard]] int chunk_count(int height, Imf::Compression compression);
+
+/// Copies one header, its closing 0 included, from `take(to, size)`, which throws when it cannot. An empty result is
+/// the end of the headers. Throws std::runtime_error on names or sizes no header has.
+[[nodiscard]] std::string take_header(const std::function<void(char*, std::size_t)>& take);
+[[nodiscard]] Imf::Header parse_header(const std::string& bytes, int file_version);
+[[nodiscard]] std::string serialize(const Imf::Header& header);
+
+/// The pixels of one image as they stand in a single-part file: chunks of (y, size, data), each beginning at starts[i];
+/// chunk i holds rows i * rows_per_chunk and on.
+struct Chunks {
+  std::string bytes;
+  std::vector<std::size_t> starts;
+};
+
+/// Window, channels, compression and line order: all that the pixels of an image depend on.
+[[nodiscard]] Imf::Header layout_header(int width, int height, Imf::PixelType type, Imf::Compression compression);
+/// Rows are numbered from y = 0.
+[[nodiscard]] Chunks encode(const Image& image, Imf::PixelType type, Imf::Compression compression);
+/// Fills image, already of the layout's width and height, from channel Y. Throws what OpenEXR throws.
+void decode(const Imf::Header& layout, const Chunks& chunks, Image& image);
+
+}  // namespace vam::io::exr

@@ -1,0 +1,103 @@
+// Bytes in and out: "-" is stdin or stdout, an output appears under its name only when it is complete.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace vam::io {
+
+/// Binary is neither read from nor written to a terminal (Fault::usage).
+enum class Content { binary, text };
+
+/// A file or stdin ("-"), read front to back through a buffer of 1 MiB. Nothing is ever sought, so that a pipe does.
+class InputFile {
+ public:
+  /// Throws Error: no_input (cannot open, is a directory), usage (binary from a terminal).
+  explicit InputFile(const std::string& path, Content content = Content::binary);
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  /// What messages call it: the path, or "stdin".
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Bytes handed out so far.
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+  /// Reads `size` bytes, fewer only at the end of the file; returns how many. Throws Error: io.
+  std::size_t read(void* to, std::size_t size);
+  /// The next bytes without taking them: at least one unless the file has ended. Throws Error: io.
+  std::span<const char> peek();
+  /// Takes `size` bytes of what peek() showed.
+  void skip(std::size_t size);
+  /// Throws Error: io.
+  bool at_end() { return peek().empty(); }
+
+ private:
+  std::size_t receive(char* to, std::size_t size);
+  std::string name_;
+  int descriptor_ = -1;
+  std::unique_ptr<char[]> buffer_;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+  std::uint64_t position_ = 0;
+};
+
+/// A file, a special file (/dev/full, a FIFO) or stdout ("-"), written front to back. A regular file is written without
+/// a name where the file system can (nothing is left even after SIGKILL), else under a temporary name in the same
+/// directory that also SIGHUP, SIGINT and SIGTERM remove; commit() makes it appear, whole, in one step.
+class OutputFile {
+ public:
+  /// Named: has a temporary path from the start, for writers that insist on one; it ends in the extension of `path`.
+  enum class Temporary { unnamed, named };
+
+  /// Throws Error: no_output (cannot create, is a directory, is write-protected), usage (binary to a terminal).
+  explicit OutputFile(const std::string& path, Content content = Content::binary,
+                      Temporary temporary = Temporary::unnamed);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// What messages call it: the path, or "stdout".
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// True for a pipe, a device and stdout: what is written is gone, write_at() must not be used.
+  [[nodiscard]] bool is_stream() const { return target_.empty(); }
+  /// The path under which another writer may open the unfinished file. Only of Temporary::named; empty for a stream.
+  [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
+  /// Bytes written so far.
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+
+  /// Throws Error: io (no space left, closed pipe where SIGPIPE is ignored, ...).
+  void write(const void* bytes, std::size_t size);
+  void write(std::string_view bytes) { write(bytes.data(), bytes.size()); }
+  /// Replaces bytes that were written before; the position stays. Throws Error: io.
+  void write_at(std::uint64_t offset, const void* bytes, std::size_t size);
+  /// Flushes, waits for the disk and puts the file under its name. Throws Error: io, no_output.
+  void commit();
+
+ private:
+  void open_special(const std::string& path);
+  void open_temporary();
+  void flush();
+  void send(const char* bytes, std::size_t size);
+  void publish();
+  void discard() noexcept;
+  std::string name_;
+  std::string target_;     // final path of a regular file, links followed; empty for a stream
+  std::string temporary_;  // name of the unfinished file, if it has one
+  int descriptor_ = -1;
+  int slot_ = -1;  // of the temporary name in the list that signal handlers clean
+  std::string buffer_;
+  std::uint64_t position_ = 0;
+};
+
+/// The whole of a file or stdin. Throws Error: no_input, io, data (longer than `limit` bytes).
+[[nodiscard]] std::string read_all(const std::string& path, Content content = Content::text,
+                                   std::uint64_t limit = std::uint64_t{4} << 30);
+
+/// Throws Fault::usage when both are the same regular file, by whatever names ("-" included).
+void refuse_same_file(const std::string& input, const std::string& output);
+
+}  // namespace vam::io

@@ -1,0 +1,20 @@
+// Private to output_file.cpp: temporary names that vanish when the process is interrupted.
+#pragma once
+
+#include <string>
+
+namespace vam::io {
+
+/// Creates an empty file ".vam-<pid>-<n><extension>" beside `target` and lists its name, so that SIGHUP, SIGINT and
+/// SIGTERM remove it before they end the process (where nobody else handles or ignores them).
+/// Returns the descriptor, or -1 with errno set.
+int create_temporary(const std::string& target, std::string& name, int& slot);
+
+/// Gives the unnamed file behind `descriptor` a temporary name beside `target`, listed in the same way. Returns 0, or
+/// -1 with errno set.
+int name_temporary(int descriptor, const std::string& target, std::string& name, int& slot);
+
+/// The name is no longer temporary.
+void forget_temporary(int slot);
+
+}  // namespace vam::io
