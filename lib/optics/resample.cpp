@@ -1,0 +1,125 @@
+// Applying a plan: 16 slices side by side, one tile of output columns at a time, so that a tile's input stays in cache.
+#include "optics/resample.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/simd.hpp"
+#include "optics/resample_kernel.hpp"
+
+namespace vam::optics {
+
+namespace {
+
+constexpr int lanes = resample_lanes;
+constexpr int tile_columns = 16;  // one cache line of an output row
+
+using Index = std::ptrdiff_t;
+
+struct Kernels {
+  decltype(&baseline::mix_columns) mix;
+  decltype(&baseline::shift_rows) shift;
+};
+
+Kernels kernels() {
+  switch (simd_level()) {
+    case Simd::avx512:
+#if defined(__x86_64__)
+      return {avx512::mix_columns, avx512::shift_rows};
+#endif
+    case Simd::avx2:
+#if defined(__x86_64__)
+      return {avx2::mix_columns, avx2::shift_rows};
+#endif
+    case Simd::baseline:
+      break;
+  }
+  return {baseline::mix_columns, baseline::shift_rows};
+}
+
+// Columns [first, last) of up to 16 images as [column][row][16]; missing lanes stay 0.
+void pack(std::span<const Image> images, int first, int last, std::vector<float>& packed) {
+  const int rows = images.front().height;
+  packed.assign(static_cast<std::size_t>(Index{last - first} * rows * lanes), 0.0F);
+  for (std::size_t s = 0; s < images.size(); ++s) {
+    for (int r = 0; r < rows; ++r) {
+      const float* from = images[s].row(r) + first;
+      float* to = packed.data() + Index{r} * lanes + static_cast<Index>(s);
+      for (int c = 0; c < last - first; ++c) to[Index{c} * rows * lanes] = from[c];
+    }
+  }
+}
+
+void unpack(const std::vector<float>& packed, int first, int last, std::span<Image> images) {
+  const int rows = images.front().height;
+  for (std::size_t s = 0; s < images.size(); ++s) {
+    for (int r = 0; r < rows; ++r) {
+      const float* from = packed.data() + Index{r} * lanes + static_cast<Index>(s);
+      float* to = images[s].row(r) + first;
+      for (int c = 0; c < last - first; ++c) to[c] = from[Index{c} * rows * lanes];
+    }
+  }
+}
+
+void resample_tile(const ResamplePlan& plan, const Kernels& kernel, int first, int last, std::span<const Image> in,
+                   std::span<Image> out) {
+  int low = plan.columns_in;
+  int high = 0;
+  for (int c = first; c < last; ++c) {
+    const ColumnSource& source = plan.sources[static_cast<std::size_t>(c)];
+    if (source.count == 0) continue;
+    low = std::min(low, source.first);
+    high = std::max(high, source.first + source.count);
+  }
+  if (low >= high) return;  // all dark; the images are zero already
+
+  thread_local std::vector<float> packed;
+  thread_local std::vector<float> column;
+  thread_local std::vector<float> result;
+  pack(in, low, high, packed);
+  const Index stride = Index{plan.rows} * lanes;
+  column.resize(static_cast<std::size_t>(stride + Index{3} * lanes));
+  result.assign(static_cast<std::size_t>(stride * (last - first)), 0.0F);
+  for (int c = first; c < last; ++c) {
+    const ColumnSource& source = plan.sources[static_cast<std::size_t>(c)];
+    if (source.count == 0) continue;
+    kernel.mix(packed.data() + (source.first - low) * stride, stride, plan.weights.data() + source.weights,
+               source.count, plan.rows, column.data());
+    std::copy_n(column.data(), 3 * lanes, column.data() + stride);  // the turn closes
+    kernel.shift(column.data(), plan.rows, source.row, plan.sense, source.angle_weights,
+                 result.data() + (c - first) * stride);
+  }
+  if (!plan.keep_negative) {
+    for (float& value : result) value = std::max(value, 0.0F);
+  }
+  unpack(result, first, last, out);
+}
+
+}  // namespace
+
+void resample(const ResamplePlan& plan, std::span<const Image> in, std::span<Image> out) {
+  for (const Image& image : in) {
+    if (image.width != plan.columns_in || image.height != plan.rows) {
+      throw Error{Fault::data, "sinogram: a slice has " + std::to_string(image.width) + " x " +
+                                   std::to_string(image.height) + " pixels, the first has " +
+                                   std::to_string(plan.columns_in) + " x " + std::to_string(plan.rows)};
+    }
+  }
+  for (Image& image : out) image = Image(plan.columns_out, plan.rows);
+  const Kernels kernel = kernels();
+  const int slices = static_cast<int>(in.size());
+  const int groups = (slices + lanes - 1) / lanes;
+  const int tiles = (plan.columns_out + tile_columns - 1) / tile_columns;
+  parallel_for(groups * tiles, [&](int item) {
+    const int first = item % tiles * tile_columns;
+    const int last = std::min(first + tile_columns, plan.columns_out);
+    const auto slice = static_cast<std::size_t>(item / tiles * lanes);
+    const auto count = std::min<std::size_t>(lanes, in.size() - slice);
+    resample_tile(plan, kernel, first, last, in.subspan(slice, count), out.subspan(slice, count));
+  });
+}
+
+}  // namespace vam::optics

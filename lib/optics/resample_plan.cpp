@@ -1,0 +1,125 @@
+// The geometry of resampling: which input columns and rows make each output column.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "optics/resample.hpp"
+
+namespace vam::optics {
+
+namespace {
+
+// Tent, or the cubic convolution kernel of Keys (1981) with a = -1/2 (Catmull-Rom: exact for quadratics).
+double kernel(Interpolation interpolation, double x) {
+  x = std::abs(x);
+  if (interpolation == Interpolation::linear) return std::max(0.0, 1.0 - x);
+  if (x < 1) return (1.5 * x - 2.5) * x * x + 1.0;
+  if (x < 2) return ((-0.5 * x + 2.5) * x - 4.0) * x + 2.0;
+  return 0;
+}
+
+void check_turn(const Turn& turn) {
+  const double covered = turn.rows * std::abs(turn.step_rad);
+  // A hundredth of a row: more than any file's rounding, less than any missing row.
+  if (turn.rows < 4 || !(std::abs(covered - 2 * std::numbers::pi) < 0.01 * std::abs(turn.step_rad))) {
+    throw Error{Fault::data, "sinogram: its " + std::to_string(turn.rows) + " angles cover " +
+                                 format_number(covered * deg_per_rad) +
+                                 " deg; resampling shifts in angle and needs at least 4 on exactly one turn"};
+  }
+}
+
+// Adds the source of one output column: input position `column` stretched by `width` >= 1 input columns (a coarser
+// output is an average), at input row `row` for output row 0.
+void add_source(ResamplePlan& plan, Interpolation interpolation, double column, double width, double row,
+                double weight) {
+  ColumnSource source;
+  const double half = (interpolation == Interpolation::linear ? 1.0 : 2.0) * width;
+  const int first = static_cast<int>(std::floor(column - half)) + 1;
+  const int last = static_cast<int>(std::ceil(column + half)) - 1;
+  double sum = 0;
+  for (int c = first; c <= last; ++c) sum += kernel(interpolation, (c - column) / width);
+  source.first = std::max(first, 0);
+  source.count = std::max(0, std::min(last, plan.columns_in - 1) - source.first + 1);
+  source.weights = plan.weights.size();
+  for (int k = 0; k < source.count; ++k) {
+    const double tap = kernel(interpolation, (source.first + k - column) / width) / sum;
+    plan.weights.push_back(static_cast<float>(weight * tap));
+  }
+  // Output row a wants input position row + sense * a: four taps around it, the first one row below.
+  const double below = std::floor(row);
+  const double part = row - below;
+  for (int j = 0; j < 4; ++j) source.angle_weights[j] = static_cast<float>(kernel(interpolation, part + 1 - j));
+  source.row = static_cast<int>(std::fmod(below - 1, plan.rows));
+  if (source.row < 0) source.row += plan.rows;
+  plan.sources.push_back(source);
+}
+
+ResamplePlan empty_plan(int columns_in, int columns_out, const Turn& turn, const ResampleOptions& options) {
+  check_turn(turn);
+  ResamplePlan plan;
+  plan.columns_in = columns_in;
+  plan.columns_out = columns_out;
+  plan.rows = turn.rows;
+  plan.keep_negative = options.keep_negative;
+  return plan;
+}
+
+bool on(const Detector& detector, double column) { return column > -0.5 && column < detector.columns - 0.5; }
+
+}  // namespace
+
+MapPoint map_point(const View& view, double x_p_mm, const ResampleOptions& options) {
+  MapPoint point{x_p_mm, chief_ray(view, x_p_mm), 0};
+  if (!point.ray.hits) return point;
+  point.weight = (options.jacobian ? point.ray.jacobian : 1.0) / (options.fresnel ? point.ray.transmittance : 1.0);
+  return point;
+}
+
+ResamplePlan plan_to_projector(const View& view, const Detector& virtual_, const Detector& projector, const Turn& turn,
+                               const ResampleOptions& options) {
+  ResamplePlan plan = empty_plan(virtual_.columns, projector.columns, turn, options);
+  // Stage angle of output row a; the part stands at direction * that.
+  plan.rows_out = {turn.rows, turn.start_rad, turn.step_rad};
+  plan.sense = options.direction;
+  for (int c = 0; c < projector.columns; ++c) {
+    const MapPoint point = map_point(view, projector.x_mm(c), options);
+    const double column = virtual_.column(point.ray.x_v_mm);
+    if (!point.ray.hits || !on(virtual_, column)) {
+      plan.sources.emplace_back();
+      continue;
+    }
+    // S_v(x_v, theta + delta): theta of row 0 in rows of the input.
+    const double theta = options.direction * turn.start_rad + options.angle_offset_rad;
+    const double row = (theta + point.ray.delta_rad - turn.start_rad) / turn.step_rad;
+    const double width = std::max(1.0, point.ray.jacobian * projector.pixel_mm / virtual_.pixel_mm);
+    add_source(plan, options.interpolation, column, width, row, point.weight);
+  }
+  return plan;
+}
+
+ResamplePlan plan_to_virtual(const View& view, const Detector& camera, const Detector& virtual_, const Turn& turn,
+                             const ResampleOptions& options) {
+  ResamplePlan plan = empty_plan(camera.columns, virtual_.columns, turn, options);
+  plan.rows_out = {turn.rows, turn.start_rad, std::abs(turn.step_rad)};
+  plan.sense = options.direction * (turn.step_rad < 0 ? -1 : 1);
+  for (int c = 0; c < virtual_.columns; ++c) {
+    const auto x_c = column_of(view, virtual_.x_mm(c));
+    if (!x_c || !on(camera, camera.column(*x_c))) {
+      plan.sources.emplace_back();
+      continue;
+    }
+    const ChiefRay ray = chief_ray(view, *x_c);
+    // S_c(x_c, theta - delta): the stage angle that puts the part at theta of row 0, in rows of the input.
+    const double part = plan.rows_out.start_rad - ray.delta_rad - options.angle_offset_rad;
+    const double row = (options.direction * part - turn.start_rad) / turn.step_rad;
+    const double width = std::max(1.0, virtual_.pixel_mm / (ray.jacobian * camera.pixel_mm));
+    const double weight = 1.0 / ((options.fresnel ? ray.transmittance : 1.0) * (options.jacobian ? ray.jacobian : 1.0));
+    add_source(plan, options.interpolation, camera.column(*x_c), width, row, weight);
+  }
+  return plan;
+}
+
+}  // namespace vam::optics
