@@ -1,0 +1,72 @@
+// Camera views of the turning vial, made ready for reconstruction: dark and flat field, binning, rotation about the
+// measured axis, and an even grid of angles whatever the camera delivered [OST22 sections 2.2 and 2.4].
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+
+namespace vam::metrology {
+
+/// One frame: columns along x_c, rows downwards along the axis, and the stage angle at which it was taken.
+struct View {
+  Image image;
+  double angle_deg = 0;
+};
+
+/// What the camera adds by itself. Empty images mean none.
+struct CameraFields {
+  Image dark;  // with the light off, subtracted
+  Image flat;  // of an even scene, dark subtracted already; divided out, scaled to its mean
+};
+
+/// (raw - dark) / (flat / mean(flat)), then the mean of binning x binning pixels; a remainder at the right and lower
+/// edge is dropped. `subject` begins messages. Throws Fault::data when sizes differ or the flat field has a pixel that
+/// is not positive.
+[[nodiscard]] Image corrected(const Image& raw, const CameraFields& fields, int binning, const std::string& subject);
+
+/// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
+/// end (last row) is displaced towards higher columns.
+struct AxisPose {
+  double column = 0;
+  double tilt_rad = 0;
+};
+
+/// The image turned about (column, middle row) so that the axis runs straight down its column (cubic convolution,
+/// Keys 1981). The same image when the tilt is 0.
+[[nodiscard]] Image straightened(const Image& image, const AxisPose& axis);
+
+/// Even angles made of uneven ones.
+struct EvenTurn {
+  int angles = 0;              // over one full turn, first at 0 deg
+  int used = 0;                // frames that contributed
+  int repeated = 0;            // of these, frames at an angle that was there already; averaged
+  double largest_gap_deg = 0;  // between neighbouring frames
+};
+
+/// For each of `angles` even angles the two neighbouring frames and their weights, interpolating linearly over the
+/// circle; frames closer than a tenth of the even step count as one, their mean. angles = 0 takes the number that the
+/// median distance of the frames suggests.
+class AngleGrid {
+ public:
+  /// Throws Fault::data when there are fewer than 8 different angles or a gap is wider than max_gap_deg.
+  AngleGrid(std::span<const double> angles_deg, int angles, double max_gap_deg = 15);
+
+  [[nodiscard]] const EvenTurn& summary() const { return summary_; }
+
+  struct Tap {
+    int frame;
+    float weight;
+  };
+  /// The frames that make even angle `a`; the weights add up to 1.
+  [[nodiscard]] const std::vector<Tap>& taps(int a) const { return taps_[static_cast<std::size_t>(a)]; }
+
+ private:
+  EvenTurn summary_;
+  std::vector<std::vector<Tap>> taps_;
+};
+
+}  // namespace vam::metrology

@@ -1,0 +1,104 @@
+#include "metrology/views.hpp"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "metrology/axis.hpp"
+
+using namespace vam;
+using namespace vam::metrology;
+
+namespace {
+
+// The mean view of a turning body, written down directly: even in the distance from a leaning axis.
+Image mean_view(int width, int height, double column, double tilt_deg, double noise) {
+  Image image(width, height);
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal(0, noise);
+  const double s = std::sin(tilt_deg * rad_per_deg);
+  const double c = std::cos(tilt_deg * rad_per_deg);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const double dx = x - column;
+      const double dy = y - 0.5 * (height - 1);
+      const double across = c * dx - s * dy;
+      const double along = s * dx + c * dy;
+      const double body =
+          std::abs(along) < 0.4 * height ? std::exp(-std::pow(across / 60, 4)) * (1 + 0.3 * std::cos(along / 20)) : 0;
+      const double ring = 0.4 * std::exp(-std::pow((std::abs(across) - 40) / 6, 2));
+      image(x, y) = static_cast<float>(5 + body + ring + (noise > 0 ? normal(random) : 0));
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and 0.05 deg, and sigma is honest") {
+  for (const double noise : {0.0, 0.02}) {
+    const auto found = find_axis(mean_view(320, 240, 0.5 * 319 + 3.7, 0.5, noise));
+    CHECK(std::abs(found.pose.column - (0.5 * 319 + 3.7)) < 0.1);
+    CHECK(std::abs(found.pose.tilt_rad * deg_per_rad - 0.5) < 0.05);
+    CHECK(found.column_sigma < 0.05);
+    CHECK(found.tilt_sigma_rad * deg_per_rad < 0.02);
+  }
+}
+
+TEST_CASE("an even image has no axis") { CHECK_THROWS_AS((void)find_axis(Image(100, 50, 1.0F)), Error); }
+
+TEST_CASE("dark, flat and binning undo what the camera did") {
+  Image truth(7, 5);
+  for (std::size_t i = 0; i < truth.size(); ++i) truth.values[i] = static_cast<float>(i);
+  CameraFields fields{Image(7, 5), Image(7, 5)};
+  Image raw(7, 5);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    fields.dark.values[i] = 3 + static_cast<float>(i % 3);
+    fields.flat.values[i] = 1 + 0.1F * static_cast<float>(i % 5);  // mean 1.2
+    raw.values[i] = truth.values[i] * fields.flat.values[i] / 1.2F + fields.dark.values[i];
+  }
+  const Image image = corrected(raw, fields, 1, "view");
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    CHECK(image.values[i] == doctest::Approx(truth.values[i]).epsilon(1e-5));
+  const Image small = corrected(raw, fields, 2, "view");
+  CHECK(small.width == 3);
+  CHECK(small.height == 2);
+  CHECK(small(1, 1) == doctest::Approx((truth(2, 2) + truth(3, 2) + truth(2, 3) + truth(3, 3)) / 4).epsilon(1e-5));
+  fields.flat.values[3] = 0;
+  CHECK_THROWS_AS((void)corrected(raw, fields, 1, "view"), Error);
+  CHECK_THROWS_AS((void)corrected(Image(6, 5), fields, 1, "view"), Error);
+}
+
+TEST_CASE("even angles from uneven ones reproduce a sinusoid") {
+  std::vector<double> angles;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter(-0.5, 0.5);
+  for (int i = 0; i < 180; ++i) {
+    if (i % 10 == 4) continue;  // a tenth missing
+    angles.push_back(720 + 2 * i + jitter(random));
+    if (i % 20 == 7) angles.push_back(angles.back() - 360);  // a twentieth twice
+  }
+  CHECK(AngleGrid(angles, 0).summary().angles == doctest::Approx(180).epsilon(0.05));  // the median distance jitters
+  const AngleGrid grid(angles, 180);
+  CHECK(grid.summary().angles == 180);
+  CHECK(grid.summary().repeated == 9);
+  for (int a = 0; a < 180; ++a) {
+    double sum = 0;
+    double weight = 0;
+    for (const auto& tap : grid.taps(a)) {
+      sum += static_cast<double>(tap.weight) * std::cos(angles[static_cast<std::size_t>(tap.frame)] * rad_per_deg);
+      weight += static_cast<double>(tap.weight);
+    }
+    CHECK(weight == doctest::Approx(1));
+    CHECK(std::abs(sum - std::cos(2 * a * rad_per_deg)) < 0.0015);  // gap^2/8 in radians: 5.0 deg at most
+  }
+}
+
+TEST_CASE("an incomplete turn is refused with its gap") {
+  std::vector<double> angles;
+  for (int i = 0; i < 150; ++i) angles.push_back(2.0 * i);
+  CHECK_THROWS_WITH_AS(AngleGrid(angles, 0), doctest::Contains("62 deg"), Error);
+  CHECK_THROWS_AS(AngleGrid(std::vector<double>{0, 10, 20}, 0), Error);
+}
