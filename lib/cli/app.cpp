@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 #include <new>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -230,15 +231,29 @@ void App::fail_on_unknown(const std::vector<std::string>& words) const {
                                 " (" + tool.manual.name + " --help lists all)"};
 }
 
+// CLI11 says only that a count is wrong: find the option that comes twice, or the one whose value is missing.
+void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
+  std::set<std::string> seen;
+  std::string last;
+  for (auto word = reversed_words.rbegin(); word != reversed_words.rend(); ++word) {
+    if (word->rfind("--", 0) != 0) continue;
+    last = split(*word, '=').front();
+    if (!seen.insert(last).second) throw Error{Fault::usage, last + ": given twice"};
+  }
+  throw Error{Fault::usage, last + ": needs a value"};
+}
+
 void App::parse(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
   state_->history = state_->tool.manual.name + " " + VAM_VERSION;
   for (const auto& word : words) state_->history += " " + quoted(word);
   std::reverse(words.begin(), words.end());  // CLI11 takes them last first
   try {
-    state_->parser->parse(words);
+    state_->parser->parse(std::vector<std::string>(words));  // it consumes its copy
   } catch (const CLI::ExtrasError&) {
     fail_on_unknown(state_->parser->remaining(true));
+  } catch (const CLI::ArgumentMismatch&) {
+    fail_on_count(words);
   } catch (const CLI::ParseError& error) {
     throw Error{Fault::usage, std::string(error.what()) + " (" + state_->tool.manual.name + " --help lists all)"};
   }

@@ -80,6 +80,7 @@ class App {
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
   [[noreturn]] void fail_on_unknown(const std::vector<std::string>& words) const;
+  [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;
 
   std::unique_ptr<State> state_;
