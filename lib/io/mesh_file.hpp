@@ -1,0 +1,26 @@
+// Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL and PLY out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/mesh.hpp"
+
+namespace vam::io {
+
+/// Reads a mesh; the format is told by the content, "-" is stdin. Polygons are cut into fans of triangles. Coordinates
+/// are those of the file, 3MF's converted to mm by its unit. Nothing is welded or repaired.
+/// Throws Error: no_input, io, data (unknown format, truncated, no triangle, a vertex that is not finite, a face with
+/// an index that does not exist or with fewer than three corners).
+[[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
+
+/// Writes binary STL (32-bit floats). "-" is stdout. Throws Error: no_output, io.
+void write_stl(const std::string& path, const model::TriangleSoup& mesh);
+
+/// Writes binary little-endian PLY with 32-bit floats; a soup without triangles is a point cloud. Quality goes into
+/// both `quality`, which MeshLab reads, and `scalar_distance`, which CloudCompare reads; colours into `red green blue`.
+/// Each of `comments` becomes a comment line. "-" is stdout. Throws Error: no_output, io.
+void write_ply(const std::string& path, const model::TriangleSoup& mesh, const model::VertexData& vertices = {},
+               const std::vector<std::string>& comments = {});
+
+}  // namespace vam::io

@@ -1,0 +1,309 @@
+#include "io/mesh_file.hpp"
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.hpp"
+
+using vam::io::read_mesh;
+using vam::model::TriangleSoup;
+
+namespace {
+
+struct Scratch {
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("mesh_file_test." + std::to_string(getpid()));
+  Scratch() { std::filesystem::create_directories(folder); }
+  ~Scratch() { std::filesystem::remove_all(folder); }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
+  [[nodiscard]] std::string write(const std::string& bytes) const {
+    std::ofstream(path("mesh"), std::ios::binary) << bytes;
+    return path("mesh");
+  }
+};
+
+std::string slurp(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+// A box 1 x 2 x 3 mm as six quadrilaterals, anticlockwise from outside.
+const std::vector<std::array<double, 3>> box_points{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0},
+                                                    {0, 0, 3}, {1, 0, 3}, {1, 2, 3}, {0, 2, 3}};
+const std::vector<std::array<int, 4>> box_faces{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                                {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+
+// Volume by the divergence theorem: right only when every triangle is there, once, and oriented outwards.
+double volume(const TriangleSoup& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles) {
+    const auto& a = mesh.points[static_cast<std::size_t>(t[0])];
+    const auto& b = mesh.points[static_cast<std::size_t>(t[1])];
+    const auto& c = mesh.points[static_cast<std::size_t>(t[2])];
+    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
+  }
+  return sum / 6;
+}
+
+std::string box_obj() {
+  std::string text = "# box\no box\n";
+  for (const auto& p : box_points)
+    text += "v " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+  for (const auto& f : box_faces) {
+    text += "f";
+    for (const int i : f) text += " " + std::to_string(i + 1) + "//1";
+    text += "\n";
+  }
+  return text;
+}
+
+std::string box_off(const std::string& first_vertex = "0 0 0") {
+  std::string text = "OFF\n8 6 0\n" + first_vertex + "\n";
+  for (std::size_t i = 1; i < 8; ++i) {
+    const auto& p = box_points[i];
+    text += std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+  }
+  for (const auto& f : box_faces) {
+    text += "4";
+    for (const int i : f) text += " " + std::to_string(i);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string box_ply() {
+  std::string text =
+      "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 8\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n";
+  return text + box_off().substr(std::strlen("OFF\n8 6 0\n"));
+}
+
+TriangleSoup box() {
+  TriangleSoup mesh;
+  mesh.points = box_points;
+  for (const auto& f : box_faces) {
+    mesh.triangles.push_back({f[0], f[1], f[2]});
+    mesh.triangles.push_back({f[0], f[2], f[3]});
+  }
+  return mesh;
+}
+
+std::string box_ascii_stl() {
+  std::string text = "solid box\n";
+  const auto mesh = box();
+  for (const auto& t : mesh.triangles) {
+    text += " facet normal 0 0 0\n  outer loop\n";
+    for (const int i : t) {
+      const auto& p = mesh.points[static_cast<std::size_t>(i)];
+      text += "   vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
+    }
+    text += "  endloop\n endfacet\n";
+  }
+  return text + "endsolid box\n";
+}
+
+// ---- a zip archive with one stored file, so that the 3MF reader is judged by bytes of our own ----
+
+template <class T>
+std::string little(T value) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+
+std::uint32_t crc32(const std::string& bytes) {
+  std::uint32_t crc = ~0U;
+  for (const char c : bytes) {
+    crc ^= static_cast<std::uint8_t>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xEDB88320U & (0U - (crc & 1U)));
+  }
+  return ~crc;
+}
+
+struct Zip {
+  std::string bytes;
+  std::string directory;
+  std::uint16_t files = 0;
+  void add(const std::string& name, const std::string& content) {
+    const auto size = static_cast<std::uint32_t>(content.size());
+    const std::string common = little<std::uint16_t>(20) + little<std::uint16_t>(0) + little<std::uint16_t>(0) +
+                               little<std::uint32_t>(0x21) + little(crc32(content)) + little(size) + little(size) +
+                               little(static_cast<std::uint16_t>(name.size())) + little<std::uint16_t>(0);
+    directory += "PK\1\2" + little<std::uint16_t>(20) + common + std::string(6, '\0') + little<std::uint32_t>(0) +
+                 little(static_cast<std::uint32_t>(bytes.size())) + name;
+    bytes += "PK\3\4" + common + name + content;
+    ++files;
+  }
+  [[nodiscard]] std::string done() const {
+    return bytes + directory + "PK\5\6" + little<std::uint32_t>(0) + little(files) + little(files) +
+           little(static_cast<std::uint32_t>(directory.size())) + little(static_cast<std::uint32_t>(bytes.size())) +
+           little<std::uint16_t>(0);
+  }
+};
+
+std::string box_3mf(const std::string& unit, const std::string& transform) {
+  std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"" + unit +
+                      "\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"><resources>"
+                      "<object id=\"1\" type=\"model\"><mesh><vertices>";
+  const auto mesh = box();
+  for (const auto& p : mesh.points) {
+    model += "<vertex x=\"" + std::to_string(p[0]) + "\" y=\"" + std::to_string(p[1]) + "\" z=\"" +
+             std::to_string(p[2]) + "\"/>";
+  }
+  model += "</vertices><triangles>";
+  for (const auto& t : mesh.triangles) {
+    model += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
+             std::to_string(t[2]) + "\"/>";
+  }
+  model += "</triangles></mesh></object></resources><build><item objectid=\"1\"" +
+           (transform.empty() ? "" : " transform=\"" + transform + "\"") + "/></build></model>";
+  Zip zip;
+  zip.add(
+      "[Content_Types].xml",
+      "<?xml version=\"1.0\"?><Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"
+      "<Default Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/>"
+      "<Default Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>");
+  zip.add(
+      "_rels/.rels",
+      "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+      "<Relationship Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+      "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>");
+  zip.add("3D/3dmodel.model", model);
+  return zip.done();
+}
+
+std::string refusal(const Scratch& scratch, const std::string& bytes) {
+  try {
+    (void)read_mesh(scratch.write(bytes));
+  } catch (const vam::Error& error) {
+    CHECK(error.fault == vam::Fault::data);
+    CHECK(std::string(error.what()).find('\n') == std::string::npos);
+    return error.what();
+  }
+  return "no error";
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("every format gives the box back: 6 mm3, oriented outwards") {
+  const Scratch scratch;
+  for (const auto& bytes : {box_obj(), box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
+    CAPTURE(bytes.substr(0, 20));
+    const auto mesh = read_mesh(scratch.write(bytes));
+    CHECK(mesh.triangles.size() == 12);
+    CHECK(volume(mesh) == doctest::Approx(6));
+  }
+}
+
+TEST_CASE("binary STL comes back as written, also when its header begins with solid") {
+  const Scratch scratch;
+  vam::io::write_stl(scratch.path("box.stl"), box());
+  std::string bytes = slurp(scratch.path("box.stl"));
+  CHECK(bytes.size() == 84 + 12 * 50);
+  CHECK(volume(read_mesh(scratch.path("box.stl"))) == doctest::Approx(6));
+  bytes.replace(0, 6, "solid ");
+  CHECK(volume(read_mesh(scratch.write(bytes))) == doctest::Approx(6));
+  float normal[3];
+  std::memcpy(normal, bytes.data() + 84, sizeof normal);
+  CHECK(normal[2] == -1);  // the first face is the bottom
+}
+
+TEST_CASE("3MF: the unit and the place of the build item count") {
+  const Scratch scratch;
+  CHECK(volume(read_mesh(scratch.write(box_3mf("inch", "")))) == doctest::Approx(6 * std::pow(25.4, 3)));
+  CHECK(volume(read_mesh(scratch.write(box_3mf("micron", "")))) == doctest::Approx(6e-9));
+  // 3MF matrices are row by row, row vectors, translation last: a quarter turn about z, then (10, 20, 30).
+  const auto mesh = read_mesh(scratch.write(box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30")));
+  CHECK(volume(mesh) == doctest::Approx(6));
+  std::array<double, 3> low{1e9, 1e9, 1e9};
+  for (const auto& p : mesh.points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]);
+  }
+  CHECK(low[0] == doctest::Approx(8));  // x' = -y + 10, y in [0, 2]
+  CHECK(low[1] == doctest::Approx(20));
+  CHECK(low[2] == doctest::Approx(30));
+  CHECK(has(refusal(scratch, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
+}
+
+TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
+  const Scratch scratch;
+  vam::model::VertexData data;
+  for (int i = 0; i < 8; ++i) {
+    data.quality.push_back(static_cast<float>(i) / 8);
+    data.colours.push_back({static_cast<std::uint8_t>(i), 2, 3});
+  }
+  vam::io::write_ply(scratch.path("box.ply"), box(), data, {"vam-sdf 1", "two\nlines"});
+  const std::string bytes = slurp(scratch.path("box.ply"));
+  CHECK(has(bytes, "comment vam-sdf 1\ncomment two lines\nelement vertex 8\n"));
+  CHECK(has(bytes, "property float quality\nproperty float scalar_distance\nproperty uchar red\n"));
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  CHECK(bytes.size() == body + 8 * (5 * 4 + 3) + 12 * 13);
+  float second[5];  // vertex 1 = (1, 0, 0), quality 1/8
+  std::memcpy(second, bytes.data() + body + 23, sizeof second);
+  CHECK(second[0] == 1);
+  CHECK(second[3] == 0.125F);
+  CHECK(second[4] == 0.125F);
+  CHECK(volume(read_mesh(scratch.path("box.ply"))) == doctest::Approx(6));
+  TriangleSoup cloud = box();
+  cloud.triangles.clear();
+  vam::io::write_ply(scratch.path("cloud.ply"), cloud);
+  CHECK(has(slurp(scratch.path("cloud.ply")), "element face 0\n"));
+}
+
+TEST_CASE("a cut file is refused wherever it is cut") {
+  const Scratch scratch;
+  vam::io::write_stl(scratch.path("box.stl"), box());
+  vam::io::write_ply(scratch.path("box.ply"), box());
+  const std::string stl = slurp(scratch.path("box.stl"));
+  const std::string binary_ply = slurp(scratch.path("box.ply"));
+  for (const auto& bytes : {stl, binary_ply, box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
+    for (std::size_t size = 0; size + 3 < bytes.size(); size += 7) {
+      CAPTURE(bytes.substr(0, 12));
+      CAPTURE(size);
+      CHECK(refusal(scratch, bytes.substr(0, size)) != "no error");
+    }
+  }
+  CHECK(has(refusal(scratch, stl.substr(0, 300)), "12 triangles (684 bytes) but the file has 300 bytes"));
+}
+
+TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no faces, foreign files") {
+  const Scratch scratch;
+  vam::io::write_stl(scratch.path("box.stl"), box());
+  std::string stl = slurp(scratch.path("box.stl"));
+  const float nan = NAN;
+  std::memcpy(stl.data() + 84 + 12, &nan, sizeof nan);
+  CHECK(has(refusal(scratch, stl), "vertex 0 is not finite"));
+  CHECK(refusal(scratch, box_off("nan 0 0")) != "no error");
+  CHECK(refusal(scratch, box_off("1e999 0 0")) != "no error");
+  std::string obj = box_obj();
+  CHECK(has(refusal(scratch, obj + "f 1 2 9\n"), "face 6 uses vertex 8 of 8 (counted from 0)"));
+  CHECK(has(refusal(scratch, obj + "f 0 1 2\n"), "face 6 uses vertex 8 of 8"));
+  CHECK(has(refusal(scratch, obj + "f 1 2\n"), "face 6 has 2 corners"));
+  CHECK(has(refusal(scratch, "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "the mesh is empty: 3 vertices, no face"));
+  CHECK(has(refusal(scratch, "solid nothing\nendsolid nothing\n"), "empty"));
+  CHECK(has(refusal(scratch, ""), "is empty"));
+  CHECK(has(refusal(scratch, "hello, world\n"), "not a mesh of a known format"));
+  CHECK(has(refusal(scratch,
+                    "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+                    "property float y\nproperty float z\nend_header\n"),
+            "promises 4000000000 vertex"));
+  CHECK(has(refusal(scratch, "OFF\n99999999999 1 0\n"), "promises 99999999999 vertices"));
+  try {
+    (void)read_mesh(scratch.path("none.stl"));
+    FAIL("a missing file was read");
+  } catch (const vam::Error& error) {
+    CHECK(error.fault == vam::Fault::no_input);
+  }
+}
