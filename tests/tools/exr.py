@@ -1,0 +1,130 @@
+"""Uncompressed multi-part EXR stacks by the published format alone, for tests: an independent writer and reader.
+
+    exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value
+    exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
+    exr.py get FILE part column row   one pixel
+    exr.py attr FILE name             one attribute of part 0
+"""
+import math
+import struct
+import sys
+
+
+def attribute(name, kind, data):
+    return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(data)) + data
+
+
+def text(name, value):
+    return attribute(name, "string", value.encode())
+
+
+def number(name, value):
+    return attribute(name, "double", struct.pack("<d", value))
+
+
+def header(index, job):
+    window = struct.pack("<4i", 0, 0, job["width"] - 1, job["height"] - 1)
+    channels = b"Y\0" + struct.pack("<i4B2i", 2, 0, 0, 0, 0, 1, 1) + b"\0"
+    return b"".join([
+        attribute("channels", "chlist", channels),
+        attribute("compression", "compression", b"\0"),
+        attribute("dataWindow", "box2i", window),
+        attribute("displayWindow", "box2i", window),
+        attribute("lineOrder", "lineOrder", b"\0"),
+        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)),
+        text("name", "%s%04d" % ("z" if job["kind"] == "sinogram" else "a", index)),
+        text("type", "scanlineimage"),
+        attribute("chunkCount", "int", struct.pack("<i", job["height"])),
+        text("vam:kind", job["kind"]), text("vam:space", job["space"]), text("vam:history", "made by a test"),
+        attribute("vam:count", "int", struct.pack("<i", job["count"])),
+        attribute("vam:index", "int", struct.pack("<i", index)),
+        number("vam:pixel_mm", job["pixel"]), number("vam:row_mm", job["row"]),
+        number("vam:z_mm", index * job["row"]), number("vam:angle_start_deg", 0),
+        number("vam:angle_step_deg", job["step"] or 360 / job["height"]), b"\0"])
+
+
+def blob_row(job, index, a):
+    """Line integrals of a Gaussian off the axis, scaled by the slice's number; or a constant."""
+    if job["value"] is not None:
+        return struct.pack("<%df" % job["width"], *[job["value"]] * job["width"])
+    theta = 2 * math.pi * a / job["height"]
+    middle = (job["width"] - 1) / 2
+    place = 0.2 * job["width"] * math.cos(theta)
+    sigma = job["width"] / 12
+    return struct.pack("<%df" % job["width"], *[
+        (1 + index % 7) * math.exp(-0.5 * ((c - middle - place) / sigma) ** 2) for c in range(job["width"])])
+
+
+def make(path, job):
+    with (sys.stdout.buffer if path == "-" else open(path, "wb")) as out:
+        heads = [header(i, job) for i in range(job["count"])]
+        start = 8 + sum(map(len, heads)) + 1
+        chunk = 12 + 4 * job["width"]
+        out.write(struct.pack("<2i", 20000630, 2 | 0x1000) + b"".join(heads) + b"\0")
+        chunks = job["count"] * job["height"]
+        first = start + 8 * chunks
+        out.write(struct.pack("<%dQ" % chunks, *range(first, first + chunk * chunks, chunk)))
+        kinds = {}
+        for i in range(job["count"]):
+            if i % 7 not in kinds:
+                kinds[i % 7] = [blob_row(job, i, a) for a in range(job["height"])]
+            for a, row in enumerate(kinds[i % 7]):
+                out.write(struct.pack("<3i", i, a, len(row)) + row)
+
+
+def read(path):
+    """Headers as dictionaries of raw bytes, and an iterator of (part, row, floats)."""
+    file = sys.stdin.buffer if path == "-" else open(path, "rb")
+    data = file.read()
+    assert struct.unpack_from("<2i", data) == (20000630, 2 | 0x1000), "not a multi-part EXR"
+    at, parts = 8, []
+    while data[at] != 0:
+        head = {}
+        while data[at] != 0:
+            name = data[at:data.index(0, at)]
+            at += len(name) + 1
+            at = data.index(0, at) + 1
+            size = struct.unpack_from("<i", data, at)[0]
+            head[name.decode()] = data[at + 4:at + 4 + size]
+            at += 4 + size
+        at += 1
+        assert head["compression"] == b"\0", "compressed"
+        parts.append(head)
+    at += 1 + 8 * sum(struct.unpack("<i", head["chunkCount"])[0] for head in parts)
+
+    def rows():
+        where = at
+        while where < len(data):
+            part, row, size = struct.unpack_from("<3i", data, where)
+            yield part, row, struct.unpack_from("<%df" % (size // 4), data, where + 12)
+            where += 12 + size
+    return parts, rows()
+
+
+def main(verb, path, *rest):
+    if verb == "make":
+        job = dict(count=3, width=64, height=60, pixel=0.26, row=0.26, space="virtual", kind="sinogram", step=None,
+                   value=None)
+        for pair in rest:
+            key, value = pair.split("=")
+            whole = key in ("count", "width", "height")
+            job[key] = value if key in ("space", "kind") else int(value) if whole else float(value)
+        make(path, job)
+    elif verb == "sum":
+        parts, rows = read(path)
+        total, width, height = 0.0, 0, 0
+        for _, row, values in rows:
+            total, width, height = total + math.fsum(values), len(values), max(height, row + 1)
+        print(len(parts), width, height, "%.6g" % total)
+    elif verb == "get":
+        part, column, row = map(int, rest)
+        print("%.7g" % next(v[column] for p, r, v in read(path)[1] if (p, r) == (part, row)))
+    elif verb == "attr":
+        raw = read(path)[0][0][rest[0]]
+        is_number = rest[0].endswith(("_mm", "_deg"))
+        print("%.10g" % struct.unpack("<d", raw)[0] if is_number else raw.decode())
+
+
+main(*sys.argv[1:])

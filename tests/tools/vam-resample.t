@@ -1,0 +1,94 @@
+# vam-resample end to end: maps, weights, alignment, streams, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+
+$exr make virtual.exr width=64 height=60 pixel=0.26
+ok "to the projector" vam-resample virtual.exr -o projector.exr
+vam-resample virtual.exr >pipe.exr
+is "projector columns, same angles" "$($exr sum pipe.exr | cut -d' ' -f1-3)" "3 1024 60"
+is "space" "$($exr attr pipe.exr vam:space)" projector
+is "pitch" "$($exr attr pipe.exr vam:pixel_mm)" 0.065
+is "history" "$($exr attr pipe.exr vam:history | tail -n 1 | cut -d' ' -f1,3-)" "vam-resample virtual.exr"
+vam-resample <virtual.exr >stdin.exr
+is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pipe.exr)"
+vam-resample --threads 1 virtual.exr >one.exr
+vam-resample --threads 2 virtual.exr | sed 's/--threads 2/--threads 1/' >two.exr
+same "1 and 2 threads give identical bytes" one.exr two.exr
+
+# A constant sinogram shows the weights: J/T of the table in the manual of physics (column at 0.065 * 650 mm).
+$exr make flat.exr width=400 height=8 pixel=0.065 value=1 count=1
+vam-resample flat.exr >flat-p.exr
+weight=$(vam-resample --explain | awk -F, 'NR == 2 + 650 { print $6 }')
+holds "a pixel is J/T" "($($exr get flat-p.exr 0 650 3) - $weight)^2 < 1e-12"
+vam-resample --no-fresnel --no-jacobian flat.exr >plain-p.exr
+holds "without weights it is 1" "($($exr get plain-p.exr 0 650 3) - 1)^2 < 1e-12"
+holds "a ray beside the vial is dark" "$($exr get flat-p.exr 0 0 3) == 0"
+
+# [RAY21]'s table: R = 212.37 px, D = 1843.2 px, x_p = 150 px -> x_v = 97.7162, delta = 12.7003, T = 0.94584, J = 0.64716.
+vam-resample --explain --set projector.pixel_mm=1 --set projector.axis_column=512 --set vial.radius_mm=212.37 \
+  --set camera.distance_mm=1000 >map.csv
+is "the map is CSV" "$(head -n 1 map.csv)" "x_p_mm,x_v_mm,delta_deg,T,J,weight"
+is "a line a column" "$(wc -l <map.csv)" 1025
+is "the paper's ray" "$(awk -F, '$1 == 150 { printf "%.4f %.4f %.5f %.5f", $2, $3, $4, $5 }' map.csv)" "97.7162 12.7003 0.94584 0.64716"
+is "telecentric: x_v = x_p / n" "$(vam-resample --explain --set projector.telecentric=true | awk -F, 'NR == 2 + 700 { printf "%.6f", $1 / $2 }')" 1.530000
+ok "a map to a camera" vam-resample --explain --to virtual -o camera.csv
+ok "settings in force" vam-resample --print-printer -o printer.toml
+ok "which can be read back" vam-resample --printer printer.toml --explain -o map2.csv
+
+# Alignment
+vam-resample --column-offset 10 virtual.exr >moved.exr
+is "the image moves by the column offset" "$($exr get moved.exr 1 610 7)" "$($exr get pipe.exr 1 600 7)"
+vam-resample --angle-offset 6 virtual.exr >turned.exr
+holds "one angle step is one row" "($($exr get turned.exr 1 600 7) - $($exr get pipe.exr 1 600 8))^2 < 1e-8"
+vam-resample --reverse virtual.exr >reversed.exr
+vam-resample --set stage.direction=-1 virtual.exr | $exr sum - >reversed-sum
+is "--reverse is the other stage.direction" "$($exr sum reversed.exr)" "$(cat reversed-sum)"
+holds "backwards is backwards" "($($exr get reversed.exr 1 600 7) - $($exr get pipe.exr 1 600 53))^2 < 1e-8"
+vam-resample --interpolation linear virtual.exr >linear.exr
+holds "linear and cubic agree on a smooth part" "($($exr get linear.exr 1 600 7) - $($exr get pipe.exr 1 600 7))^2 < 1e-4"
+
+# Camera
+$exr make camera.exr space=camera width=301 height=60 pixel=0.1 row=0.1 value=1
+vam-resample --to virtual camera.exr >back.exr
+is "as many columns as the camera sees" "$($exr sum back.exr | cut -d' ' -f1-3)" "3 167 60"
+holds "no weights unless asked for" "($($exr get back.exr 0 80 3) - 1)^2 < 1e-12"
+vam-resample --to virtual --fresnel --voxel 0.2 --columns 41 camera.exr >glass.exr
+holds "lost light is put back" "($($exr get glass.exr 0 20 3) - 1 / 0.95611555)^2 < 1e-10"
+
+# 5,000 slices in constant memory
+$exr make - count=50 width=16 height=16 pixel=1 >short.exr
+peak() { python3 -c 'import resource,subprocess,sys
+subprocess.run(sys.argv[1:], stdin=open("in.exr"), stdout=subprocess.DEVNULL, check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' "$@"; }
+cp short.exr in.exr; few=$(peak vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5)
+$exr make in.exr count=5000 width=16 height=16 pixel=1
+many=$(peak vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5)
+vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5 <in.exr | tee teed.exr | $exr sum - >sum
+is "5,000 slices pass" "$(cut -d' ' -f1-3 sum)" "5000 64 16"
+is "tee leaves a whole stack" "$($exr sum teed.exr)" "$(cat sum)"
+echo "# peak memory: $few kB for 50 slices, $many kB for 5,000"
+holds "in constant memory, but for the parts' headers (4 kB each)" "$many - $few < 20000 + 4 * 5000"
+
+# Wrong inputs
+head -c 20000 virtual.exr >cut.exr
+$exr make frames.exr kind=frames
+$exr make half.exr step=3
+printf 'no stack' >noise.exr
+fails 66 'nothing.exr' vam-resample nothing.exr -o x.exr
+fails 65 'cut.exr' vam-resample cut.exr -o x.exr
+fails 65 'noise.exr' vam-resample noise.exr -o x.exr
+fails 65 'frames' vam-resample frames.exr -o x.exr
+fails 65 'projector' vam-resample projector.exr -o x.exr
+fails 65 'virtual' vam-resample --to virtual virtual.exr -o x.exr
+fails 65 'cover 180 deg' vam-resample half.exr -o x.exr
+fails 64 'to' vam-resample --to camera virtual.exr -o x.exr
+fails 64 'interpolation' vam-resample --interpolation spline virtual.exr -o x.exr
+fails 64 'no meaning' vam-resample --to virtual --no-fresnel camera.exr -o x.exr
+fails 64 'no meaning' vam-resample --voxel 1 virtual.exr -o x.exr
+fails 64 'voxel' vam-resample --to virtual --voxel 0 camera.exr -o x.exr
+fails 64 'radius' vam-resample --set vial.radius_mm=-1 virtual.exr -o x.exr
+fails 65 'window' vam-resample --set bath.index=1.5 virtual.exr -o x.exr
+fails 64 'also the input' vam-resample virtual.exr -o virtual.exr
+fails 73 'nowhere' vam-resample virtual.exr -o nowhere/x.exr
+fails 74 'full' vam-resample virtual.exr -o /dev/full
+done_testing
