@@ -1,0 +1,26 @@
+// Filtered back-projection, plain and exponential, and the geometry that fits a grid.
+#pragma once
+
+#include <span>
+
+#include "model/grid.hpp"
+#include "tomo/filter.hpp"
+#include "tomo/radon.hpp"
+
+namespace vam::tomo {
+
+/// `angles` over 360 degrees, endpoint excluded, for the slices of a grid whose rotation axis is at x = y = 0 mm.
+/// columns = 0 takes the fewest that see every corner of the grid, as odd or even as nx, so that for a centred grid the
+/// bins of angle 0 are the pixels. Throws Error{Fault::usage} unless angles >= 1 and columns >= 0.
+[[nodiscard]] ParallelGeometry full_turn(const model::Grid& grid, int angles, int columns = 0,
+                                         double attenuation_per_mm = 0);
+
+/// Inverts forward(): images = (pi / angles) * adjoint(filter(sinograms)), for angles over a half or a full turn. With
+/// alpha != 0 (a full turn is needed) it is the inverse of Tretiak & Metz [TM80]: |k| < alpha blocked, weight e^{-alpha
+/// u}. The sinograms are left filtered. spec.alpha_per_px is set from the geometry. Throws Error{Fault::usage}.
+void fbp(const ParallelGeometry& geometry, std::span<Slab> sinograms, std::span<Slab> images, FilterSpec spec = {});
+
+/// The same for one slab.
+[[nodiscard]] Slab fbp(const ParallelGeometry& geometry, Slab sinogram, const FilterSpec& spec = {});
+
+}  // namespace vam::tomo

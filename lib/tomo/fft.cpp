@@ -1,0 +1,57 @@
+#include "tomo/fft.hpp"
+
+#include <fftw3.h>
+
+#include <mutex>
+#include <new>
+
+#include "base/error.hpp"
+#include "tomo/slab.hpp"
+
+namespace vam::tomo {
+
+namespace {
+
+std::mutex& planner() {  // FFTW's planner is not thread-safe, its transforms are
+  static std::mutex mutex;
+  return mutex;
+}
+
+fftwf_complex* raw(std::complex<float>* row) { return reinterpret_cast<fftwf_complex*>(row); }
+
+}  // namespace
+
+struct Fft::State {
+  fftwf_plan forward = nullptr;
+  fftwf_plan backward = nullptr;
+};
+
+int fft_length(int least) {
+  int best = 1;
+  while (best < least) best *= 2;
+  for (const int odd : {3, 5}) {
+    int length = odd;
+    while (length < least) length *= 2;
+    if (length < best) best = length;
+  }
+  return best;
+}
+
+Fft::Fft(int length) : state_(std::make_unique<State>()) {
+  std::vector<std::complex<float>, CacheAligned<std::complex<float>>> example(static_cast<std::size_t>(length));
+  const std::lock_guard<std::mutex> lock(planner());
+  state_->forward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_FORWARD, FFTW_ESTIMATE);
+  state_->backward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_BACKWARD, FFTW_ESTIMATE);
+  if (state_->forward == nullptr || state_->backward == nullptr) throw Error{Fault::bug, "FFTW made no plan"};
+}
+
+Fft::~Fft() {
+  const std::lock_guard<std::mutex> lock(planner());
+  fftwf_destroy_plan(state_->forward);
+  fftwf_destroy_plan(state_->backward);
+}
+
+void Fft::forward(std::complex<float>* row) const { fftwf_execute_dft(state_->forward, raw(row), raw(row)); }
+void Fft::backward(std::complex<float>* row) const { fftwf_execute_dft(state_->backward, raw(row), raw(row)); }
+
+}  // namespace vam::tomo

@@ -1,0 +1,116 @@
+#include "tomo/filter.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+
+using namespace vam::tomo;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Slab random_slab(int width, int height) {
+  Slab slab(width, height);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
+  for (float& value : slab.values) value = uniform(random);
+  return slab;
+}
+
+/// Gain at the frequency `fraction` of Nyquist.
+double gain(const Filter& filter, double fraction) {
+  const auto& gains = filter.gains();
+  return gains[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(gains.size() - 1)))];
+}
+
+}  // namespace
+
+TEST_CASE("the ramp is the direct convolution with the band-limited kernel of Kak & Slaney") {
+  const int columns = 57;
+  const Slab before = random_slab(columns, 5);
+  Slab after = before;
+  Filter(columns, {}).apply(after);
+  for (int a = 0; a < 5; ++a) {
+    for (int lane = 0; lane < lanes; ++lane) {
+      for (int c = 0; c < columns; ++c) {
+        double want = 0.25 * static_cast<double>(before.at(c, a)[lane]);
+        for (int d = 0; d < columns; ++d) {
+          const int n = c - d;
+          if (n % 2 != 0) want -= static_cast<double>(before.at(d, a)[lane]) / (pi * pi * n * n);
+        }
+        CHECK(static_cast<double>(after.at(c, a)[lane]) == doctest::Approx(want).epsilon(2e-6).scale(1));  // float FFT
+      }
+    }
+  }
+}
+
+TEST_CASE("windows have their shape at half the cutoff and their edge") {
+  const auto ratio = [](Window window, double cutoff, double fraction) {
+    return gain(Filter(500, {window, cutoff, 0, 0}), fraction) / gain(Filter(500, {}), fraction);
+  };
+  CHECK(ratio(Window::shepp_logan, 1, 0.5) == doctest::Approx(std::sin(pi / 4) / (pi / 4)));
+  CHECK(ratio(Window::cosine, 1, 0.5) == doctest::Approx(std::cos(pi / 4)));
+  CHECK(ratio(Window::hamming, 1, 0.5) == doctest::Approx(0.54));
+  CHECK(ratio(Window::hann, 1, 0.5) == doctest::Approx(0.5));
+  CHECK(ratio(Window::gaussian, 0.5, 0.5) == doctest::Approx(std::exp(-1)));
+  CHECK(ratio(Window::exponential, 0.25, 0.5) == doctest::Approx(std::exp(-2)));
+  CHECK(ratio(Window::hann, 0.5, 0.25) == doctest::Approx(0.5));
+  CHECK(ratio(Window::ram_lak, 0.5, 0.45) == doctest::Approx(1));
+  CHECK(ratio(Window::ram_lak, 0.5, 0.55) == 0);
+}
+
+TEST_CASE("the mean of the ramp is positive and tiny, and the floor lifts it") {
+  const Filter ramp(512, {});
+  CHECK(gain(ramp, 0) > 0);
+  CHECK(gain(ramp, 0) < 1e-3);
+  CHECK(gain(ramp, 1) == doctest::Approx(0.5).epsilon(1e-3));
+  CHECK(gain(ramp, 0.5) == doctest::Approx(0.25).epsilon(1e-3));
+  const Filter floored(512, {Window::ram_lak, 1, 0.05, 0});
+  CHECK(gain(floored, 0) == 0.025);
+  CHECK(gain(floored, 0.5) == gain(ramp, 0.5));
+}
+
+TEST_CASE("the exponential ramp blocks |k| < alpha and passes the rest") {
+  const double alpha = 0.4;  // = 0.127 of Nyquist (k = pi)
+  const Filter filter(2000, {Window::ram_lak, 1, 0, alpha});
+  for (const double fraction : {0.0, 0.05, 0.1}) CHECK(std::abs(gain(filter, fraction)) < 1e-3);
+  for (const double fraction : {0.16, 0.3, 0.7})
+    CHECK(gain(filter, fraction) == doctest::Approx(fraction / 2).epsilon(0.01));
+}
+
+TEST_CASE("none leaves a sinogram as it is") {
+  const Slab before = random_slab(40, 3);
+  Slab after = before;
+  Filter(40, {Window::none, 1, 0, 0}).apply(after);
+  CHECK(after.values == before.values);
+}
+
+TEST_CASE("filtering gives the same bytes for any number of threads") {
+  Slab one = random_slab(129, 61);
+  Slab two = one;
+  const Filter filter(129, {Window::hann, 0.8, 0, 0});
+  vam::set_threads(1);
+  filter.apply(one);
+  vam::set_threads(2);
+  filter.apply(two);
+  vam::set_threads(0);
+  CHECK(one.values == two.values);
+}
+
+TEST_CASE("names and limits") {
+  for (std::size_t i = 0; i < window_names().size(); ++i) {
+    CHECK(window_from_name(window_names()[i]) == static_cast<Window>(i));
+  }
+  CHECK_THROWS_AS(static_cast<void>(window_from_name("hanning")), vam::Error);
+  CHECK_THROWS_AS(Filter(10, {Window::hann, 0, 0, 0}), vam::Error);
+  CHECK_THROWS_AS(Filter(10, {Window::hann, 1, 2, 0}), vam::Error);
+  Slab slab(11, 1);
+  CHECK_THROWS_AS(Filter(10, {}).apply(slab), vam::Error);
+}
