@@ -1,0 +1,59 @@
+// The correction of a part of 1920 x 1080 x 1000 voxels, without reading and writing: the work per slice.
+#include <benchmark/benchmark.h>
+
+#include <vector>
+
+#include "resin/slice_correction.hpp"
+
+namespace {
+
+constexpr int width = 1920;
+constexpr int height = 1080;
+constexpr int slices = 200;
+
+// Blocks of 40 slices every 60, shifted from column to column so that edges come up in every slice.
+const vam::resin::PartColumns& part() {
+  static const auto built = [] {
+    vam::resin::PartColumns columns(width, height, slices, vam::resin::Exposure::continuous);
+    std::vector<float> slice(static_cast<std::size_t>(width) * height);
+    for (int k = 0; k < slices; ++k) {
+      for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+          slice[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] =
+              (k + x / 8 + y / 8) % 60 < 40 ? 1 : 0;
+        }
+      }
+      columns.append(1, slice.data(), 0.5F);
+    }
+    return columns;
+  }();
+  return built;
+}
+
+void corrected_slice(benchmark::State& state) {
+  const vam::resin::Limits limits = vam::resin::limits_of({});
+  vam::Image slice(width, height);
+  for (auto _ : state) {
+    state.PauseTiming();
+    vam::resin::SliceCorrection correction(part(), limits, 1, slices + 3);
+    state.ResumeTiming();
+    for (int k = 0; k < slices; ++k) correction.next(slice);
+  }
+  state.SetItemsProcessed(state.iterations() * slices * width * height);
+}
+BENCHMARK(corrected_slice)->Unit(benchmark::kMillisecond);
+
+void packed_slice(benchmark::State& state) {
+  const std::vector<float> slab(static_cast<std::size_t>(width) * height * 16, 0.7F);
+  for (auto _ : state) {
+    vam::resin::PartColumns columns(width, height, 64, vam::resin::Exposure::continuous);
+    for (int k = 0; k < 4; ++k) columns.append(16, slab.data(), 0.5F);
+    benchmark::DoNotOptimize(columns.solid(0, 0));
+  }
+  state.SetItemsProcessed(state.iterations() * 64 * width * height);
+}
+BENCHMARK(packed_slice)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

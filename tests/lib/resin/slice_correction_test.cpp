@@ -1,0 +1,199 @@
+#include "resin/slice_correction.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+
+using namespace vam;
+using resin::Exposure;
+
+namespace {
+
+constexpr int width = 23;
+constexpr int height = 5;
+
+// Voxels of random runs along the columns, value(k, p) at k * width * height + p; every third column is empty at the
+// end.
+std::vector<float> random_part(int slices, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<int> length(1, 40);
+  std::vector<float> values(static_cast<std::size_t>(width * height * slices));
+  for (int p = 0; p < width * height; ++p) {
+    bool solid = random() % 2 == 0;
+    for (int k = 0; k < slices;) {
+      const int end = std::min(slices, k + length(random));
+      for (; k < end; ++k) {
+        const bool kept = solid && p != 7 && (p % 3 != 0 || k < slices - 30);
+        values[static_cast<std::size_t>(k * width * height + p)] = kept ? 0.75F : 0.25F;
+      }
+      solid = !solid;
+    }
+  }
+  return values;
+}
+
+std::vector<std::uint8_t> column_of(const std::vector<float>& values, int slices, int p) {
+  std::vector<std::uint8_t> column;
+  for (int k = 0; k < slices; ++k) column.push_back(values[static_cast<std::size_t>(k * width * height + p)] > 0.5F);
+  return column;
+}
+
+resin::PartColumns part_of(const std::vector<float>& values, int slices, Exposure exposure, int batch) {
+  resin::PartColumns part(width, height, slices, exposure);
+  for (int k = 0; k < slices; k += batch) {
+    part.append(std::min(batch, slices - k), values.data() + static_cast<std::size_t>(k * width * height), 0.5F);
+  }
+  return part;
+}
+
+resin::Limits limits_for(Exposure exposure) {
+  resin::Process process;
+  process.exposure = exposure;
+  process.absorbance_height_um = 700;
+  return resin::limits_of(process);
+}
+
+}  // namespace
+
+TEST_CASE("runs of a column are found from any of their nodes") {
+  for (const int slices : {1, 63, 64, 65, 200}) {
+    for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+      const auto values = random_part(slices, static_cast<unsigned>(slices));
+      const resin::PartColumns part = part_of(values, slices, exposure, 16);
+      for (int p = 0; p < width * height; ++p) {
+        const auto slice_bits = column_of(values, slices, p);
+        const auto nodes = resin::nodes_of(slice_bits, exposure);
+        REQUIRE(static_cast<int>(nodes.size()) == part.nodes());
+        for (int n = 0; n < part.nodes(); ++n) {
+          const auto same = [&](int m) {
+            return nodes[static_cast<std::size_t>(m)] == nodes[static_cast<std::size_t>(n)];
+          };
+          int first = n;
+          int last = n;
+          while (first > 0 && same(first - 1)) --first;
+          while (last + 1 < part.nodes() && same(last + 1)) ++last;
+          const resin::NodeRun run = part.run(static_cast<std::size_t>(p), n);
+          REQUIRE(run.first == first);
+          REQUIRE(run.last == last);
+          REQUIRE(run.inside == (nodes[static_cast<std::size_t>(n)] != 0));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a survey counts features and gaps") {
+  const int slices = 150;
+  const auto values = random_part(slices, 9);
+  const resin::PartSurvey survey = resin::survey(part_of(values, slices, Exposure::continuous, 50));
+  resin::PartSurvey expected;
+  expected.gaps.resize(slices + 1);
+  for (int p = 0; p < width * height; ++p) {
+    const auto bits = column_of(values, slices, p);
+    int end = -1;
+    bool any = false;
+    for (int k = 0; k < slices; ++k) {
+      if (bits[static_cast<std::size_t>(k)] == 0) continue;
+      any = true;
+      if (k == 0 || bits[static_cast<std::size_t>(k - 1)] == 0) {
+        ++expected.features;
+        if (end >= 0) ++expected.gaps[static_cast<std::size_t>(k - end)];
+      }
+      end = k + 1;
+      expected.last_slice = std::max(expected.last_slice, k);
+    }
+    expected.columns += any;
+  }
+  CHECK(survey.columns == expected.columns);
+  CHECK(survey.features == expected.features);
+  CHECK(survey.last_slice == expected.last_slice);
+  CHECK(survey.gaps == expected.gaps);
+}
+
+TEST_CASE("slices in printing order are the columns' exact solutions, on any number of threads") {
+  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+    const int slices = 130;
+    const resin::Limits limits = limits_for(exposure);
+    const auto values = random_part(slices, 77);
+    const resin::PartColumns part = part_of(values, slices, exposure, 16);
+    const int extra = resin::extra_slices(resin::survey(part), part, limits);
+    CHECK(extra == resin::burst_slices(limits) - (exposure == Exposure::layered ? 1 : 0));
+    for (const double omega_max : {1.0, 2.5, std::numeric_limits<double>::infinity()}) {
+      std::vector<std::vector<float>> runs;
+      for (const int threads : {1, 3}) {
+        set_threads(threads);
+        resin::SliceCorrection correction(part, limits, omega_max, slices + extra);
+        std::vector<float>& all = runs.emplace_back();
+        Image slice;
+        for (int k = 0; k < slices + extra; ++k) {
+          correction.next(slice);
+          all.insert(all.end(), slice.values.begin(), slice.values.end());
+        }
+      }
+      set_threads(0);
+      CHECK(runs[0] == runs[1]);
+      for (int p = 0; p < width * height; ++p) {
+        const resin::Column column = resin::correct_column(column_of(values, slices, p), limits, omega_max, extra);
+        for (int k = 0; k < slices + extra; ++k) {
+          const double phi = runs[0][static_cast<std::size_t>(k * width * height + p)] * limits.phi_max;
+          // float storage of a value up to phi_max: half a unit in the last place
+          CHECK(std::fabs(phi - column.phi[static_cast<std::size_t>(k)]) <= 1e-7 * limits.phi_max);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("grey levels: rounding never undercures and does not add up") {
+  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+    const int slices = 130;
+    const resin::Limits limits = limits_for(exposure);
+    const auto values = random_part(slices, 3);
+    const resin::PartColumns part = part_of(values, slices, exposure, 16);
+    const int extra = resin::extra_slices(resin::survey(part), part, limits);
+    std::vector<float> levels;
+    const double dark = limits.phi_min / limits.phi_max;
+    for (int v = 0; v < 256; ++v) levels.push_back(static_cast<float>(dark + (1 - dark) * std::pow(v / 255.0, 2.2)));
+    double widest = 0;
+    for (std::size_t v = 1; v < 256; ++v) widest = std::max(widest, static_cast<double>(levels[v] - levels[v - 1]));
+    const double bound = limits.gain * widest * limits.phi_max;
+    resin::LevelCorrection correction(part, limits, 1, slices + extra, levels);
+    std::vector<std::vector<std::uint16_t>> stack(static_cast<std::size_t>(slices + extra));
+    for (int k = slices + extra; k-- > 0;) correction.previous(stack[static_cast<std::size_t>(k)]);
+    for (int p = 0; p < width * height; ++p) {
+      const auto bits = column_of(values, slices, p);
+      const resin::Column column = resin::correct_column(bits, limits, 1, extra);
+      std::vector<double> phi;
+      for (const auto& slice : stack) phi.push_back(levels[slice[static_cast<std::size_t>(p)]] * limits.phi_max);
+      const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
+      const auto nodes = resin::nodes_of(bits, exposure);
+      for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (nodes[n] != 0) CHECK(omega[n] >= 1 - resin::dose_tolerance);
+        // Where the light above the least is already there the next levels are the darkest: the surplus decays from at
+        // most one step of the levels.
+        CHECK(omega[n] <= column.omega[n] + bound + resin::dose_tolerance);
+      }
+    }
+  }
+}
+
+TEST_CASE("light that cannot print is refused with a remedy") {
+  const resin::PartColumns part = part_of(random_part(40, 1), 40, Exposure::continuous, 8);
+  resin::Limits limits = limits_for(Exposure::continuous);
+  limits.phi_max = 0.5;
+  CHECK_THROWS_WITH_AS((void)resin::extra_slices(resin::survey(part), part, limits),
+                       "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; give more light "
+                       "or print slower than 0.5 times this speed",
+                       Error);
+  limits.phi_max = 9;
+  limits.phi_min = 1.5;
+  CHECK_THROWS_AS((void)resin::extra_slices(resin::survey(part), part, limits), Error);
+  const std::vector<float> falling{0.1F, 0.5F, 0.4F, 1.0F};
+  CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(Exposure::continuous), 1, 50, falling), Error);
+}
