@@ -1,0 +1,71 @@
+// The dose that a corrected column should have at every node, in closed form [CURE19 fig 3, constraints i-iii].
+//
+// Outside features: the pointwise least dose, max(fall, rise). `fall` decays from 1 at the top edge of the feature
+// below at the minimum intensity (constraint iii); `rise` is the latest start that still reaches 1 at the bottom edge
+// of the feature above at the maximum intensity (constraint ii).
+// Inside features: the pointwise greatest dose that both edges and omega_max allow, min(fill, drain, omega_max). `fill`
+// leaves the bottom edge at the maximum rate; `drain` is what the minimum intensity still brings down to 1 at the top.
+// Neighbouring values always differ by a step that some Phi in [phi_min, phi_max] makes, because each of the four
+// curves is such a sequence and the step is monotone in the dose; so the exact solution needs no search. With
+// omega_max = 1 it is the least dose of all feasible columns, at every node at once.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "resin/curethrough.hpp"
+
+namespace vam::resin {
+
+/// Every curve is tabulated by its distance from an edge, so that a node costs two look-ups:
+/// Omega = |min(table[below - node], table[above + node])|. Values outside features are stored negative, which turns
+/// the maximum into a minimum. `below` and `above` change only where the column passes an edge.
+class TargetDose {
+ public:
+  /// For columns of up to `slices` slices, the extra ones included. omega_max >= 1 or infinity; Fault::usage otherwise.
+  TargetDose(const Limits& limits, double omega_max, int slices);
+
+  [[nodiscard]] const double* table() const { return values_.data(); }
+  [[nodiscard]] int slices() const { return slices_; }
+
+  // Offsets for a node inside a feature whose last node (window side) is `last` and first node `first`.
+  [[nodiscard]] int below_inside(int last) const { return section(fill) + last; }
+  [[nodiscard]] int above_inside(int first) const { return section(drain) - first; }
+  /// A feature that begins at node 0 stands on the platform: there is nothing behind it to cure through.
+  [[nodiscard]] int above_on_platform() const { return section(open); }
+  // Offsets for a node outside, before the feature whose first node is `next`, after the one whose last node is `last`.
+  [[nodiscard]] int below_outside(int next) const { return section(fall) + next; }
+  [[nodiscard]] int above_outside(int last) const { return section(rise) - last; }
+  [[nodiscard]] int below_dark() const { return section(dark) + slices_; }  ///< no feature further down
+  [[nodiscard]] int above_none() const { return section(none); }            ///< no feature further up
+
+ private:
+  enum Section { fill, drain, open, fall, rise, dark, none, sections };
+  [[nodiscard]] int section(Section s) const { return static_cast<int>(s) * (slices_ + 1); }
+  int slices_;
+  std::vector<double> values_;
+};
+
+/// One corrected column.
+struct Column {
+  std::vector<double> phi;    // per slice, the extra ones included; every value in [phi_min, phi_max]
+  std::vector<double> omega;  // per node, phi.size() + 1 values
+  int fused_gaps = 0;         // gaps of a single slice: there is no node in which the dose could fall below 1
+  double worst_excess = 0;    // the largest violation of a constraint, in Omega
+  [[nodiscard]] bool feasible() const { return fused_gaps == 0 && worst_excess <= dose_tolerance; }
+};
+
+/// The exact solution for part[n] = "slice n is in the part", followed by extra_slices empty slices. When no Phi
+/// satisfies every constraint the column says so and carries the nearest attempt; nothing is clipped in silence.
+[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, double omega_max,
+                                    int extra_slices);
+
+/// The conventional column: phi_max in the part, phi_min elsewhere.
+[[nodiscard]] std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits);
+
+/// Nodes of a column: 1 inside a feature. part.size() + 1 nodes when continuous, part.size() when layered.
+[[nodiscard]] std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, Exposure exposure);
+
+}  // namespace vam::resin

@@ -1,0 +1,145 @@
+#include "resin/curethrough.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "oracle/beer_law.hpp"
+
+using namespace vam;
+using resin::Exposure;
+
+namespace {
+
+std::vector<double> random_intensities(int count, double low, double high, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(low, high);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  for (double& value : values) value = uniform(random);
+  return values;
+}
+
+// Omega at every node by the oracle, against the recursion. The midpoint rule errs by (eta ln 10 / steps)^2 / 24 of the
+// dose: below 1e-9 for the thickest slice here with 2000 steps; 1e-6 is the promise.
+void compare(const resin::Process& process, std::uint32_t seed) {
+  const resin::Limits limits = resin::limits_of(process);
+  const double critical = resin::critical_intensity_mw_cm2(process);
+  const int slices = 30;
+  oracle::Print print{process.slice_um * 1e-3, process.absorbance_height_um * 1e-3, process.speed_mm_h / 3600, {}};
+  print.intensity_mw_cm2 = random_intensities(slices, process.min_intensity_mw_cm2, process.max_intensity_mw_cm2, seed);
+  std::vector<double> phi;
+  for (const double value : print.intensity_mw_cm2) phi.push_back(value / critical);
+  const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
+  REQUIRE(omega.size() == slices + 1);
+  CHECK(omega.back() == 0);
+  for (int n = 0; n < slices; ++n) {
+    const double z = n * print.slice_mm;
+    const double dose = process.exposure == Exposure::continuous ? oracle::continuous_dose_mj_cm3(print, z)
+                                                                 : oracle::layered_dose_mj_cm3(print, z);
+    const double expected = dose / process.critical_dose_mj_cm3;
+    CHECK(std::fabs(omega[static_cast<std::size_t>(n)] - expected) <= 1e-6 * expected);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the recursion is Beer's law integrated over time") {
+  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+    for (const double absorbance_um : {150.0, 500.0, 2000.0}) {
+      resin::Process process;
+      process.exposure = exposure;
+      process.absorbance_height_um = absorbance_um;
+      process.critical_dose_mj_cm3 = 173;
+      process.speed_mm_h = 800;
+      compare(process, static_cast<std::uint32_t>(absorbance_um));
+    }
+  }
+}
+
+TEST_CASE("the dose half way through a slice and the cured thickness agree with Beer's law") {
+  resin::Process process;
+  process.absorbance_height_um = 300;
+  const resin::Limits limits = resin::limits_of(process);
+  const double critical = resin::critical_intensity_mw_cm2(process);
+  oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
+  std::vector<double> phi;
+  for (const double value : print.intensity_mw_cm2) phi.push_back(value / critical);
+  const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
+  for (int n = 0; n < 12; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const double centre = oracle::continuous_dose_mj_cm3(print, (n + 0.5) * 0.05) / 576;
+    CHECK(resin::dose_at_centre(phi[i], omega[i + 1], limits) == doctest::Approx(centre).epsilon(1e-6));
+    // A threshold between the doses of both planes is crossed where the fraction says: the oracle's dose there is it.
+    const double threshold = 0.3 * omega[i] + 0.7 * omega[i + 1];
+    const double fraction = resin::cured_fraction(phi[i], omega[i + 1], threshold, limits);
+    const double depth = omega[i] > omega[i + 1] ? fraction : 1 - fraction;  // from the platform side
+    // The oracle starts the exposure of a point inside a slice at one of its 2000 steps: half a step of 110/16.
+    const double there = oracle::continuous_dose_mj_cm3(print, (n + depth) * 0.05) / 576;
+    CHECK(std::fabs(there - threshold) < 0.5 / 2000 * (1 - limits.q) * 110 / critical * 1.5);
+  }
+}
+
+TEST_CASE("cured fraction of a layer") {
+  resin::Process process;
+  process.exposure = Exposure::layered;
+  const resin::Limits limits = resin::limits_of(process);
+  CHECK(resin::cured_fraction(2, 0, 1, limits) == 1);
+  CHECK(resin::cured_fraction(0.5, 0.1, 1, limits) == 0);
+  // Dose 1.02 at the window side falls to 1 after h_a log10(1.02) = 17.2 um = 0.344 slices.
+  CHECK(resin::cured_fraction(1.0, 0.02, 1, limits) == doctest::Approx(2000 * std::log10(1.02) / 50).epsilon(1e-9));
+}
+
+TEST_CASE("the worked example of the paper") {
+  const resin::Process process;
+  CHECK(resin::critical_intensity_mw_cm2(process) == doctest::Approx(16.0));  // physics page, section 9
+  const resin::Limits limits = resin::limits_of(process);
+  CHECK(limits.q == doctest::Approx(std::pow(10, -0.025)));
+  CHECK(limits.hold() == 1);
+  CHECK(resin::burst_slices(limits) == 3);  // [CURE19 fig 4]: slices 51..53 beyond the 50
+}
+
+TEST_CASE("a burst is the fewest slices that reach the critical dose") {
+  for (const double phi_max : {1.001, 1.1, 2.0, 6.3, 17.0, 100.0}) {
+    resin::Limits limits = resin::limits_of({});
+    limits.phi_max = phi_max;
+    const int count = resin::burst_slices(limits);
+    const auto reached = [&](int slices) {
+      return resin::dose_at_nodes(std::vector<double>(static_cast<std::size_t>(slices), phi_max), limits)[0];
+    };
+    CHECK(reached(count) >= 1 - 1e-9);
+    CHECK(reached(count - 1) < 1);
+  }
+  resin::Limits weak = resin::limits_of({});
+  weak.phi_max = 1;
+  CHECK(resin::burst_slices(weak) == 0);
+}
+
+TEST_CASE("impossible processes are refused with the numbers") {
+  const auto message = [](const resin::Process& process) {
+    try {
+      (void)resin::limits_of(process);
+    } catch (const Error& error) {
+      CHECK(error.fault == Fault::data);
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  resin::Process process;
+  process.min_intensity_mw_cm2 = 110;
+  CHECK(message(process) ==
+        "intensity range: the minimum, 110 mW/cm2, must be at least 0 and below the maximum, 110 mW/cm2");
+  process = {};
+  process.slice_um = 1001;
+  process.absorbance_height_um = 100;
+  CHECK(message(process).find("more than ten absorbance heights") != std::string::npos);
+  process.slice_um = 1000;
+  CHECK(message(process) == "accepted");
+  process = {};
+  process.speed_mm_h = 0;
+  CHECK(message(process) == "print speed: 0 mm/h is not a positive number");
+  process = {};
+  process.absorbance_height_um = std::nan("");
+  CHECK(message(process).find("absorbance height") == 0);
+}

@@ -1,0 +1,271 @@
+#include "resin/target_dose.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "oracle/simplex.hpp"
+
+using namespace vam;
+using resin::Exposure;
+using Part = std::vector<std::uint8_t>;
+
+namespace {
+
+// The rung column of [CURE19 fig 2]: slices 1..50 of the paper are 0..49 here, rungs 10..19 and 30..39.
+Part ladder() {
+  Part part(50, 0);
+  for (std::size_t n = 0; n < 50; ++n) part[n] = (n / 10) % 2 == 1;
+  return part;
+}
+
+// Features of random heights and gaps of at least two slices, sometimes standing on the platform.
+Part random_part(std::mt19937& random, int slices, int tallest, int narrowest_gap) {
+  Part part(static_cast<std::size_t>(slices), 0);
+  std::uniform_int_distribution<int> height(1, tallest);
+  std::uniform_int_distribution<int> gap(narrowest_gap, tallest);
+  int n = std::uniform_int_distribution<int>(0, 2)(random) == 0 ? 0 : gap(random);
+  while (n < slices) {
+    const int end = std::min(slices, n + height(random));
+    std::fill(part.begin() + n, part.begin() + end, std::uint8_t{1});
+    n = end + gap(random);
+  }
+  return part;
+}
+
+resin::Limits limits_with(Exposure exposure, double eta, double phi_min, double phi_max) {
+  const double q = std::pow(10.0, -eta);
+  return {exposure, q, exposure == Exposure::continuous ? 1 - q : q, phi_min, phi_max};
+}
+
+// Physics section 9 written out node by node, from phi alone, without the solver's helpers. `slack` is rounding.
+std::string violation(const Part& part, const std::vector<double>& phi, const resin::Limits& limits, double omega_max) {
+  const double slack = 1e-9;
+  const int slices = static_cast<int>(phi.size());
+  const auto solid = [&](int n) {
+    return n >= 0 && n < static_cast<int>(part.size()) && part[static_cast<std::size_t>(n)] != 0;
+  };
+  double omega = 0;
+  for (int n = slices; n >= 0; --n) {
+    if (n < slices) {
+      const double value = phi[static_cast<std::size_t>(n)];
+      if (!(value >= limits.phi_min - slack && value <= limits.phi_max + slack)) return "Phi out of range";
+      omega = limits.gain * value + limits.q * omega;
+    }
+    const bool here = solid(n);
+    const bool before = limits.exposure == Exposure::continuous && solid(n - 1);
+    if (!here && !before) {
+      if (omega >= 1) return "cured outside at node " + std::to_string(n);
+      continue;
+    }
+    if (omega < 1 - slack) return "undercured at node " + std::to_string(n);
+    if (omega > omega_max + slack) return "above omega_max at node " + std::to_string(n);
+    const bool top_edge = here && n > 0 && !solid(n - 1);
+    const bool bottom_edge = limits.exposure == Exposure::continuous ? !here : !solid(n + 1);
+    if ((top_edge || bottom_edge) && std::fabs(omega - 1) > slack) return "edge not at 1, node " + std::to_string(n);
+  }
+  return "";
+}
+
+double log_uniform(std::mt19937& random, double low, double high) {
+  return low * std::pow(high / low, std::uniform_real_distribution<double>(0, 1)(random));
+}
+
+int needed_extra(const resin::Limits& limits) {
+  return std::max(0, resin::burst_slices(limits) - (limits.exposure == Exposure::layered ? 1 : 0));
+}
+
+}  // namespace
+
+TEST_CASE("the paper's ladder, uncorrected: one fused feature with an undercured bottom edge") {
+  const resin::Limits limits = resin::limits_of({});
+  const std::vector<double> omega = resin::dose_at_nodes(resin::plain_column(ladder(), limits), limits);
+  for (std::size_t n = 20; n <= 30; ++n) CHECK(omega[n] > 1);  // the gap between the rungs is solid
+  for (std::size_t n = 30; n <= 37; ++n) CHECK(omega[n] > 1);
+  CHECK(omega[39] < 1);  // [CURE19]: "correctly cured from zeta = 31 to ~38 then undercured"
+  CHECK(omega[40] < 1);
+}
+
+TEST_CASE("the paper's ladder, corrected with omega_max = 1") {
+  const resin::Limits limits = resin::limits_of({});
+  const resin::Column column = resin::correct_column(ladder(), limits, 1, 3);
+  CHECK(column.feasible());
+  CHECK(violation(ladder(), column.phi, limits, 1) == "");
+  for (const std::size_t edge : {10, 20, 30, 40}) CHECK(std::fabs(column.omega[edge] - 1) < 1e-6);
+  for (std::size_t n = 10; n < 20; ++n) CHECK(column.phi[n] == doctest::Approx(1).epsilon(1e-9));
+  for (std::size_t n = 30; n < 40; ++n) CHECK(column.phi[n] == doctest::Approx(1).epsilon(1e-9));
+  CHECK(column.phi[40] == doctest::Approx(limits.phi_max));  // the burst at the bottom edge
+  CHECK(column.phi[41] == doctest::Approx(limits.phi_max));
+  for (std::size_t n = 43; n < 50; ++n) CHECK(column.phi[n] == doctest::Approx(limits.phi_min));
+}
+
+TEST_CASE("a rail that reaches the last slice needs the paper's three extra slices") {
+  const resin::Limits limits = resin::limits_of({});
+  const Part rail(50, 1);
+  CHECK_FALSE(resin::correct_column(rail, limits, 1, 2).feasible());
+  CHECK(resin::correct_column(rail, limits, 1, 2).worst_excess > 0.1);
+  const resin::Column column = resin::correct_column(rail, limits, 1, 3);
+  CHECK(column.feasible());
+  CHECK(violation(rail, column.phi, limits, 1) == "");
+}
+
+TEST_CASE("omega_max: the dose inside follows the limit, the edges stay") {
+  const resin::Limits limits = resin::limits_of({});
+  Part part(200, 0);
+  std::fill(part.begin() + 40, part.begin() + 160, std::uint8_t{1});
+  for (const double omega_max : {1.0, 2.0, 3.0, std::numeric_limits<double>::infinity()}) {
+    const resin::Column column = resin::correct_column(part, limits, omega_max, 0);
+    CHECK(violation(part, column.phi, limits, omega_max) == "");
+    const double peak = *std::max_element(column.omega.begin(), column.omega.end());
+    if (std::isfinite(omega_max)) CHECK(peak == doctest::Approx(omega_max));
+    if (!std::isfinite(omega_max)) CHECK(peak > 4);
+  }
+}
+
+TEST_CASE("thousands of random columns: every constraint holds, or the column is in the infeasible report") {
+  std::mt19937 random(20190700);
+  int feasible = 0;
+  int infeasible = 0;
+  for (int trial = 0; trial < 6000; ++trial) {
+    const auto exposure = trial % 3 == 2 ? Exposure::layered : Exposure::continuous;
+    const double phi_min = log_uniform(random, 1e-4, 1.5);
+    const resin::Limits limits =
+        limits_with(exposure, log_uniform(random, 3e-3, 1.0), phi_min, phi_min * log_uniform(random, 1.01, 1e4));
+    const Part part = random_part(random, 20 + trial % 180, 30, 1);
+    const double omega_max = trial % 5 == 0 ? std::numeric_limits<double>::infinity() : log_uniform(random, 1, 8);
+    const int extra = trial % 7 == 0 ? 0 : needed_extra(limits);
+    const resin::Column column = resin::correct_column(part, limits, omega_max, extra);
+    const std::string problem = violation(part, column.phi, limits, omega_max);
+    for (const double phi : column.phi) REQUIRE((phi >= limits.phi_min && phi <= limits.phi_max));
+    if (column.feasible()) {
+      ++feasible;
+      INFO("trial " << trial);
+      CHECK(problem == "");
+    } else {
+      ++infeasible;
+      CHECK((column.fused_gaps > 0 || problem != ""));
+    }
+  }
+  CHECK(feasible > 1000);  // both outcomes are exercised
+  CHECK(infeasible > 1000);
+}
+
+namespace {
+
+// The constraints as a linear program in y = phi - phi_min >= 0. Omega(n) = sum_{m >= n} gain q^(m-n) phi_m.
+oracle::LinearProgram program_of(const Part& part, const resin::Limits& limits, double omega_max, int slices) {
+  const auto count = static_cast<std::size_t>(slices);
+  oracle::LinearProgram lp;
+  lp.cost.assign(count, 0);
+  const auto add = [&](const std::vector<double>& row, double bound) {
+    lp.a.push_back(row);
+    lp.b.push_back(bound);
+  };
+  const auto solid = [&](int n) {
+    return n >= 0 && n < static_cast<int>(part.size()) && part[static_cast<std::size_t>(n)] != 0;
+  };
+  for (std::size_t n = 0; n < count; ++n) {
+    std::vector<double> row(count, 0);
+    row[n] = 1;
+    add(row, limits.phi_max - limits.phi_min);
+  }
+  const bool continuous = limits.exposure == Exposure::continuous;
+  for (int n = 0; n <= slices; ++n) {
+    std::vector<double> up(count, 0);
+    double base = 0;
+    for (int m = n; m < slices; ++m) {
+      up[static_cast<std::size_t>(m)] = limits.gain * std::pow(limits.q, m - n);
+      base += up[static_cast<std::size_t>(m)] * limits.phi_min;
+    }
+    std::vector<double> down = up;
+    for (double& value : down) value = -value;
+    const bool here = solid(n);
+    const bool before = continuous && solid(n - 1);
+    if (!here && !before) {
+      add(up, 1 - base);
+      continue;
+    }
+    add(down, base - 1);  // Omega >= 1
+    const bool edge = (here && n > 0 && !solid(n - 1)) || (continuous ? !here : !solid(n + 1));
+    const double high = edge ? 1 : omega_max;
+    if (std::isfinite(high)) add(up, high - base);
+  }
+  return lp;
+}
+
+}  // namespace
+
+TEST_CASE("no feasible column has less dose: a linear program finds the same optimum") {
+  std::mt19937 random(5);
+  int solved = 0;
+  int impossible = 0;
+  for (int trial = 0; trial < 240; ++trial) {
+    const auto exposure = trial % 3 == 2 ? Exposure::layered : Exposure::continuous;
+    const double phi_min = log_uniform(random, 1e-3, 1.2);
+    const resin::Limits limits =
+        limits_with(exposure, log_uniform(random, 0.02, 0.5), phi_min, phi_min * log_uniform(random, 1.5, 500));
+    const Part part = random_part(random, 14, 5, 2);
+    const int extra = trial % 4 == 0 ? 0 : std::min(6, needed_extra(limits));
+    const int slices = static_cast<int>(part.size()) + extra;
+    const double omega_max = trial % 2 == 0 ? 3.0 : std::numeric_limits<double>::infinity();
+    oracle::LinearProgram lp = program_of(part, limits, omega_max, slices);
+    const resin::Column least = resin::correct_column(part, limits, 1, extra);
+
+    // Total light: sum of phi.
+    std::fill(lp.cost.begin(), lp.cost.end(), 1.0);
+    const auto best = oracle::minimise(lp);
+    INFO("trial " << trial);
+    // omega_max = 1 asks for phi_min <= hold(); a looser limit may be feasible without it.
+    if (limits.settled(limits.phi_min) < 1) CHECK(best.has_value() == least.feasible());
+    if (!best || !least.feasible()) {
+      ++impossible;
+      continue;
+    }
+    ++solved;
+    double total = 0;
+    for (const double phi : least.phi) total += phi;
+    const double optimum = best->value + slices * limits.phi_min;
+    CHECK(total == doctest::Approx(optimum).epsilon(1e-7));  // the simplex stops at reduced costs of 1e-12
+
+    // Greatest dose inside for this omega_max, least outside: every node is at its own extreme at once.
+    const resin::Column full = resin::correct_column(part, limits, omega_max, extra);
+    REQUIRE(full.feasible());
+    const auto nodes = resin::nodes_of(part, exposure);
+    const int probe = trial % static_cast<int>(nodes.size());
+    const bool inside = nodes[static_cast<std::size_t>(probe)] != 0;
+    double base = 0;
+    std::fill(lp.cost.begin(), lp.cost.end(), 0.0);
+    for (int m = probe; m < slices; ++m) {
+      const double weight = limits.gain * std::pow(limits.q, m - probe);
+      lp.cost[static_cast<std::size_t>(m)] = inside ? -weight : weight;
+      base += weight * limits.phi_min;
+    }
+    const auto extreme = oracle::minimise(lp);
+    REQUIRE(extreme.has_value());
+    const double dose = base + (inside ? -extreme->value : extreme->value);
+    CHECK(full.omega[static_cast<std::size_t>(probe)] == doctest::Approx(dose).epsilon(1e-7));
+  }
+  CHECK(solved > 60);
+  CHECK(impossible > 20);
+}
+
+TEST_CASE("a layer-by-layer print has sharp bottom edges and needs no extra layers when one exposure is enough") {
+  resin::Process process;
+  process.exposure = Exposure::layered;
+  const resin::Limits limits = resin::limits_of(process);
+  CHECK(limits.gain * limits.phi_max < 1);  // not here: 110 mW/cm2 for 0.18 s
+  process.speed_mm_h = 100;
+  const resin::Limits slow = resin::limits_of(process);
+  const resin::Column column = resin::correct_column(Part(20, 1), slow, 1, 0);
+  CHECK(column.feasible());
+  CHECK(column.omega[19] == doctest::Approx(1));
+  CHECK(column.phi[0] == doctest::Approx(slow.hold()));
+}
+
+TEST_CASE("omega_max below 1 is a usage error") {
+  CHECK_THROWS_WITH_AS((void)resin::correct_column(Part(3, 1), resin::limits_of({}), 0.5, 0),
+                       "omega-max: 0.5 is below 1, the dose that cures; give 1, more than 1, or inf", Error);
+}
