@@ -1,0 +1,90 @@
+#include "model/conditions.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace vam::model {
+
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const auto& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+double number(const std::string& text, const std::string& clause) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || rest != end || !std::isfinite(value)) {
+    throw Error{Fault::usage, "'" + clause + "': '" + text + "' is not a number; write for example ver<=0.01"};
+  }
+  return value;
+}
+
+Condition parse_clause(const std::string& clause, const std::vector<std::string>& known) {
+  const auto at = clause.find_first_of("<>=");
+  if (at == std::string::npos) {
+    throw Error{Fault::usage, "'" + clause + "' has no relation (<=, >=, <, >, =); write for example ver<=0.01"};
+  }
+  const bool two = clause[at] != '=' && at + 1 < clause.size() && clause[at + 1] == '=';
+  Condition condition;
+  condition.name = trimmed(clause.substr(0, at));
+  condition.relation = clause.substr(at, two ? 2 : 1);
+  if (std::find(known.begin(), known.end(), condition.name) == known.end()) {
+    throw Error{Fault::usage,
+                "'" + clause + "': no figure is called '" + condition.name + "'; there are " + joined(known)};
+  }
+  condition.bound = number(trimmed(clause.substr(at + condition.relation.size())), clause);
+  return condition;
+}
+
+}  // namespace
+
+std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known) {
+  std::vector<Condition> conditions;
+  for (std::size_t from = 0; from <= text.size();) {
+    const auto comma = std::min(text.find(',', from), text.size());
+    const std::string clause = trimmed(text.substr(from, comma - from));
+    if (clause.empty()) {
+      throw Error{Fault::usage, "'" + text + "' has an empty condition; write for example 'ver<=0.01,pw>=0'"};
+    }
+    conditions.push_back(parse_clause(clause, known));
+    from = comma + 1;
+  }
+  return conditions;
+}
+
+bool holds(const Condition& condition, double value) {
+  if (condition.relation == "<=") return value <= condition.bound;
+  if (condition.relation == ">=") return value >= condition.bound;
+  if (condition.relation == "<") return value < condition.bound;
+  if (condition.relation == ">") return value > condition.bound;
+  return value == condition.bound;
+}
+
+std::vector<std::string> unmet(const std::vector<Condition>& conditions,
+                               const std::function<double(const std::string&)>& value) {
+  std::vector<std::string> lines;
+  for (const auto& c : conditions) {
+    const double is = value(c.name);
+    if (!holds(c, is)) {
+      lines.push_back(c.name + " = " + format_number(is) + ", but " + c.name + c.relation + format_number(c.bound) +
+                      " is required");
+    }
+  }
+  return lines;
+}
+
+}  // namespace vam::model

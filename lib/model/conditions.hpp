@@ -1,0 +1,27 @@
+// Conditions on named figures, as in --require 'ver<=0.01,pw>=0'.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vam::model {
+
+struct Condition {
+  std::string name;
+  std::string relation;  // <= >= < > =
+  double bound = 0;
+};
+
+/// "name relation number" separated by commas; blanks are allowed. Names must be among `known`.
+/// Throws Fault::usage naming the clause that is wrong and the names that exist.
+[[nodiscard]] std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known);
+
+[[nodiscard]] bool holds(const Condition& condition, double value);
+
+/// "ver = 0.02, but ver<=0.01 is required" for every condition that does not hold (or whose figure is not a number).
+[[nodiscard]] std::vector<std::string> unmet(const std::vector<Condition>& conditions,
+                                             const std::function<double(const std::string&)>& value);
+
+}  // namespace vam::model
