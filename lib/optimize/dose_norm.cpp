@@ -1,0 +1,72 @@
+// Background and dose normalisation of Orth et al. 2022 [OST22 Methods, fig S6].
+#include <algorithm>
+
+#include "optimize/method.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+// Dose below this part of what is asked for is taken as this: a void that gets no light at all would otherwise ask for
+// an infinite correction.
+constexpr float least_ratio = 0.05F;
+
+class DoseNorm final : public Method {
+ public:
+  using Method::Method;
+
+  /// I_0 = max(f, B) inside the writable circle; S_0 = filter(A I_0), floored; D_0 = A* S_0.
+  void start(const Problem& problem, const Operator& light, Iterate& iterate) override {
+    goal_ = problem.target;
+    const auto background = static_cast<float>(options_.background);
+    for_values(goal_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        if (problem.labels[s][i] != Label::outside) goal_[s].values[i] = std::max(goal_[s].values[i], background);
+      }
+    });
+    goal_sums_ = sums(goal_, problem);
+    asked_ = goal_;
+    project(problem, light, iterate);
+  }
+
+  void resume(const Problem& problem, const Operator& light, Iterate& iterate) override {
+    std::vector<Slab> given = std::move(iterate.g);
+    start(problem, light, iterate);
+    iterate.g = std::move(given);
+    light.adjoint(iterate.g, iterate.dose);
+  }
+
+  /// D scaled to the mean of I_0; N = D / I_0; I_{k+1} = I_k / N. One step is the paper's I_1 = I_0 / N_0; repeated,
+  /// the correction accumulates, so that it settles where D is proportional to I_0.
+  void step(const Problem& problem, const Operator& light, Iterate& iterate) override {
+    const PerSlice dose_sums = sums(iterate.dose, problem);
+    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const float sum = dose_sums[s][i % lanes];
+        const float goal = goal_[s].values[i];
+        if (sum <= 0 || goal <= 0) continue;
+        const float ratio = iterate.dose[s].values[i] * (goal_sums_[s][i % lanes] / sum) / goal;
+        asked_[s].values[i] /= std::max(ratio, least_ratio);
+      }
+    });
+    project(problem, light, iterate);
+  }
+
+  [[nodiscard]] int usual_iterations() const override { return 1; }
+
+ private:
+  void project(const Problem& problem, const Operator& light, Iterate& iterate) {
+    filtered_projections(light, asked_, iterate.g);
+    clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
+    Method::resume(problem, light, iterate);
+  }
+
+  std::vector<Slab> goal_, asked_;  // I_0, I_k
+  PerSlice goal_sums_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_dose_norm(const MethodOptions& options) { return std::make_unique<DoseNorm>(options); }
+
+}  // namespace vam::optimize

@@ -1,0 +1,97 @@
+// A pass: the up to 64 slices that are optimised together, what their voxels must become, and arithmetic slice by
+// slice.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "model/dose_metrics.hpp"
+#include "tomo/slab.hpp"
+
+namespace vam::optimize {
+
+using model::Label;
+using tomo::lanes;
+using tomo::Slab;
+
+inline constexpr int slabs_per_pass = 4;
+inline constexpr int slices_per_pass = slabs_per_pass * lanes;
+
+/// The disc that light reaches, in voxels of the slice.
+struct Circle {
+  double axis_x = 0;
+  double axis_y = 0;
+  double radius = 0;
+  [[nodiscard]] bool contains(int x, int y) const {
+    const double dx = x - axis_x;
+    const double dy = y - axis_y;
+    return dx * dx + dy * dy <= radius * radius;
+  }
+};
+
+/// The doses between which the print's threshold may lie: void below low, part above high. The printing threshold is
+/// in the middle, the same number for every slice.
+struct Window {
+  double low = 0.7;
+  double high = 0.9;
+  [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
+};
+
+struct Problem {
+  int slices = 0;                          // lanes in use, from the first
+  std::vector<Slab> target;                // coverage 0...1, zero outside the circle
+  std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values
+  Window window;
+};
+
+/// `count` row-major slices of width x height, one after the other. What lies outside the circle is left out (check
+/// with reach()). A slice that has coverage but no voxel wholly inside the part, such as a thin wall's, takes the
+/// voxels with at least half of its largest coverage for part: otherwise nothing would ask for it to be printed.
+[[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
+                                   const Window& window);
+
+/// Distance from the axis to the farthest voxel centre with coverage, in voxels; 0 for an empty slice.
+[[nodiscard]] double reach(const float* slice, int width, int height, double axis_x, double axis_y);
+
+/// One number for each slice of the pass: values[slab][lane].
+using PerSlice = std::vector<std::array<float, lanes>>;
+
+/// As many slabs of that shape as `like`.
+[[nodiscard]] std::vector<Slab> slabs(std::size_t count, int width, int height);
+
+/// work(slab, first, last): the slab's values [first, last), whole lane groups, shared among the threads.
+template <class Work>
+void for_values(std::span<const Slab> like, const Work& work) {
+  if (like.empty()) return;
+  const int rows = like[0].height;
+  const std::size_t row = static_cast<std::size_t>(like[0].width) * lanes;
+  parallel_for(static_cast<int>(like.size()) * rows, [&](int i) {
+    const std::size_t first = static_cast<std::size_t>(i % rows) * row;
+    work(static_cast<std::size_t>(i / rows), first, first + row);
+  });
+}
+
+/// Smallest value of each slice.
+[[nodiscard]] PerSlice minima(std::span<const Slab> images);
+/// Largest value of each slice inside the circle, at least 0.
+[[nodiscard]] PerSlice maxima(std::span<const Slab> images, const Problem& problem);
+/// Sum of each slice's values inside the circle.
+[[nodiscard]] PerSlice sums(std::span<const Slab> images, const Problem& problem);
+/// images[slice] *= factor[slice].
+void scale(std::span<Slab> images, const PerSlice& factor);
+/// images = max(images, floor).
+void clip_below(std::span<Slab> images, float floor);
+
+/// Dose statistics of each slice in use.
+[[nodiscard]] std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem);
+
+[[nodiscard]] std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem);
+
+/// The factor for each slice that puts window.threshold() in the middle of the slice's own process window or, where
+/// that window is wider than needed, its least part dose on window.high; 0 for a slice without part. This is what makes
+/// one threshold dose print all slices.
+[[nodiscard]] PerSlice to_common_threshold(const std::vector<model::DoseMetrics>& slices, const Problem& problem);
+
+}  // namespace vam::optimize

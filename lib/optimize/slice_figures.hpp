@@ -1,0 +1,27 @@
+// Figures of many slices while they are being optimised, each still at its own scale.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/dose_metrics.hpp"
+
+namespace vam::optimize {
+
+/// Every slice is judged at its own best threshold and largest dose, which is fair because they are brought to one
+/// threshold in the end. VER, IoU and CV are means by voxel count; PW is that of the worst slice, IPDR the largest.
+class SliceFigures {
+ public:
+  void add(const model::DoseMetrics& slice, int times = 1);
+  void add(const SliceFigures& other);
+  [[nodiscard]] model::DoseMetrics mean() const;
+
+  /// ver, pw, ipdr, cv, iou
+  static const std::vector<std::string>& names();
+
+ private:
+  double part_ = 0, counted_ = 0, errors_ = 0, iou_ = 0, cv_ = 0;
+  double pw_ = 2, ipdr_ = 0;
+};
+
+}  // namespace vam::optimize

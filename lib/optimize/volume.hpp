@@ -1,0 +1,42 @@
+// A whole volume, pass by pass in constant memory: distinct slices are packed, optimised, brought to one printing
+// threshold, and handed out in ascending order.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "optimize/iterate.hpp"
+
+namespace vam::optimize {
+
+struct VolumeTask {
+  int slices = 0;
+  Circle circle;
+  Window window;
+  Limits limits;
+  bool watch = false;                                      // fill the trace
+  std::size_t keep_bytes = std::size_t{512} << 20U;        // finished projections held for identical slices to come
+  std::function<void(int k, int count, float* out)> read;  // `count` row-major slices from k on
+  std::function<Image(int k)> initial;                     // image to start from (fluence); none = from nothing
+  std::function<std::unique_ptr<Method>()> make;
+  std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
+  std::function<void(int slices)> progress;              // so many more slices are done; may be empty
+};
+
+struct VolumeOutcome {
+  int jobs = 0;                           // distinct slices computed
+  int iterations = 0;                     // most of any pass
+  std::string reason;                     // of the pass with most iterations
+  std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
+  model::DoseMetrics metrics;             // of the result, at the common threshold
+  double efficiency = 0;
+};
+
+/// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
+/// the circle.
+VolumeOutcome optimise(const VolumeTask& task, const Operator& light);
+
+}  // namespace vam::optimize

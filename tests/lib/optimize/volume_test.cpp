@@ -1,0 +1,162 @@
+#include "optimize/volume.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "optimize/schedule.hpp"
+#include "oracle/part_2d.hpp"
+#include "parts.hpp"
+
+using namespace vam::optimize;
+
+namespace {
+
+constexpr int size = 64;
+constexpr int angles = 90;
+
+struct Written {
+  std::vector<vam::Image> images;
+  VolumeOutcome outcome;
+};
+
+Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {}) {
+  const ParallelOperator light(parts::turn(size, angles));
+  Written result;
+  task.slices = static_cast<int>(slices.size());
+  if (task.circle.radius == 0) task.circle = parts::circle(size);
+  task.read = [&](int k, int count, float* out) {
+    for (int i = 0; i < count; ++i)
+      out = std::copy(slices[static_cast<std::size_t>(k + i)].begin(), slices[static_cast<std::size_t>(k + i)].end(),
+                      out);
+  };
+  if (!task.make) task.make = [] { return make_method("dose-norm", {}); };
+  task.write = [&](int k, const vam::Image& image) {
+    CHECK(k == static_cast<int>(result.images.size()));
+    result.images.push_back(image);
+  };
+  result.outcome = optimise(task, light);
+  return result;
+}
+
+std::vector<float> dose_of(const vam::Image& image) {
+  const auto turn = parts::turn(size, angles);
+  Slab sinogram(size, angles);
+  vam::tomo::pack(image.values.data(), 1, sinogram);
+  Slab dose(size, size);
+  vam::tomo::adjoint(turn, {&sinogram, 1}, {&dose, 1});
+  std::vector<float> values(size * size);
+  vam::tomo::unpack(dose, 1, values.data());
+  for (float& v : values) v *= static_cast<float>(turn.angle_step_rad);
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("a constant cross-section costs one slice, and equal slices get equal projections") {
+  const auto wheel = oracle::wheel(size);
+  const std::vector<float> empty(size * size, 0.0F);
+  std::vector<std::vector<float>> slices(100, wheel);
+  slices.front() = slices.back() = empty;
+  const auto result = run(slices);
+  CHECK(result.outcome.jobs == 2);
+  REQUIRE(result.images.size() == 100);
+  CHECK(result.images[1].values == result.images[98].values);
+  CHECK(*std::max_element(result.images[0].values.begin(), result.images[0].values.end()) == 0.0F);
+}
+
+TEST_CASE("one threshold dose prints all slices: the middle of the window, in every slice") {
+  const auto disc = [](double radius) {
+    return oracle::draw(size, [=](double x, double y) { return std::hypot(x - 4, y) < radius; });
+  };
+  const std::vector<std::vector<float>> slices{disc(4), disc(12), disc(24), oracle::wheel(size)};
+  VolumeTask task;
+  task.make = [] { return make_method("fbp", {}); };  // clipping alone gives each of them another scale
+  const auto result = run(slices, task);
+  for (std::size_t s = 0; s < slices.size(); ++s) {
+    CAPTURE(s);
+    const auto dose = dose_of(result.images[s]);
+    vam::model::DoseStatistics statistics;
+    for (std::size_t i = 0; i < dose.size(); ++i) {
+      if (parts::circle(size).contains(static_cast<int>(i) % size, static_cast<int>(i) / size))
+        statistics.add(dose[i], vam::model::label_of(slices[s][i]));
+    }
+    const auto m = statistics.metrics();
+    CHECK(m.min_part > task.window.threshold() * 0.9);
+    const bool middle = std::abs(m.iou_threshold - task.window.threshold()) < 1e-3;
+    const bool wide = std::abs(m.min_part - task.window.high) < 1e-3 && m.max_void < task.window.threshold();
+    CHECK((middle || wide));
+  }
+}
+
+TEST_CASE("more slices than a pass come out in order, each as if alone") {
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 70; ++k) {
+    slices.push_back(oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
+  }
+  const auto all = run(slices);
+  CHECK(all.outcome.jobs == 70);
+  const auto alone = run({slices[66]});
+  // The filter transforms two slices at a time, so a neighbour changes the rounding: a few ulp of the largest value.
+  const auto& want = alone.images[0].values;
+  const float largest = *std::max_element(want.begin(), want.end());
+  float worst = 0;
+  for (std::size_t i = 0; i < want.size(); ++i) worst = std::max(worst, std::abs(all.images[66].values[i] - want[i]));
+  CHECK(worst < 1e-5F * largest);
+}
+
+TEST_CASE("a part beyond the light is refused with both radii") {
+  VolumeTask task;
+  task.circle = {31.5, 31.5, 20};
+  CHECK_THROWS_WITH_AS(run({oracle::wheel(size)}, task), doctest::Contains("light reaches only 20;"), vam::Error);
+}
+
+TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
+  const std::vector<std::vector<float>> slices{oracle::wheel(size)};
+  VolumeTask task;
+  task.watch = true;
+  task.make = [] { return make_method("cal", {}); };
+  task.limits.iterations = 500;
+  task.limits.until = vam::model::parse_conditions("iou>=0.9", {"ver", "pw", "ipdr", "cv", "iou"});
+  const auto goal = run(slices, task);
+  CHECK(goal.outcome.reason == "goal");
+  CHECK(goal.outcome.trace.back().iou >= 0.9);
+  CHECK(static_cast<int>(goal.outcome.trace.size()) == goal.outcome.iterations + 1);
+  task.limits.until.clear();
+  const auto stalled = run(slices, task);
+  CHECK(stalled.outcome.reason == "no progress");
+  CHECK(stalled.outcome.iterations < 500);
+}
+
+TEST_CASE("projections to start from are taken up") {
+  const std::vector<std::vector<float>> slices{oracle::wheel(size)};
+  VolumeTask task;
+  task.limits.iterations = 20;
+  task.make = [] { return make_method("cal", {}); };
+  const auto first = run(slices, task);
+  task.limits.iterations = 0;
+  task.initial = [&](int k) { return first.images[static_cast<std::size_t>(k)]; };
+  const auto again = run(slices, task);
+  CHECK(again.outcome.metrics.pw == doctest::Approx(first.outcome.metrics.pw).epsilon(1e-4));
+}
+
+TEST_CASE("the schedule forgets results that would be held too long") {
+  std::vector<Digest> slices;
+  for (std::uint64_t i : {1U, 1U, 2U, 3U, 4U, 1U, 4U}) slices.push_back({i, i});
+  const auto generous = make_schedule(slices, 10);
+  CHECK(generous.job_of_slice == std::vector<int>{0, 0, 1, 2, 3, 0, 3});
+  CHECK(generous.last_slice == std::vector<int>{5, 2, 3, 6});
+  const auto tight = make_schedule(slices, 1);
+  CHECK(tight.job_of_slice == std::vector<int>{0, 0, 1, 2, 3, 4, 3});
+}
+
+TEST_CASE("digests tell slices apart by one bit and by order") {
+  const std::vector<float> a{1, 2, 3};
+  const std::vector<float> b{1, 2, 3.0000002F};
+  const std::vector<float> c{2, 1, 3};
+  CHECK(digest(a) == digest(std::vector<float>{1, 2, 3}));
+  CHECK(digest(a) != digest(b));
+  CHECK(digest(a) != digest(c));
+}
