@@ -17,6 +17,7 @@
 #include "io/exr_attributes.hpp"
 #include "io/exr_format.hpp"
 #include "io/exr_stack.hpp"
+#include "io/finite.hpp"
 #include "io/stream.hpp"
 
 namespace vam::io {
@@ -93,8 +94,8 @@ Layout checked_layout(const Imf::Header& part) {
 }
 
 void check_finite(const Image& image, std::size_t index) {
+  if (all_finite(image.values.data(), image.size())) return;
   const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float v) { return !std::isfinite(v); });
-  if (bad == image.values.end()) return;
   const auto at = bad - image.values.begin();
   throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
                            " of image " + std::to_string(index) + " is not a finite number");

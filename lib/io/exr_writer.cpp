@@ -15,6 +15,7 @@
 #include "io/exr_attributes.hpp"
 #include "io/exr_format.hpp"
 #include "io/exr_stack.hpp"
+#include "io/finite.hpp"
 #include "io/stream.hpp"
 
 namespace vam::io {
@@ -39,6 +40,14 @@ Imf::Compression compression_named(const std::string& name) {
 bool same(const ImageInfo& a, const ImageInfo& b) {
   return a.z_mm == b.z_mm && a.has_angle == b.has_angle && a.has_time == b.has_time &&
          (!a.has_angle || a.angle_deg == b.angle_deg) && (!a.has_time || a.time_s == b.time_s);
+}
+
+void check_half(const Image& image, const std::string& what) {
+  float largest = 0;
+  for (const float value : image.values) largest = std::max(largest, std::abs(value));
+  if (largest <= largest_half) return;
+  throw Error{Fault::data,
+              what + " has the value " + format_number(largest) + ", but half goes to 65504 only; leave out --half"};
 }
 
 std::vector<ImageInfo> all_implied(const StackInfo& info) {
@@ -145,17 +154,10 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
   if (done >= about.size() || image.width != info.width || image.height != info.height) {
     throw Error{Fault::bug, what + " does not belong to the " + std::to_string(info.count) + " announced"};
   }
-  float largest = 0;
-  bool finite = true;
-  for (const float value : image.values) {
-    largest = std::max(largest, std::abs(value));
-    finite = finite && std::isfinite(value);
+  if (!all_finite(image.values.data(), image.size())) {
+    throw Error{Fault::bug, what + " has a pixel that is not a finite number"};
   }
-  if (!finite) throw Error{Fault::bug, what + " has a pixel that is not a finite number"};
-  if (type == Imf::HALF && largest > largest_half) {
-    throw Error{Fault::data,
-                what + " has the value " + format_number(largest) + ", but half goes to 65504 only; leave out --half"};
-  }
+  if (type == Imf::HALF) check_half(image, what);
   if (!settled) settle(own);
   if (!same(own, about[done])) {
     const ImageInfo& promised = about[done];
