@@ -126,17 +126,18 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
   return binned(image, binning);
 }
 
-Image straightened(const Image& image, const AxisPose& axis) {
-  if (axis.tilt_rad == 0) return image;
-  Image out(image.width, image.height);
-  const double middle = 0.5 * (image.height - 1);
+Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {
+  if (axis.tilt_rad == 0 && row_stretch == 1) return image;
+  Image out(image.width, std::max(1, static_cast<int>(std::floor(image.height * row_stretch))));
+  const double middle_in = 0.5 * (image.height - 1);
+  const double middle_out = 0.5 * (out.height - 1);
   const double c = std::cos(axis.tilt_rad);
   const double s = std::sin(axis.tilt_rad);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
       const double across = x - axis.column;
-      const double along = y - middle;
-      out(x, y) = cubic_at(image, axis.column + c * across + s * along, middle - s * across + c * along);
+      const double along = (y - middle_out) / row_stretch;
+      out(x, y) = cubic_at(image, axis.column + c * across + s * along, middle_in - s * across + c * along);
     }
   }
   return out;
