@@ -1,0 +1,35 @@
+// Private to video_*.cpp: libav's objects with owners, and its status codes as Errors.
+#pragma once
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/imgutils.h>
+#include <libavutil/opt.h>
+}
+
+#include <memory>
+#include <string>
+
+#include "base/error.hpp"
+
+namespace vam::io::av {
+
+struct Free {
+  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+};
+using Codec = std::unique_ptr<AVCodecContext, Free>;
+using Frame = std::unique_ptr<AVFrame, Free>;
+using Packet = std::unique_ptr<AVPacket, Free>;
+
+/// The status itself, unless it is negative: then an Error "<name>: <what> failed: <libav's words>".
+inline int check(int status, Fault fault, const std::string& name, const char* what) {
+  if (status >= 0) return status;
+  char words[AV_ERROR_MAX_STRING_SIZE];
+  av_strerror(status, static_cast<char*>(words), sizeof words);
+  throw Error{fault, name + ": " + what + " failed: " + static_cast<char*>(words)};
+}
+
+}  // namespace vam::io::av

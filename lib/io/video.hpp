@@ -1,0 +1,55 @@
+// Video: FFV1 in Matroska, lossless, which may be printed from; H.264 in MP4, for looking at.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/pixels.hpp"
+
+namespace vam::io {
+
+struct VideoFormat {
+  int width = 0;
+  int height = 0;
+  int bits = 8;         // of the frames: 1, 2, 4, 8, 10 or 16
+  double fps = 0;       // frames per second
+  std::string comment;  // goes into the file's metadata
+};
+
+/// Writes frames of one size. The name chooses the format:
+///  .mkv  FFV1, lossless: gray for up to 8 bits (fewer are spread over 0..255, so that players show the right
+///        brightness), gray10le for 10 and gray16le for 16 with the levels as they are.
+///  .mp4  H.264 yuv420p, 8 bits, full range, odd sizes padded with their last row or column. Errs by up to 59 of 255 on
+///  fine
+///        patterns: never print from it.
+/// The bytes do not depend on the machine or the number of threads. A file appears under its name at commit() only.
+/// Throws Error: usage (another ending), no_output, io.
+class VideoWriter {
+ public:
+  VideoWriter(const std::string& path, const VideoFormat& format);
+  ~VideoWriter();
+  void write(const GreyImage& frame);
+  void commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Reads grey frames of the first video stream, front to back. Throws Error: no_input, data (no video, truncated, not
+/// grey).
+class VideoReader {
+ public:
+  explicit VideoReader(const std::string& path);
+  ~VideoReader();
+  /// Size, depth (8, 10 or 16 bits) and rate.
+  [[nodiscard]] const VideoFormat& format() const;
+  /// False after the last frame.
+  bool next(GreyImage& frame);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vam::io
