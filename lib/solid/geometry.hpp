@@ -1,0 +1,64 @@
+// Points, boxes and affine maps in mm: what meshes and implicit shapes have in common.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace vam::solid {
+
+using Point = std::array<double, 3>;
+
+[[nodiscard]] inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+[[nodiscard]] inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+[[nodiscard]] inline Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
+[[nodiscard]] inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+[[nodiscard]] inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
+[[nodiscard]] inline Point cross(const Point& a, const Point& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// An axis-aligned box; empty when low > high.
+struct Box {
+  Point low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  Point high{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest(),
+             std::numeric_limits<double>::lowest()};
+
+  void add(const Point& p) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], p[a]);
+      high[a] = std::max(high[a], p[a]);
+    }
+  }
+  [[nodiscard]] Point size() const { return high - low; }
+  [[nodiscard]] Point centre() const { return 0.5 * (low + high); }
+  [[nodiscard]] double diagonal() const { return length(size()); }
+  [[nodiscard]] bool contains(const Box& other) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (other.low[a] < low[a] || other.high[a] > high[a]) return false;
+    }
+    return true;
+  }
+};
+
+/// p -> linear * p + shift.
+struct Affine {
+  std::array<Point, 3> linear{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};  // rows
+  Point shift{};
+
+  [[nodiscard]] Point operator()(const Point& p) const {
+    return {dot(linear[0], p) + shift[0], dot(linear[1], p) + shift[1], dot(linear[2], p) + shift[2]};
+  }
+};
+
+/// Scales by s about the origin.
+[[nodiscard]] Affine scaling(const Point& s);
+/// Turns about x, then y, then z (fixed axes), right-handed, degrees.
+[[nodiscard]] Affine rotation(const Point& xyz_deg);
+/// First b, then a.
+[[nodiscard]] Affine operator*(const Affine& a, const Affine& b);
+/// The inverse map; the linear part must not be singular.
+[[nodiscard]] Affine inverse(const Affine& a);
+
+}  // namespace vam::solid
