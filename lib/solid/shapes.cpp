@@ -1,10 +1,10 @@
 #include "solid/shapes.hpp"
 
-#include <charconv>
-#include <numeric>
+#include <optional>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "solid/shape_builders.hpp"
 
 namespace vam::solid {
@@ -80,40 +80,24 @@ std::vector<ShapeKind> catalogue() {
   };
 }
 
-// Levenshtein's distance, for "did you mean".
-std::size_t edits(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({change, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
-// The entry of that name; Fault::usage names the nearest one otherwise.
+// The entry of that name; Fault::usage suggests the nearest one otherwise, or lists them all.
 template <typename List>
 const typename List::value_type& named(const List& list, std::string_view name, const std::string& what) {
-  const typename List::value_type* nearest = &list.front();
+  std::vector<std::string> names;
   for (const auto& item : list) {
     if (item.name == name) return item;
-    if (edits(name, item.name) < edits(name, nearest->name)) nearest = &item;
+    names.emplace_back(item.name);
   }
-  throw Error{Fault::usage,
-              what + " '" + std::string{name} + "' is unknown; did you mean '" + std::string{nearest->name} + "'?"};
+  const std::string hint = did_you_mean(name, names);
+  throw Error{Fault::usage, what + " '" + std::string{name} + "' is unknown" +
+                                (hint.empty() ? "; known: " + join(names, ", ") : hint)};
 }
 
 double number(std::string_view text, const ShapeParameter& parameter, const std::string& subject) {
-  double value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (status != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+  const std::optional<double> parsed = parse_number(text);
+  if (!parsed || !std::isfinite(*parsed))
     throw Error{Fault::usage, subject + " '" + std::string{text} + "' is not a number"};
-  }
+  const double value = *parsed;
   if (value < parameter.low || value > parameter.high) {
     throw Error{Fault::usage, subject + " " + format_number(value) + " is outside " + format_number(parameter.low) +
                                   " ... " + format_number(parameter.high)};
@@ -138,20 +122,17 @@ Field make_shape(const std::string& text) {
   const std::string subject = "--shape " + std::string{kind.name};
   std::vector<double> values;
   for (const ShapeParameter& parameter : kind.parameters) values.push_back(parameter.value);
-  std::string_view rest = colon == std::string_view::npos ? std::string_view{} : all.substr(colon + 1);
-  if (colon != std::string_view::npos && rest.empty())
-    throw Error{Fault::usage, subject + ": no parameter after the colon"};
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    const std::string_view item = rest.substr(0, comma);
-    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  if (colon + 1 == all.size()) throw Error{Fault::usage, subject + ": no parameter after the colon"};
+  for (const std::string& item :
+       colon == std::string_view::npos ? std::vector<std::string>{} : split(all.substr(colon + 1), ',')) {
     const std::size_t equals = item.find('=');
     if (equals == std::string_view::npos) {
-      throw Error{Fault::usage, subject + ": '" + std::string{item} + "' is not NAME=VALUE"};
+      throw Error{Fault::usage, subject + ": '" + item + "' is not NAME=VALUE"};
     }
-    const ShapeParameter& parameter = named(kind.parameters, item.substr(0, equals), subject + ": parameter");
+    const ShapeParameter& parameter =
+        named(kind.parameters, std::string_view{item}.substr(0, equals), subject + ": parameter");
     values[static_cast<std::size_t>(&parameter - kind.parameters.data())] =
-        number(item.substr(equals + 1), parameter, subject + ": " + std::string{parameter.name});
+        number(std::string_view{item}.substr(equals + 1), parameter, subject + ": " + std::string{parameter.name});
   }
   return kind.build(values);
 }
