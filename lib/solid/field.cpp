@@ -88,9 +88,12 @@ double cube_fraction(double offset, const Point& normal) {
 
 namespace {
 
-constexpr int block = 8;                              // voxels along the edge of a block
-constexpr int deepest = 3;                            // halvings of a voxel
-constexpr double linear_limit = 0.05;                 // of the field's change across the cell
+constexpr int block = 8;    // voxels along the edge of a block
+constexpr int deepest = 3;  // halvings of a voxel
+// Departure from a linear field, relative to its change across the cell. Smooth curvature shows up as an even residual,
+// which the mean value of the cell accounts for; an edge anywhere but in the middle has an odd part.
+constexpr double even_limit = 0.015;
+constexpr double odd_limit = 0.01;
 constexpr double half_diagonal = 0.8660254037844386;  // of a unit cube
 constexpr double slack = 1.05;  // numerically projected distances (gyroid) are Lipschitz to a few per cent
 
@@ -110,12 +113,16 @@ double cell_fraction(const Field& field, const Point& centre, double edge_mm, co
     mean += corners[c] / 8;
     slope = slope + (corners[c] / 2) * corner_sign(c);
   }
-  double deviation = std::abs(middle - mean);
-  for (unsigned c = 0; c < 8; ++c) {
-    deviation = std::max(deviation, std::abs(corners[c] - mean - dot(slope, corner_sign(c))));
+  Corners residual{};
+  for (unsigned c = 0; c < 8; ++c) residual[c] = corners[c] - mean - dot(slope, corner_sign(c));
+  double even = std::abs(middle - mean);
+  double odd = 0;
+  for (unsigned c = 0; c < 4; ++c) {
+    even = std::max(even, 0.5 * std::abs(residual[c] + residual[7 - c]));
+    odd = std::max(odd, 0.5 * std::abs(residual[c] - residual[7 - c]));
   }
   const double steepness = length(slope);
-  if (deviation <= linear_limit * steepness || depth == deepest) {
+  if ((even <= even_limit * steepness && odd <= odd_limit * steepness) || depth == deepest) {
     if (steepness == 0) return middle < 0 ? 1 : 0;
     // The mean over the cell of a field that is quadratic: two thirds centre, one third corners.
     return cube_fraction((2 * middle + mean) / 3, slope);

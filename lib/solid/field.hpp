@@ -30,7 +30,7 @@ struct Field {
 [[nodiscard]] double cube_fraction(double offset, const Point& normal);
 
 /// Fractional coverage, 0...1, of the voxels of slices k0 .. k0 + count - 1: out[((k - k0) * ny + j) * nx + i]. A voxel
-/// in which the field is linear to 5 % is cut by a plane; others are halved, down to an eighth of a voxel. Void is
+/// in which the field is linear to 2 % is cut by a plane; others are halved, down to an eighth of a voxel. Void is
 /// exactly 0 and interior exactly 1.
 void cover(const Field& field, const model::Grid& grid, int k0, int count, float* out);
 

@@ -90,7 +90,13 @@ Field egg_shell(Values v) {
   require(distance > low - high, "--shape egg-shell: length must be at least 1.01 times diameter");
   require(wall < high, "--shape egg-shell: wall fills the egg; take less than 0.31 times diameter");
   require(opening <= high, "--shape egg-shell: opening must be below 0.62 times diameter");
-  const double base = low - v[0] / 2;  // the centre of the blunt ball
+  // Profile of the hull of two balls: where its upper part has the radius r.
+  const double slant = (low - high) / distance;
+  const double flat = std::sqrt(1 - slant * slant);
+  const double top = opening <= high * flat ? distance + std::sqrt(high * high - opening * opening)
+                                            : (low - opening * flat) / slant;
+  const double half = 0.5 * (top + low);
+  const double base = low - half;  // the centre of the blunt ball
   return upright(
       [=](const Point& p) {
         const Point q{p[0], p[1], p[2] - base};
@@ -100,7 +106,7 @@ Field egg_shell(Values v) {
         const double hole = std::max(std::hypot(p[0], p[1]) - opening, -q[2]);
         return std::max(shell, -hole);
       },
-      low, v[0] / 2);
+      low, half);
 }
 
 }  // namespace vam::solid::build
