@@ -71,22 +71,18 @@ void ColumnCursor::step_up(int y, int node) {
   }
 }
 
-int extra_slices(const PartSurvey& part, const PartColumns& columns, const Limits& limits) {
-  if (part.columns == 0) return 0;
+void require_printable(const Limits& limits) {
   if (limits.settled(limits.phi_min) >= 1) {
     throw Error{Fault::data, "intensity range: the minimum alone settles at " +
                                  format_number(limits.settled(limits.phi_min), 3) +
                                  " critical doses, so everything cures; give more contrast or print faster"};
   }
-  const int burst = burst_slices(limits);
-  if (burst == 0) {
+  if (burst_slices(limits) == 0) {
     const double highest = limits.settled(limits.phi_max);
     throw Error{Fault::data, "intensity range: the maximum settles at " + format_number(highest, 3) +
                                  " critical doses, so nothing cures; give more light or print slower than " +
                                  format_number(highest, 3) + " times this speed"};
   }
-  const int last_node = part.last_slice + (limits.exposure == Exposure::continuous ? 1 : 0);
-  return std::max(0, last_node + burst - columns.slices());
 }
 
 SliceCorrection::SliceCorrection(const PartColumns& part, const Limits& limits, double omega_max, int slices)

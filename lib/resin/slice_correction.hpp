@@ -36,10 +36,9 @@ class ColumnCursor {
   std::vector<int> last_;
 };
 
-/// Slices after the part's own that its lowest features need: the burst below the last one [CURE19 fig 4]. Throws
-/// Fault::data when the light is too weak to cure at this speed (settled(phi_max) <= 1) or the dark is bright enough to
-/// cure (settled(phi_min) >= 1): then no column has a solution.
-[[nodiscard]] int extra_slices(const PartSurvey& part, const PartColumns& columns, const Limits& limits);
+/// Throws Fault::data when the light is too weak to cure at this speed (settled(phi_max) <= 1) or the dark is bright
+/// enough to cure (settled(phi_min) >= 1): then no column with a feature has a solution.
+void require_printable(const Limits& limits);
 
 /// The exact correction in printing order: slice 0 first. Intensities are fractions of the maximum, as floats.
 class SliceCorrection {

@@ -117,6 +117,18 @@ Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, 
   return column;
 }
 
+int extra_slices(int last_slice, int slices, const Limits& limits) {
+  if (last_slice < 0) return 0;
+  const int last_node = last_slice + (limits.exposure == Exposure::continuous ? 1 : 0);
+  return std::max(0, last_node + burst_slices(limits) - slices);
+}
+
+int extra_slices(std::span<const std::uint8_t> part, const Limits& limits) {
+  int last = static_cast<int>(part.size()) - 1;
+  while (last >= 0 && part[static_cast<std::size_t>(last)] == 0) --last;
+  return extra_slices(last, static_cast<int>(part.size()), limits);
+}
+
 std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits) {
   std::vector<double> phi(part.size());
   for (std::size_t n = 0; n < part.size(); ++n) phi[n] = part[n] != 0 ? limits.phi_max : limits.phi_min;

@@ -62,6 +62,11 @@ struct Column {
 [[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, double omega_max,
                                     int extra_slices);
 
+/// Slices after the part's own that the burst below its last feature needs; 0 for an empty column or without a burst.
+[[nodiscard]] int extra_slices(std::span<const std::uint8_t> part, const Limits& limits);
+/// The same for a part of `slices` slices whose deepest one in the part is last_slice (-1: none).
+[[nodiscard]] int extra_slices(int last_slice, int slices, const Limits& limits);
+
 /// The conventional column: phi_max in the part, phi_min elsewhere.
 [[nodiscard]] std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits);
 

@@ -122,7 +122,7 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
     const resin::Limits limits = limits_for(exposure);
     const auto values = random_part(slices, 77);
     const resin::PartColumns part = part_of(values, slices, exposure, 16);
-    const int extra = resin::extra_slices(resin::survey(part), part, limits);
+    const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
     CHECK(extra == resin::burst_slices(limits) - (exposure == Exposure::layered ? 1 : 0));
     for (const double omega_max : {1.0, 2.5, std::numeric_limits<double>::infinity()}) {
       std::vector<std::vector<float>> runs;
@@ -156,7 +156,7 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     const resin::Limits limits = limits_for(exposure);
     const auto values = random_part(slices, 3);
     const resin::PartColumns part = part_of(values, slices, exposure, 16);
-    const int extra = resin::extra_slices(resin::survey(part), part, limits);
+    const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
     std::vector<float> levels;
     const double dark = limits.phi_min / limits.phi_max;
     for (int v = 0; v < 256; ++v) levels.push_back(static_cast<float>(dark + (1 - dark) * std::pow(v / 255.0, 2.2)));
@@ -187,13 +187,13 @@ TEST_CASE("light that cannot print is refused with a remedy") {
   const resin::PartColumns part = part_of(random_part(40, 1), 40, Exposure::continuous, 8);
   resin::Limits limits = limits_for(Exposure::continuous);
   limits.phi_max = 0.5;
-  CHECK_THROWS_WITH_AS((void)resin::extra_slices(resin::survey(part), part, limits),
+  CHECK_THROWS_WITH_AS(resin::require_printable(limits),
                        "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; give more light "
                        "or print slower than 0.5 times this speed",
                        Error);
   limits.phi_max = 9;
   limits.phi_min = 1.5;
-  CHECK_THROWS_AS((void)resin::extra_slices(resin::survey(part), part, limits), Error);
+  CHECK_THROWS_AS(resin::require_printable(limits), Error);
   const std::vector<float> falling{0.1F, 0.5F, 0.4F, 1.0F};
   CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(Exposure::continuous), 1, 50, falling), Error);
 }

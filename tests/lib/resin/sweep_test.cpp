@@ -1,0 +1,87 @@
+#include "resin/sweep.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "resin/gaps.hpp"
+#include "resin/target_dose.hpp"
+
+using namespace vam;
+
+TEST_CASE("a graded ladder") {
+  CHECK(resin::graded_ladder({1, 2}) == std::vector<std::uint8_t>{0, 1, 0, 0, 1, 1, 0, 0});
+}
+
+TEST_CASE("the error is gone where the assumed critical dose is the real one, and grows away from it") {
+  resin::Study study;
+  study.process.speed_mm_h = 750;  // [CURE19]: h_a = 2000 um, 750 mm/h, D_c = 5 D_gel = 748 mJ/cm3
+  study.process.critical_dose_mj_cm3 = 748;
+  study.gel_dose_mj_cm3 = 149.6;
+  study.dose_factors = {1, 2, 3, 4, 5, 6, 7, 8};
+  study.omega_max = {1, 2, 5, std::numeric_limits<double>::infinity()};
+  const auto part = resin::graded_ladder({4, 6, 8, 10, 20, 40});
+  const auto points = resin::run_study(part, study);
+  REQUIRE(points.size() == 32);
+  for (std::size_t m = 0; m < 4; ++m) {
+    const auto at = [&](int factor) { return points[static_cast<std::size_t>(factor - 1) * 4 + m]; };
+    REQUIRE(at(5).printable);
+    REQUIRE(at(5).sizes.size() == 6);
+    // The paper's figure is a reduction by more than 85 %; the model itself has nothing left but rounding.
+    CHECK(at(5).ratio < 1e-3);
+    for (const auto& size : at(5).sizes) CHECK(size.ratio() < 1e-3);
+    CHECK(at(1).ratio > at(5).ratio);  // too little dose: missing features
+    CHECK(at(8).ratio > at(6).ratio);  // too much: cure-through
+    CHECK(at(6).ratio > at(5).ratio);
+  }
+}
+
+TEST_CASE("a study needs values in range") {
+  resin::Study study;
+  study.gel_dose_mj_cm3 = 100;
+  study.omega_max = {1};
+  CHECK_THROWS_WITH_AS((void)resin::run_study({0, 1, 0}, study), "dc: no values; give a list or a range", Error);
+  study.dose_factors = {0};
+  CHECK_THROWS_AS((void)resin::run_study({0, 1, 0}, study), Error);
+  study.dose_factors = {1};
+  study.omega_max = {0.5};
+  CHECK_THROWS_WITH_AS((void)resin::run_study({0, 1, 0}, study), "omega_max: 0.5 is out of range; give at least 1",
+                       Error);
+}
+
+TEST_CASE("the least dose in a gap is the one that a correction reaches") {
+  for (const auto exposure : {resin::Exposure::continuous, resin::Exposure::layered}) {
+    resin::Process process;
+    process.exposure = exposure;
+    process.absorbance_height_um = 600;
+    const resin::Limits limits = resin::limits_of(process);
+    for (int gap = 2; gap < 60; gap += 3) {
+      std::vector<std::uint8_t> part(static_cast<std::size_t>(gap + 20), 0);
+      for (std::size_t n = 0; n < 10; ++n) part[n] = part[part.size() - 1 - n] = 1;
+      const auto column = resin::correct_column(part, limits, 1, 8);
+      REQUIRE(column.feasible());
+      double least = 1;
+      for (std::size_t n = 0; n < part.size(); ++n) least = std::min(least, column.omega[n]);
+      CHECK(resin::lowest_gap_dose(limits, gap) == doctest::Approx(least).epsilon(1e-9));
+    }
+    const int narrowest = resin::narrowest_gap(limits, 0.5);
+    CHECK(resin::lowest_gap_dose(limits, narrowest) <= 0.5);
+    CHECK(resin::lowest_gap_dose(limits, narrowest - 1) > 0.5);
+  }
+}
+
+TEST_CASE("faster means wider gaps, up to the speed limit") {
+  resin::Process process;
+  CHECK(resin::speed_limit_mm_h(process) == doctest::Approx(110 / 576.0 * 36000));  // I_max / D_c, cm/s to mm/h
+  int before = 0;
+  for (const double fraction : {0.1, 0.4, 0.7, 0.95}) {
+    process.speed_mm_h = fraction * resin::speed_limit_mm_h(process);
+    const int gap = resin::narrowest_gap(resin::limits_of(process), 0.5);
+    CHECK(gap > before);
+    before = gap;
+  }
+  process.speed_mm_h = 1.01 * resin::speed_limit_mm_h(process);
+  CHECK(resin::narrowest_gap(resin::limits_of(process), 0.5) == 0);
+}
