@@ -100,7 +100,7 @@ Response projector_response(const model::Projector& projector) {
   return Response(projector.min_intensity_mw_cm2 / projector.max_intensity_mw_cm2);
 }
 
-GreyLevels::GreyLevels(const Response& response, int bits) {
+GreyLevels::GreyLevels(const Response& response, int bits) : bits_(bits) {
   if (bits < 1 || bits > 16) throw Error{Fault::usage, "bits " + std::to_string(bits) + " is not between 1 and 16"};
   const int last = (1 << bits) - 1;
   for (int level = 0; level <= last; ++level) {
@@ -115,6 +115,20 @@ int GreyLevels::level(float intensity) const {
   const bool lower = intensity - below <= intensity_[above] - intensity && intensity < intensity_.back();
   // Of several levels of the same intensity, the lowest.
   return static_cast<int>(lower ? first_at_least(intensity_, below) : above);
+}
+
+GreyImage to_levels(const Image& intensity, const GreyLevels& levels) {
+  GreyImage image(intensity.width, intensity.height, levels.bits());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    image.values[i] = static_cast<std::uint16_t>(levels.level(intensity.values[i]));
+  }
+  return image;
+}
+
+Image to_intensity(const GreyImage& image, const GreyLevels& levels) {
+  Image intensity(image.width, image.height);
+  for (std::size_t i = 0; i < image.values.size(); ++i) intensity.values[i] = levels.intensity(image.values[i]);
+  return intensity;
 }
 
 }  // namespace vam::resin

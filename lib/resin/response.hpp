@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/image.hpp"
+#include "base/pixels.hpp"
 #include "model/printer.hpp"
 #include "model/response_table.hpp"
 
@@ -41,6 +43,7 @@ class GreyLevels {
   /// bits in 1..16; throws Fault::usage otherwise.
   GreyLevels(const Response& response, int bits);
 
+  [[nodiscard]] int bits() const { return bits_; }
   [[nodiscard]] int count() const { return static_cast<int>(intensity_.size()); }
 
   /// The level whose intensity is nearest to the wanted one (fraction of full, clamped to what the projector can do):
@@ -51,7 +54,14 @@ class GreyLevels {
   [[nodiscard]] float intensity(int level) const { return intensity_[static_cast<std::size_t>(level)]; }
 
  private:
+  int bits_;
   std::vector<float> intensity_;  // rising with the level
 };
+
+/// Every pixel's nearest level. Intensities are fractions of full; beyond what the projector can do they are clamped.
+[[nodiscard]] GreyImage to_levels(const Image& intensity, const GreyLevels& levels);
+
+/// What the projector gives for these levels, as fractions of full intensity.
+[[nodiscard]] Image to_intensity(const GreyImage& image, const GreyLevels& levels);
 
 }  // namespace vam::resin

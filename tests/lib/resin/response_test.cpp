@@ -91,3 +91,13 @@ TEST_CASE("every level maps to itself") {
   const GreyLevels levels(Response(), 8);
   for (int level = 0; level < 256; ++level) CHECK(levels.level(levels.intensity(level)) == level);
 }
+
+TEST_CASE("pictures of levels and of intensity are each other's inverse; beyond full is full") {
+  const GreyLevels levels(Response(gamma_table(2.2)), 4);
+  vam::Image light(3, 1);
+  light.values = {levels.intensity(3), 7.0F, -1.0F};
+  const vam::GreyImage image = to_levels(light, levels);
+  CHECK(image.bits == 4);
+  CHECK(image.values == std::vector<std::uint16_t>{3, 15, 0});
+  CHECK(to_intensity(image, levels).values == std::vector<float>{levels.intensity(3), 1.0F, 0.0F});
+}

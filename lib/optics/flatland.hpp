@@ -1,0 +1,34 @@
+// Flatland: the validation movie of [CAL17] fig 3. A thin layer of resin lies where the projector's image is formed;
+// each frame is the light that a cross-section of the part would receive at one angle, and the layer adds the frames
+// up.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/image.hpp"
+#include "model/stack.hpp"
+
+namespace vam::optics {
+
+/// The picture plane: the part's x to the right, y up, the axis at (axis_column, axis_row) from the top left.
+struct Canvas {
+  int columns = 0;
+  int rows = 0;
+  double pixel_mm = 0;
+  double axis_column = 0;
+  double axis_row = 0;
+};
+
+/// Smears one 1-D parallel projection (pitch detector_mm, axis in the middle) across the plane along the light: pixel
+/// (x, y) shows the projection at t = x cos theta + y sin theta [CAL17 eq 1], interpolated linearly, dark beyond its
+/// ends.
+[[nodiscard]] Image smear(std::span<const float> projection, double detector_mm, double angle_rad,
+                          const Canvas& canvas);
+
+/// The row of a virtual sinogram at one part angle, over the span that the stage turns meanwhile: interpolated between
+/// its angles, or averaged over those that the span covers.
+[[nodiscard]] std::vector<float> projection_at(const Image& sinogram, const model::StackInfo& info, double angle_deg,
+                                               double span_deg);
+
+}  // namespace vam::optics

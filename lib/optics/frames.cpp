@@ -1,0 +1,182 @@
+#include "optics/frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "optics/taps.hpp"
+
+namespace vam::optics {
+
+namespace {
+
+std::string range(double low, double high) { return format_number(low) + " to " + format_number(high); }
+
+void require_projector_stack(const std::string& subject, const model::StackInfo& info, const FramePlace& place) {
+  const double turn_deg = std::abs(info.angle_step_deg) * info.height;
+  if (std::abs(turn_deg - 360) > 1e-3) {
+    throw Error{Fault::data, subject + ": its " + std::to_string(info.height) + " angles span " +
+                                 format_number(turn_deg) + " degrees, not one turn of 360"};
+  }
+  if (info.width != place.columns) {
+    throw Error{Fault::data, subject + ": has " + std::to_string(info.width) + " columns, but the projector has " +
+                                 std::to_string(place.columns) + "; give vam-resample the same printer"};
+  }
+  if (std::abs(info.pixel_mm - place.pixel_mm) > 1e-6 * place.pixel_mm) {
+    throw Error{Fault::data, subject + ": its pixels are " + format_number(info.pixel_mm) +
+                                 " mm, but the projector's are " + format_number(place.pixel_mm) +
+                                 " mm; give vam-resample the same printer"};
+  }
+  if (info.count > 1 && !(info.row_mm > 0)) {
+    throw Error{Fault::data,
+                subject + ": its slice pitch (vam:row_mm) is " + format_number(info.row_mm) + " mm, not above 0"};
+  }
+}
+
+}  // namespace
+
+FrameSchedule frame_schedule(double fps, double speed_deg_s, double turns) {
+  const double frames_per_turn = 360 * fps / speed_deg_s;
+  const double count = std::round(turns * frames_per_turn);
+  if (frames_per_turn < 2 || !(count >= 1) || count > 1e7) {
+    throw Error{Fault::usage, format_number(fps) + " frames per second at " + format_number(speed_deg_s) +
+                                  " deg/s give " + format_number(frames_per_turn) + " frames a turn and " +
+                                  format_number(count, 9) + " in all; change fps, speed or turns"};
+  }
+  return {static_cast<int>(count), fps, speed_deg_s / fps};
+}
+
+FramePlace frame_place(const model::Projector& projector, double column_offset, double row_offset) {
+  return {projector.columns, projector.rows, projector.pixel_mm, projector.axis_row + row_offset, column_offset};
+}
+
+FrameComposer::FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place)
+    : subject_(std::move(subject)), info_(info), place_(place) {
+  require_projector_stack(subject_, info, place);
+}
+
+void FrameComposer::add(const Image& sinogram, double z_mm) {
+  int low = sinogram.width;
+  int high = -1;
+  float least = 0;
+  for (int a = 0; a < sinogram.height; ++a) {
+    const float* row = sinogram.row(a);
+    for (int c = 0; c < sinogram.width; ++c) {
+      if (row[c] == 0) continue;
+      low = std::min(low, c);
+      high = std::max(high, c);
+      least = std::min(least, row[c]);
+      peak_ = std::max(peak_, row[c]);
+    }
+  }
+  if (least < 0) {
+    throw Error{Fault::data, subject_ + ": has a value of " + format_number(least) + " at z = " + format_number(z_mm) +
+                                 " mm; light cannot be negative: clip or offset it in vam-sinogram"};
+  }
+  Slice slice{z_mm, 0, 0, {}};
+  if (high >= low) {
+    // Device column x shows sinogram column x - offset.
+    const Taps taps = sample_taps(-place_.column_offset, 1);
+    const int last_tap = taps.first + static_cast<int>(taps.weights.size()) - 1;
+    slice.first = low - last_tap;
+    slice.width = high - taps.first - slice.first + 1;
+    if (slice.first < 0 || slice.first + slice.width > place_.columns) {
+      throw Error{Fault::data, subject_ + ": light on columns " + range(slice.first, slice.first + slice.width - 1) +
+                                   ", but the projector has columns " + range(0, place_.columns - 1) +
+                                   "; make --column-offset smaller"};
+    }
+    slice.values.assign(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(sinogram.height), 0.0F);
+    float* to = slice.values.data();
+    for (int a = 0; a < sinogram.height; ++a) {
+      for (int x = slice.first; x < slice.first + slice.width; ++x, ++to) {
+        for (std::size_t t = 0; t < taps.weights.size(); ++t) {
+          const int c = x + taps.first + static_cast<int>(t);
+          if (c >= 0 && c < sinogram.width) *to += taps.weights[t] * sinogram(c, a);
+        }
+      }
+    }
+  }
+  slices_.push_back(std::move(slice));
+}
+
+void FrameComposer::check() const {
+  double top = std::numeric_limits<double>::infinity();
+  double bottom = -top;
+  for (const Slice& slice : slices_) {
+    if (slice.width == 0) continue;
+    top = std::min(top, row_of(slice.z_mm));
+    bottom = std::max(bottom, row_of(slice.z_mm));
+  }
+  if (!(peak_ > 0)) throw Error{Fault::data, subject_ + ": is all dark; there is nothing to project"};
+  const double half = 0.5 * slice_mm() / place_.pixel_mm;  // of a slice, in rows
+  constexpr double forgiven = 0.01;                        // of a row
+  if (top - half < -0.5 - forgiven || bottom + half > place_.rows - 0.5 + forgiven) {
+    throw Error{Fault::data, subject_ + ": light on rows " + range(top, bottom) + ", but the projector has rows " +
+                                 range(0, place_.rows - 1) + "; move the part or --row-offset, or make it shorter"};
+  }
+}
+
+void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {
+  if (slice.width == 0) return;
+  const int a = (angle % info_.height + info_.height) % info_.height;
+  const float* from = slice.values.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(slice.width);
+  float* to = row + slice.first;
+  for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
+}
+
+Image FrameComposer::frame(double angle_deg, double span_deg) const {
+  Image image(place_.columns, place_.rows);
+  const Taps angles = sample_taps((angle_deg - info_.angle_start_deg) / info_.angle_step_deg,
+                                  span_deg / std::abs(info_.angle_step_deg));
+  const int count = static_cast<int>(slices_.size());
+  for (int r = 0; r < place_.rows; ++r) {
+    const double z_mm = (place_.axis_row - r) * place_.pixel_mm;
+    const double position = (z_mm - slices_.front().z_mm) / slice_mm();
+    if (position < -0.5 || position > count - 0.5)
+      continue;  // half a slice beyond the middle of the last one it is dark
+    const Taps taps = sample_taps(position, place_.pixel_mm / slice_mm());
+    for (std::size_t s = 0; s < taps.weights.size(); ++s) {
+      const Slice& slice =
+          slices_[static_cast<std::size_t>(std::clamp(taps.first + static_cast<int>(s), 0, count - 1))];
+      for (std::size_t a = 0; a < angles.weights.size(); ++a) {
+        add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], image.row(r));
+      }
+    }
+  }
+  return image;
+}
+
+void orient(Image& image, const std::string& orientation) {
+  const auto width = static_cast<std::ptrdiff_t>(image.width);
+  if (orientation == "rotate-180") std::reverse(image.values.begin(), image.values.end());
+  if (orientation == "flip-columns") {
+    for (auto row = image.values.begin(); row != image.values.end(); row += width) std::reverse(row, row + width);
+  }
+  if (orientation == "flip-rows") {
+    for (int y = 0; y < image.height / 2; ++y) {
+      std::swap_ranges(image.row(y), image.row(y) + width, image.row(image.height - 1 - y));
+    }
+  }
+}
+
+model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace& place, const FrameSchedule& schedule,
+                             const std::string& orientation) {
+  model::StackInfo info = sinogram;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::projector;
+  info.width = place.columns;
+  info.height = place.rows;
+  info.count = schedule.count;
+  info.pixel_mm = place.pixel_mm;
+  const bool upside_down = orientation == "flip-rows" || orientation == "rotate-180";
+  info.row_mm = upside_down ? place.pixel_mm : -place.pixel_mm;
+  info.z_start_mm = (upside_down ? place.axis_row - (place.rows - 1) : place.axis_row) * place.pixel_mm;
+  info.angle_start_deg = 0;
+  info.angle_step_deg = schedule.step_deg;
+  return info;
+}
+
+}  // namespace vam::optics
