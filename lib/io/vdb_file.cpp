@@ -8,8 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <istream>
-#include <ostream>
+#include <iostream>
 #include <sstream>
 #include <stdexcept>
 
@@ -19,6 +18,7 @@
 #include "io/stream_buffers.hpp"
 #include "io/vdb.hpp"
 #include "io/vdb_grid.hpp"
+#include "io/vdb_head.hpp"
 
 namespace vam::io {
 
@@ -150,7 +150,21 @@ SparseVolume volume_of(const FloatGrid::Ptr& sparse) {
   return volume;
 }
 
+// OpenVDB comments on std::cerr on what it meets in a damaged file; one line is enough, and it will be ours.
+struct Quiet {
+  Quiet() : saved(std::cerr.rdbuf(nullptr)) {}
+  ~Quiet() {
+    std::cerr.rdbuf(saved);
+    std::cerr.clear();
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  std::streambuf* saved;
+};
+
 void read_archive(InputFile& file, std::vector<SparseVolume>& volumes, std::string& others) {
+  check_head(file.peek());
+  const Quiet quiet;
   InputBuffer buffer(file);
   std::istream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);

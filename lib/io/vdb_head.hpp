@@ -1,0 +1,13 @@
+// Private to the VDB files: a look at an archive before OpenVDB believes it.
+#pragma once
+
+#include <span>
+
+namespace vam::io {
+
+/// Walks the head of an archive (file metadata, first grid's descriptor and metadata) as far as `bytes` show it.
+/// OpenVDB takes the memory that a size there asks for before it finds that the bytes do not follow.
+/// Throws std::runtime_error: not VDB, a format newer than the library's, a size or count that cannot be.
+void check_head(std::span<const char> bytes);
+
+}  // namespace vam::io
