@@ -20,10 +20,8 @@ using Bits = int __attribute__((vector_size(width * 4), may_alias));
 inline Vector load(const float* from) { return *reinterpret_cast<const Vector*>(from); }
 inline void store(float* to, Vector value) { *reinterpret_cast<Vector*>(to) = value; }
 
-inline float clamp(float value, float low, float high) {
-  const float raised = value > low ? value : low;
-  return raised < high ? raised : high;
-}
+inline float least(float a, float b) { return a < b ? a : b; }
+inline float most(float a, float b) { return a > b ? a : b; }
 
 struct Table {
   alignas(64) float weight[4][pair_entries];
@@ -37,21 +35,22 @@ template <int taps, int slabs>
 inline void tabulate(const Gather& job, float pair, Table& table) {
   const Footprints& f = *job.footprints;
   const float last = job.last;
+  float zero = 0;
+  asm("" : "+x"(zero));  // a maximum with a known zero becomes a comparison and a masked move, twice the work
   for (int e = 0; e < pair_entries; ++e) {
-    const float centre = job.first[e] + pair * f.step[e];
-    const int base = static_cast<int>(clamp(centre - f.half[e] + 0.5F, 0.0F, last));
-    const float edge = static_cast<float>(base) + 0.5F - centre;
-    float below = 0;
+    const float start = job.first[e] + pair * f.step[e];
+    const int base = static_cast<int>(least(most(start, zero), last));
+    const float edge = static_cast<float>(base) - start + f.first_edge[e];
+    float below = -f.half_total[e];
     for (int k = 0; k + 1 < taps; ++k) {
       const float x = edge + static_cast<float>(k);
-      const float u = clamp(x + f.half[e], 0.0F, f.flank[e]);
-      const float v = clamp(x - f.flat[e], 0.0F, f.flank[e]);
-      const float line = clamp(x + f.flat[e], 0.0F, f.flat[e] + f.half[e]);
-      const float upto = f.curve[e] * ((u - v) * (u + v)) + f.slope[e] * line;
+      const float y = least(__builtin_fabsf(x), f.half[e]);
+      const float z = most(y - f.flat[e], zero);
+      const float upto = __builtin_copysignf(f.slope[e] * y - f.curve[e] * (z * z), x);
       table.weight[k][e] = upto - below;
       below = upto;
     }
-    table.weight[taps - 1][e] = f.total[e] - below;
+    table.weight[taps - 1][e] = f.half_total[e] - below;
     table.base[e] = base;
     table.offset[e] = job.row_offset[e] + base * (slabs * lanes);
   }
@@ -90,6 +89,9 @@ inline void apply(const Gather& job, const Table& table, int output, bool odd, i
       }
     }
   }
+  // Without this the compiler puts the odd sums off until after the even ones are stored, and spills their operands.
+#pragma GCC unroll 4
+  for (int v = 0; v < registers; ++v) asm volatile("" : "+x"(even_sum[v]), "+x"(odd_sum[v]));
 #pragma GCC unroll 4
   for (int v = 0; v < registers; ++v) {
     const int at = lane + v * width;
@@ -107,6 +109,7 @@ void gather(const Gather& job) {
   for (int output = 0; output < job.outputs; output += 2) {
     tabulate<taps, slabs>(job, static_cast<float>(output), table);
     if constexpr (attenuation != plain) attenuate<taps, attenuation>(job, output, table);
+    asm volatile("" : : "r"(&table) : "memory");  // weights are broadcast from memory, not kept and permuted
     for (int v = 0; v < vectors; v += registers) {
       apply<taps, slabs, registers>(job, table, output, output + 1 < job.outputs, v * width);
     }

@@ -12,18 +12,18 @@ inline constexpr int pair_entries = 2 * gather_rows;  // two outputs at once: on
 inline constexpr int group_slabs = 4;                 // slabs that share one table of weights
 inline constexpr int group_lanes = group_slabs * lanes;
 
-/// Trapezoids in units of one element, and how they move: entries 0..7 belong to the even output of a pair and rows
-/// 0..7, entries 8..15 to the odd output. The cumulative trapezoid of area `total` at distance x from the centre is
-///   curve * (u^2 - v^2) + slope * clamp(x + flat, 0, flat + half),
-///   u = clamp(x + half, 0, flank), v = clamp(x - flat, 0, flank).
+/// Trapezoids of area `total` in units of one element, and how they move: entries 0..7 belong to the even output of a
+/// pair and rows 0..7, entries 8..15 to the odd output. The area up to a distance x from the centre, less half the
+/// total, is
+///   sign(x) * (slope * y - curve * z^2),  y = min(|x|, half),  z = max(y - flat, 0).
 struct Footprints {
-  alignas(64) float step[pair_entries];   // advance of the centre per output
-  alignas(64) float half[pair_entries];   // half the base
-  alignas(64) float flat[pair_entries];   // half the top
-  alignas(64) float flank[pair_entries];  // half - flat, > 0
-  alignas(64) float curve[pair_entries];  // total / (2 * flank * (half + flat))
-  alignas(64) float slope[pair_entries];  // total / (half + flat)
-  alignas(64) float total[pair_entries];
+  alignas(64) float step[pair_entries];        // advance of the centre per output
+  alignas(64) float half[pair_entries];        // half the base
+  alignas(64) float flat[pair_entries];        // half the top; half - flat > 0
+  alignas(64) float curve[pair_entries];       // total / (2 * (half - flat) * (half + flat))
+  alignas(64) float slope[pair_entries];       // total / (half + flat)
+  alignas(64) float half_total[pair_entries];  // total / 2
+  alignas(64) float first_edge[pair_entries];  // 1 - half: from `start` (below) to the first inner edge, less the base
 };
 
 /// output[o] += sum over rows r and taps k of weight(o, r, k) * input[row_offset[r] + (base(o, r) + k) * L].

@@ -61,10 +61,10 @@ void set_footprint(Footprints& footprints, int r, double wide, double narrow, do
     footprints.step[e] = static_cast<float>(step);
     footprints.half[e] = static_cast<float>((wide + flank) / 2);
     footprints.flat[e] = static_cast<float>((wide - flank) / 2);
-    footprints.flank[e] = static_cast<float>(flank);
     footprints.curve[e] = static_cast<float>(total / (2 * flank * wide));
     footprints.slope[e] = static_cast<float>(total / wide);
-    footprints.total[e] = static_cast<float>(total);
+    footprints.half_total[e] = static_cast<float>(total / 2);
+    footprints.first_edge[e] = static_cast<float>(1 - (wide + flank) / 2);
   }
 }
 

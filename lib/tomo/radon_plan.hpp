@@ -31,10 +31,11 @@ Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, s
 /// The trapezoid box(wide) * box(narrow) of area `total`, in entries r and r + 8 of the table.
 void set_footprint(Footprints& footprints, int r, double wide, double narrow, double total, double step);
 
-/// Sets the centre of output 0 in row r and, from the step, that of output 1.
+/// Puts the centre of output 0 in row r, in elements from the row's start, and, from the step, that of output 1.
 inline void set_first(Gather& job, int r, double centre) {
-  job.first[r] = static_cast<float>(centre);
-  job.first[gather_rows + r] = static_cast<float>(centre + static_cast<double>(job.footprints->step[r]));
+  const double start = centre + 0.5 - static_cast<double>(job.footprints->half[r]);
+  job.first[r] = static_cast<float>(start);
+  job.first[gather_rows + r] = static_cast<float>(start + static_cast<double>(job.footprints->step[r]));
 }
 
 /// Slabs are taken 4, 2 or 1 at a time.

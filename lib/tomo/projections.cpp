@@ -1,0 +1,83 @@
+#include "tomo/projections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+
+namespace vam::tomo {
+
+namespace {
+
+FilterSpec matched(FilterSpec filter, const ParallelGeometry& geometry) {
+  filter.alpha_per_px = geometry.alpha_per_px;
+  return filter;
+}
+
+/// Unit of the values, and the light at the wall, e^{alpha sqrt(R^2 - t^2)} times that at the axis [CAL19, physics
+/// section 5]; columns beyond the wall get the factor of the axis plane, 1.
+std::vector<float> column_weights(const ProjectionSpec& spec) {
+  const double unit = spec.filter.window == Window::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
+  std::vector<float> weights;
+  for (int c = 0; c < spec.geometry.columns; ++c) {
+    double weight = unit;
+    if (spec.wall_radius_mm) {
+      const double t = c - 0.5 * (spec.geometry.columns - 1);
+      const double radius = *spec.wall_radius_mm / spec.voxel_mm;
+      weight *= std::exp(spec.geometry.alpha_per_px * std::sqrt(std::max(0.0, radius * radius - t * t)));
+    }
+    weights.push_back(static_cast<float>(weight));
+  }
+  return weights;
+}
+
+}  // namespace
+
+Projections::Projections(const ProjectionSpec& spec)
+    : spec_(spec),
+      filter_(spec.geometry.columns, matched(spec.filter, spec.geometry)),
+      weights_(column_weights(spec)) {}
+
+void Projections::work_out(std::span<const Slab> images, std::span<Slab> sinograms) const {
+  forward(spec_.geometry, images, sinograms);
+  for (Slab& sinogram : sinograms) {
+    filter_.apply(sinogram);
+    parallel_for(sinogram.height, [&](int a) {
+      float* value = sinogram.at(0, a);
+      for (const float weight : weights_) {
+        for (int lane = 0; lane < lanes; ++lane) *value++ *= weight;
+      }
+    });
+  }
+}
+
+float lowest(const Slab& slab) {
+  std::vector<float> rows(static_cast<std::size_t>(slab.height), 0.0F);
+  parallel_for(slab.height, [&](int y) {
+    const float* values = slab.at(0, y);
+    rows[static_cast<std::size_t>(y)] = *std::min_element(values, values + slab.width * lanes);
+  });
+  return std::min(0.0F, *std::min_element(rows.begin(), rows.end()));
+}
+
+void raise_and_clip(Slab& slab, float raise, float floor) {
+  parallel_for(slab.height, [&](int y) {
+    float* values = slab.at(0, y);
+    for (int i = 0; i < slab.width * lanes; ++i) values[i] = std::max(values[i] + raise, floor);
+  });
+}
+
+const std::vector<std::string>& negative_names() {
+  static const std::vector<std::string> names{"keep", "clip", "offset"};
+  return names;
+}
+
+int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes) {
+  const std::size_t image = static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny);
+  const std::size_t sinogram = static_cast<std::size_t>(geometry.columns) * static_cast<std::size_t>(geometry.angles);
+  const std::size_t slab_bytes =
+      (2 * image + 3 * sinogram) * lanes * sizeof(float);  // slabs, slices read, images written
+  return static_cast<int>(std::clamp<std::size_t>(budget_bytes / slab_bytes, 1, 4));
+}
+
+}  // namespace vam::tomo

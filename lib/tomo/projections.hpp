@@ -1,0 +1,51 @@
+// From slices of a part to the projections to show: project, filter, weight, deal with negative values.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tomo/filter.hpp"
+#include "tomo/radon.hpp"
+
+namespace vam::tomo {
+
+/// What is done about negative light [CAL17]: nothing, set to 0, or raised by the lowest value of the whole stack.
+enum class Negative { keep, clip, offset };
+
+struct ProjectionSpec {
+  ParallelGeometry geometry;  // alpha_per_px != 0: the exponential transform and its inverse filter
+  double voxel_mm = 1;
+  FilterSpec filter{Window::none, 1, 0, 0};
+  std::optional<double> wall_radius_mm;  // give the light at this radius instead of at the axis, in an absorber
+};
+
+/// Values without a filter: integrals of coverage along lines, in mm. With one: light per radian of turn, such that the
+/// dose sum over all angles, angle_step_rad * A* g (with weight e^{-alpha u}), is the part again [physics section 4,
+/// 5].
+class Projections {
+ public:
+  explicit Projections(const ProjectionSpec& spec);
+  /// Fills the sinograms. Several slabs a call share the weights.
+  void work_out(std::span<const Slab> images, std::span<Slab> sinograms) const;
+
+ private:
+  ProjectionSpec spec_;
+  Filter filter_;
+  std::vector<float> weights_;  // per column
+};
+
+/// The lowest value, at most 0.
+[[nodiscard]] float lowest(const Slab& slab);
+
+/// value = max(value + raise, floor).
+void raise_and_clip(Slab& slab, float raise, float floor);
+
+/// "keep", "clip", "offset" in the order of the enumeration.
+[[nodiscard]] const std::vector<std::string>& negative_names();
+
+/// Slabs a pass, 1 to 4, so that the largest slab of each kind keeps a pass within `budget_bytes`.
+[[nodiscard]] int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes = std::size_t{1} << 30);
+
+}  // namespace vam::tomo
