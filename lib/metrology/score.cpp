@@ -50,7 +50,7 @@ Score::Score(const ScoreOptions& options, int width, int height)
   inside_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      inside_.push_back(std::hypot(x - options.axis_x, y - options.axis_y) <= options.writable_radius);
+      inside_.push_back(options.circle.contains(x, y));
     }
   }
 }

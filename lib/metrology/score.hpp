@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 
 namespace vam::metrology {
 
 struct ScoreOptions {
-  double axis_x = 0;  // voxels
-  double axis_y = 0;
-  double writable_radius = 0;       // voxels; void outside it is not judged
+  model::Circle circle;             // the writable one; void outside it is not judged
   bool surface = false;             // surface voxels count too: part when at least half covered, else void
   bool absolute = false;            // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;               // alpha: extremes are also given at the alpha/2 percentiles

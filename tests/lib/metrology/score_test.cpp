@@ -17,8 +17,7 @@ const std::vector<float> dose{9, 0.2F, 9, 0.1F, 0.8F, 0.7F, 9, 1.0F, 9};
 
 ScoreOptions options() {
   ScoreOptions o;
-  o.axis_x = o.axis_y = 1;
-  o.writable_radius = 1;
+  o.circle = {1, 1, 1};
   return o;
 }
 

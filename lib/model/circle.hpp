@@ -1,0 +1,25 @@
+// The disc of a slice that light reaches.
+#pragma once
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+
+namespace vam::model {
+
+/// In voxels of the slice.
+struct Circle {
+  double axis_x = 0;
+  double axis_y = 0;
+  double radius = 0;
+  [[nodiscard]] bool contains(int x, int y) const {
+    const double dx = x - axis_x;
+    const double dy = y - axis_y;
+    return dx * dx + dy * dy <= radius * radius;
+  }
+};
+
+/// The printer's writable circle, at most the circle inside the grid. Throws Fault::data when the rotation axis
+/// (x = y = 0) is not inside the grid.
+[[nodiscard]] Circle writable_circle(const Grid& grid, const Printer& printer);
+
+}  // namespace vam::model

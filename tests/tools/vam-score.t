@@ -1,0 +1,46 @@
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+vam-slice --shape disc-grid --voxel 0.2 -o part.vdb || exit 1
+vam-slice --shape hollow-cylinder --voxel 0.2 -o other.vdb || exit 1
+
+# The coverage itself is a perfect dose.
+quiet "a perfect dose" vam-score --grid target part.vdb --report perfect.json
+holds "its window is the whole dose, but for rounding" "$(json perfect.json pw) > 0.998"
+is "no voxel errs" "$(json perfect.json ver)" 0.0
+is "the print is the part" "$(json perfect.json iou)" 1.0
+ok "its own target, given by name" vam-score --grid target part.vdb --target part.vdb
+ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
+ok "JSON on stdout is the report's figures" sh -c 'vam-score --json --grid target part.vdb >out.json'
+is "same numbers" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 13
+
+quiet "met conditions" vam-score --grid target part.vdb --require 'ver<=0.01, pw>=0'
+vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
+is "an unmet condition is status 1" $? 1
+ok "that says why" grep -Eq "^vam-score: pw = [0-9.]+, but pw>1.5 is required$" why
+holds "after the table" "$(wc -l <table) > 10"
+quiet "at a critical dose" vam-score --grid target part.vdb --critical-dose 0.5 --report at.json
+is "all of the part cures" "$(json at.json cured_part)" 1.0
+
+quiet "the print as a mesh" vam-score --grid target part.vdb --print print.ply
+is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
+quiet "the print as points" vam-score --grid target part.vdb --print points.ply --print-as points
+is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
+
+fails 64 "no figure is called 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
+fails 64 "is not a number" vam-score --grid target part.vdb --require 'ver<=x'
+fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
+fails 64 'print-at' vam-score --grid target part.vdb --print-at -1
+fails 64 'is also the input' vam-score --grid target part.vdb --print part.vdb
+fails 65 "no grid 'dose'" vam-score part.vdb
+fails 65 'make the dose for this target' vam-score --grid target part.vdb --target other.vdb
+fails 65 'nothing prints' vam-score --grid target part.vdb --print none.ply --print-at 7
+fails 66 'absent.vdb' vam-score absent.vdb
+fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb
+head -c 2000 part.vdb >cut.vdb
+fails 65 'cut.vdb' vam-score --grid target cut.vdb
+fails 73 'nowhere' vam-score --grid target part.vdb --print nowhere/print.ply
+fails 74 'full' vam-score --grid target part.vdb --print /dev/full
+fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
+
+done_testing
