@@ -33,16 +33,18 @@ PerSlice reduce(std::span<const Slab> images, float start, const Fold& fold, con
   return result;
 }
 
-/// Voxels of a slice without a whole part voxel: those with at least half of its largest coverage stand for the part.
-void promote_thin(const Slab& slab, std::size_t lane, std::vector<Label>& labels) {
+/// A slice without a whole part voxel, such as a thin wall's or one that the part's flat end cuts.
+void settle_thin(Slab& slab, std::size_t lane, std::vector<Label>& labels) {
+  constexpr float half = 0.5F;
   float most = 0;
   for (std::size_t i = lane; i < labels.size(); i += lanes) {
     if (labels[i] == Label::part) return;
-    if (labels[i] == Label::surface) most = std::max(most, slab.values[i]);
+    most = std::max(most, slab.values[i]);
   }
-  if (most <= 0) return;
+  const float gain = most >= half ? 1.0F / most : 0.0F;
   for (std::size_t i = lane; i < labels.size(); i += lanes) {
-    if (labels[i] == Label::surface && slab.values[i] >= 0.5F * most) labels[i] = Label::part;
+    slab.values[i] *= gain;
+    if (labels[i] == Label::surface && slab.values[i] >= half) labels[i] = Label::part;
   }
 }
 
@@ -76,7 +78,7 @@ Problem make_problem(const float* slices, int count, int width, int height, cons
         }
       }
     });
-    parallel_for(used, [&](int lane) { promote_thin(slab, static_cast<std::size_t>(lane), labels); });
+    parallel_for(used, [&](int lane) { settle_thin(slab, static_cast<std::size_t>(lane), labels); });
     problem.target.push_back(std::move(slab));
     problem.labels.push_back(std::move(labels));
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "tomo/slab.hpp"
 
@@ -19,17 +20,7 @@ using tomo::Slab;
 inline constexpr int slabs_per_pass = 4;
 inline constexpr int slices_per_pass = slabs_per_pass * lanes;
 
-/// The disc that light reaches, in voxels of the slice.
-struct Circle {
-  double axis_x = 0;
-  double axis_y = 0;
-  double radius = 0;
-  [[nodiscard]] bool contains(int x, int y) const {
-    const double dx = x - axis_x;
-    const double dy = y - axis_y;
-    return dx * dx + dy * dy <= radius * radius;
-  }
-};
+using model::Circle;
 
 /// The doses between which the print's threshold may lie: void below low, part above high. The printing threshold is
 /// in the middle, the same number for every slice.
@@ -47,8 +38,9 @@ struct Problem {
 };
 
 /// `count` row-major slices of width x height, one after the other. What lies outside the circle is left out (check
-/// with reach()). A slice that has coverage but no voxel wholly inside the part, such as a thin wall's, takes the
-/// voxels with at least half of its largest coverage for part: otherwise nothing would ask for it to be printed.
+/// with reach()). A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the
+/// part: if its largest coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at
+/// least half of it for part; otherwise it stays dark.
 [[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
                                    const Window& window);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "base/json.hpp"
 #include "optimize/iterate.hpp"
 
 namespace vam::optimize {
@@ -38,5 +39,12 @@ struct VolumeOutcome {
 /// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
 /// the circle.
 VolumeOutcome optimise(const VolumeTask& task, const Operator& light);
+
+/// The fewest columns that see the circle, odd or even as nx, so that the columns of angle 0 are voxels.
+[[nodiscard]] int columns_for(const Circle& circle, int nx);
+
+/// For --report and --trace.
+[[nodiscard]] Json report(const VolumeOutcome& outcome);
+[[nodiscard]] std::string trace_csv(const std::vector<model::DoseMetrics>& trace);
 
 }  // namespace vam::optimize

@@ -107,6 +107,20 @@ TEST_CASE("more slices than a pass come out in order, each as if alone") {
   CHECK(worst < 1e-5F * largest);
 }
 
+TEST_CASE("a slice that the part only grazes is printed from half coverage on") {
+  auto cut = [](float coverage) {
+    auto slice = oracle::wheel(size);
+    for (float& v : slice) v *= coverage;
+    return slice;
+  };
+  const auto result = run({oracle::wheel(size), cut(0.6F), cut(0.4F)});
+  const auto largest = [&](std::size_t s) {
+    return *std::max_element(result.images[s].values.begin(), result.images[s].values.end());
+  };
+  CHECK(largest(1) == doctest::Approx(largest(0)).epsilon(0.1));
+  CHECK(largest(2) == 0.0F);
+}
+
 TEST_CASE("a part beyond the light is refused with both radii") {
   VolumeTask task;
   task.circle = {31.5, 31.5, 20};
