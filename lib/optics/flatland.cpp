@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
 #include "optics/taps.hpp"
 
 namespace vam::optics {
@@ -38,6 +42,43 @@ std::vector<float> projection_at(const Image& sinogram, const model::StackInfo& 
     for (std::size_t c = 0; c < projection.size(); ++c) projection[c] += taps.weights[k] * row[c];
   }
   return projection;
+}
+
+Canvas flatland_canvas(const model::Projector& projector, double column_offset, double row_offset) {
+  return {projector.columns, projector.rows, projector.pixel_mm, 0.5 * (projector.columns - 1) + column_offset,
+          0.5 * (projector.rows - 1) + row_offset};
+}
+
+FlatlandSlice::FlatlandSlice(std::string subject, const model::StackInfo& info, const Canvas& canvas, double z_mm)
+    : subject_(std::move(subject)), info_(info), canvas_(canvas), wanted_mm_(z_mm) {}
+
+void FlatlandSlice::add(const Image& sinogram, double z_mm) {
+  const bool first = nearest_.values.empty();
+  low_mm_ = first ? z_mm : std::min(low_mm_, z_mm);
+  high_mm_ = first ? z_mm : std::max(high_mm_, z_mm);
+  if (!first && std::abs(z_mm - wanted_mm_) >= std::abs(nearest_mm_ - wanted_mm_)) return;
+  nearest_ = sinogram;
+  nearest_mm_ = z_mm;
+}
+
+void FlatlandSlice::check() const {
+  const std::string z = "z = " + format_number(wanted_mm_) + " mm";
+  if (std::abs(nearest_mm_ - wanted_mm_) > 0.5 * info_.row_mm + 1e-6) {
+    throw Error{Fault::data, subject_ + ": has no slice at " + z + "; its slices lie from " + format_number(low_mm_) +
+                                 " to " + format_number(high_mm_) + " mm"};
+  }
+  const float least = *std::min_element(nearest_.values.begin(), nearest_.values.end());
+  if (least < 0) {
+    throw Error{Fault::data, subject_ + ": has a value of " + format_number(static_cast<double>(least)) + " at " + z +
+                                 "; light cannot be negative: clip or offset it in vam-sinogram"};
+  }
+  if (!(peak() > 0)) throw Error{Fault::data, subject_ + ": is dark at " + z + "; there is nothing to project"};
+}
+
+float FlatlandSlice::peak() const { return *std::max_element(nearest_.values.begin(), nearest_.values.end()); }
+
+Image FlatlandSlice::frame(double angle_deg, double span_deg) const {
+  return smear(projection_at(nearest_, info_, angle_deg, span_deg), info_.pixel_mm, angle_deg * rad_per_deg, canvas_);
 }
 
 }  // namespace vam::optics

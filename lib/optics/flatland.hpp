@@ -4,9 +4,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/image.hpp"
+#include "model/printer.hpp"
 #include "model/stack.hpp"
 
 namespace vam::optics {
@@ -20,6 +22,10 @@ struct Canvas {
   double axis_row = 0;
 };
 
+/// The projector's picture with the axis of the part in the middle, moved by the offsets in pixels to the right and
+/// down.
+[[nodiscard]] Canvas flatland_canvas(const model::Projector& projector, double column_offset, double row_offset);
+
 /// Smears one 1-D parallel projection (pitch detector_mm, axis in the middle) across the plane along the light: pixel
 /// (x, y) shows the projection at t = x cos theta + y sin theta [CAL17 eq 1], interpolated linearly, dark beyond its
 /// ends.
@@ -30,5 +36,31 @@ struct Canvas {
 /// its angles, or averaged over those that the span covers.
 [[nodiscard]] std::vector<float> projection_at(const Image& sinogram, const model::StackInfo& info, double angle_deg,
                                                double span_deg);
+
+/// The slice of a virtual sinogram stack that is nearest to one z, as a source of frames.
+class FlatlandSlice {
+ public:
+  /// `subject` begins messages.
+  FlatlandSlice(std::string subject, const model::StackInfo& info, const Canvas& canvas, double z_mm);
+
+  /// The next slice of the stack; only the nearest so far is kept.
+  void add(const Image& sinogram, double z_mm);
+
+  /// Throws Fault::data when no slice lies at z (the range is in the message), or it is dark or has negative values.
+  void check() const;
+
+  [[nodiscard]] float peak() const;
+  [[nodiscard]] Image frame(double angle_deg, double span_deg) const;
+
+ private:
+  std::string subject_;
+  model::StackInfo info_;
+  Canvas canvas_;
+  double wanted_mm_;
+  double nearest_mm_ = 0;
+  double low_mm_ = 0;  // of all slices
+  double high_mm_ = 0;
+  Image nearest_;
+};
 
 }  // namespace vam::optics

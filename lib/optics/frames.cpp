@@ -54,69 +54,108 @@ FramePlace frame_place(const model::Projector& projector, double column_offset, 
 }
 
 FrameComposer::FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place)
-    : subject_(std::move(subject)), info_(info), place_(place) {
+    : subject_(std::move(subject)),
+      info_(info),
+      place_(place),
+      column_peak_(static_cast<std::size_t>(std::max(place.columns, 0)) * 3, 0.0F) {
   require_projector_stack(subject_, info, place);
 }
 
-void FrameComposer::add(const Image& sinogram, double z_mm) {
-  int low = sinogram.width;
+namespace {
+
+// Columns of a sinogram that are not 0 at every angle.
+struct Lit {
+  int low = std::numeric_limits<int>::max();
   int high = -1;
   float least = 0;
+  float most = 0;
+};
+
+Lit lit_columns(const Image& sinogram) {
+  Lit lit;
   for (int a = 0; a < sinogram.height; ++a) {
     const float* row = sinogram.row(a);
     for (int c = 0; c < sinogram.width; ++c) {
       if (row[c] == 0) continue;
-      low = std::min(low, c);
-      high = std::max(high, c);
-      least = std::min(least, row[c]);
-      peak_ = std::max(peak_, row[c]);
+      lit.low = std::min(lit.low, c);
+      lit.high = std::max(lit.high, c);
+      lit.least = std::min(lit.least, row[c]);
+      lit.most = std::max(lit.most, row[c]);
     }
   }
-  if (least < 0) {
-    throw Error{Fault::data, subject_ + ": has a value of " + format_number(least) + " at z = " + format_number(z_mm) +
-                                 " mm; light cannot be negative: clip or offset it in vam-sinogram"};
-  }
-  Slice slice{z_mm, 0, 0, {}};
-  if (high >= low) {
-    // Device column x shows sinogram column x - offset.
-    const Taps taps = sample_taps(-place_.column_offset, 1);
-    const int last_tap = taps.first + static_cast<int>(taps.weights.size()) - 1;
-    slice.first = low - last_tap;
-    slice.width = high - taps.first - slice.first + 1;
-    if (slice.first < 0 || slice.first + slice.width > place_.columns) {
-      throw Error{Fault::data, subject_ + ": light on columns " + range(slice.first, slice.first + slice.width - 1) +
-                                   ", but the projector has columns " + range(0, place_.columns - 1) +
-                                   "; make --column-offset smaller"};
-    }
-    slice.values.assign(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(sinogram.height), 0.0F);
-    float* to = slice.values.data();
-    for (int a = 0; a < sinogram.height; ++a) {
-      for (int x = slice.first; x < slice.first + slice.width; ++x, ++to) {
-        for (std::size_t t = 0; t < taps.weights.size(); ++t) {
-          const int c = x + taps.first + static_cast<int>(t);
-          if (c >= 0 && c < sinogram.width) *to += taps.weights[t] * sinogram(c, a);
-        }
-      }
-    }
-  }
-  slices_.push_back(std::move(slice));
+  return lit;
 }
 
-void FrameComposer::check() const {
+}  // namespace
+
+void FrameComposer::add(const Image& sinogram, double z_mm) {
+  const Lit lit = lit_columns(sinogram);
+  if (lit.least < 0) {
+    throw Error{Fault::data, subject_ + ": has a value of " + format_number(static_cast<double>(lit.least)) +
+                                 " at z = " + format_number(z_mm) +
+                                 " mm; light cannot be negative: clip or offset it in vam-sinogram"};
+  }
+  Slice& slice = slices_.emplace_back();
+  slice.z_mm = z_mm;
+  if (lit.high < 0) return;
+  slice.peak = lit.most;
+  peak_ = std::max(peak_, lit.most);
+  // Device column x shows sinogram columns x - offset; x runs over all that get light, on the device or beside it.
+  const Taps taps = sample_taps(-place_.column_offset, 1);
+  const int count = static_cast<int>(taps.weights.size());
+  const int low = std::max(lit.low - taps.first - count + 1, -place_.columns);
+  const int high = std::min(lit.high - taps.first, 2 * place_.columns - 1);
+  slice.first = std::clamp(low, 0, place_.columns);
+  slice.width = std::max(std::min(high + 1, place_.columns) - slice.first, 0);
+  slice.values.reserve(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(sinogram.height));
+  for (int a = 0; a < sinogram.height; ++a) {
+    const float* row = sinogram.row(a);
+    for (int x = low; x <= high; ++x) {
+      float value = 0;
+      for (int t = 0; t < count; ++t) {
+        const int c = x + taps.first + t;
+        if (c >= 0 && c < sinogram.width) value += taps.weights[static_cast<std::size_t>(t)] * row[c];
+      }
+      float& most = column_peak_[static_cast<std::size_t>(x + place_.columns)];
+      most = std::max(most, value);
+      if (x >= 0 && x < place_.columns) slice.values.push_back(value);
+    }
+  }
+}
+
+void FrameComposer::check_columns(float dark) const {
+  int low = 2 * place_.columns;
+  int high = -place_.columns - 1;
+  for (int x = -place_.columns; x < 2 * place_.columns; ++x) {
+    if (column_peak_[static_cast<std::size_t>(x + place_.columns)] <= dark) continue;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  if (low >= 0 && high < place_.columns) return;
+  throw Error{Fault::data, subject_ + ": light on columns " + range(low, high) + ", but the projector has columns " +
+                               range(0, place_.columns - 1) + "; make --column-offset smaller"};
+}
+
+void FrameComposer::check_rows(float dark) const {
   double top = std::numeric_limits<double>::infinity();
   double bottom = -top;
   for (const Slice& slice : slices_) {
-    if (slice.width == 0) continue;
+    if (slice.peak <= dark) continue;
     top = std::min(top, row_of(slice.z_mm));
     bottom = std::max(bottom, row_of(slice.z_mm));
   }
-  if (!(peak_ > 0)) throw Error{Fault::data, subject_ + ": is all dark; there is nothing to project"};
   const double half = 0.5 * slice_mm() / place_.pixel_mm;  // of a slice, in rows
   constexpr double forgiven = 0.01;                        // of a row
-  if (top - half < -0.5 - forgiven || bottom + half > place_.rows - 0.5 + forgiven) {
-    throw Error{Fault::data, subject_ + ": light on rows " + range(top, bottom) + ", but the projector has rows " +
-                                 range(0, place_.rows - 1) + "; move the part or --row-offset, or make it shorter"};
-  }
+  if (top - half >= -0.5 - forgiven && bottom + half <= place_.rows - 0.5 + forgiven) return;
+  throw Error{Fault::data, subject_ + ": light on rows " + range(top, bottom) + ", but the projector has rows " +
+                               range(0, place_.rows - 1) + "; move the part or --row-offset, or make it shorter"};
+}
+
+void FrameComposer::check() const {
+  if (!(peak_ > 0)) throw Error{Fault::data, subject_ + ": is all dark; there is nothing to project"};
+  const float dark = peak_ / 131072;
+  check_columns(dark);
+  check_rows(dark);
 }
 
 void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {

@@ -44,11 +44,11 @@ class FrameComposer {
   FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place);
 
   /// The next slice, at z; columns are moved by the column offset (linear interpolation). Throws Fault::data for values
-  /// that are negative, and for light that leaves the projector's columns, with both numbers.
+  /// that are negative.
   void add(const Image& sinogram, double z_mm);
 
-  /// Throws Fault::data when light lies on rows that the projector does not have (with both numbers), and when there is
-  /// no light at all.
+  /// Throws Fault::data when light lies on rows or columns that the projector does not have, with both numbers, and
+  /// when there is no light at all. What is less than half a level of 16 bits does not count as light.
   void check() const;
 
   /// Largest value of all slices, in the units of the stack.
@@ -62,10 +62,13 @@ class FrameComposer {
  private:
   struct Slice {
     double z_mm = 0;
-    int first = 0;              // device column of the first value of a row
-    int width = 0;              // 0: dark
+    int first = 0;  // device column of the first value of a row
+    int width = 0;  // 0: dark
+    float peak = 0;
     std::vector<float> values;  // angles x width
   };
+  void check_columns(float dark) const;
+  void check_rows(float dark) const;
   void add_row(const Slice& slice, int angle, float weight, float* row) const;
   [[nodiscard]] double row_of(double z_mm) const { return place_.axis_row - z_mm / place_.pixel_mm; }
 
@@ -75,6 +78,7 @@ class FrameComposer {
   model::StackInfo info_;
   FramePlace place_;
   std::vector<Slice> slices_;
+  std::vector<float> column_peak_;  // largest value on device column index - columns, three times as many columns
   float peak_ = 0;
 };
 

@@ -117,6 +117,29 @@ int GreyLevels::level(float intensity) const {
   return static_cast<int>(lower ? first_at_least(intensity_, below) : above);
 }
 
+LightTally& LightTally::operator+=(const LightTally& other) {
+  light += other.light;
+  pixels += other.pixels;
+  lit += other.lit;
+  clipped += other.clipped;
+  return *this;
+}
+
+LightTally limit_to_full(Image& image, float scale) {
+  constexpr float full = 1;
+  constexpr float rounding = 1e-6F;  // the peak itself, divided by the peak in float
+  LightTally tally;
+  tally.pixels = static_cast<long>(image.size());
+  for (float& value : image.values) {
+    value *= scale;
+    tally.lit += value > 0 ? 1 : 0;
+    tally.clipped += value > full + rounding ? 1 : 0;
+    value = std::min(value, full);
+    tally.light += static_cast<double>(value);
+  }
+  return tally;
+}
+
 GreyImage to_levels(const Image& intensity, const GreyLevels& levels) {
   GreyImage image(intensity.width, intensity.height, levels.bits());
   for (std::size_t i = 0; i < image.values.size(); ++i) {

@@ -58,6 +58,18 @@ class GreyLevels {
   std::vector<float> intensity_;  // rising with the level
 };
 
+/// What became of the light of a picture.
+struct LightTally {
+  double light = 0;  // sum over the pixels, fractions of full
+  long pixels = 0;
+  long lit = 0;      // pixels above 0
+  long clipped = 0;  // pixels that should have been brighter than full
+  LightTally& operator+=(const LightTally& other);
+};
+
+/// Multiplies by scale and clips at full intensity, 1.
+LightTally limit_to_full(Image& image, float scale);
+
 /// Every pixel's nearest level. Intensities are fractions of full; beyond what the projector can do they are clamped.
 [[nodiscard]] GreyImage to_levels(const Image& intensity, const GreyLevels& levels);
 

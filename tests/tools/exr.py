@@ -1,6 +1,6 @@
 """Uncompressed multi-part EXR stacks by the published format alone, for tests: an independent writer and reader.
 
-    exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value
+    exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value reach
     exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
     exr.py get FILE part column row   one pixel
     exr.py attr FILE name             one attribute of part 0
@@ -51,7 +51,7 @@ def blob_row(job, index, a):
         return struct.pack("<%df" % job["width"], *[job["value"]] * job["width"])
     theta = 2 * math.pi * a / job["height"]
     middle = (job["width"] - 1) / 2
-    place = 0.2 * job["width"] * math.cos(theta)
+    place = job["reach"] * job["width"] * math.cos(theta)
     sigma = job["width"] / 12
     return struct.pack("<%df" % job["width"], *[
         (1 + index % 7) * math.exp(-0.5 * ((c - middle - place) / sigma) ** 2) for c in range(job["width"])])
@@ -106,7 +106,7 @@ def read(path):
 def main(verb, path, *rest):
     if verb == "make":
         job = dict(count=3, width=64, height=60, pixel=0.26, row=0.26, space="virtual", kind="sinogram", step=None,
-                   value=None)
+                   value=None, reach=0.2)
         for pair in rest:
             key, value = pair.split("=")
             whole = key in ("count", "width", "height")

@@ -281,3 +281,17 @@ TEST_CASE("flatland: the frames of a made-up sinogram add up to a plain back-pro
   CHECK(at_x == 23);  // 0.8 mm to the right of the axis
   CHECK(at_y == 11);  // 0.4 mm above it
 }
+
+TEST_CASE("flatland takes the slice nearest to z, and says where there is none") {
+  StackInfo info = sinograms(20, 12, 3, 0.1, 0.1, -0.1);
+  const auto fed = [&](double z_mm) {
+    FlatlandSlice slice("part.exr", info, {20, 20, 0.1, 9.5, 9.5}, z_mm);
+    for (int k = 0; k < 3; ++k) slice.add(labelled(info, k), -0.1 + 0.1 * k);
+    return slice;
+  };
+  CHECK(fed(0.04).peak() == labelled(info, 1)(17, 11));
+  CHECK(fed(0.06).peak() == labelled(info, 2)(17, 11));
+  const Image frame = fed(0).frame(90, 30);  // at 90 degrees t = y: row r shows column 19 - r
+  CHECK(frame(3, 4) == doctest::Approx(labelled(info, 1)(15, 3)));
+  CHECK(has(error_of([&] { fed(0.16).check(); }, vam::Fault::data), "z = 0.16 mm; its slices lie from -0.1 to 0.1 mm"));
+}

@@ -101,3 +101,14 @@ TEST_CASE("pictures of levels and of intensity are each other's inverse; beyond 
   CHECK(image.values == std::vector<std::uint16_t>{3, 15, 0});
   CHECK(to_intensity(image, levels).values == std::vector<float>{levels.intensity(3), 1.0F, 0.0F});
 }
+
+TEST_CASE("light beyond full is clipped and counted") {
+  vam::Image light(2, 2);
+  light.values = {0, 1, 2, 4};
+  const auto tally = vam::resin::limit_to_full(light, 0.5F);
+  CHECK(light.values == std::vector<float>{0, 0.5F, 1, 1});
+  CHECK(tally.pixels == 4);
+  CHECK(tally.lit == 3);
+  CHECK(tally.clipped == 1);
+  CHECK(tally.light == 2.5);
+}

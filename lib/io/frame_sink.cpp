@@ -1,0 +1,70 @@
+#include "io/frame_sink.hpp"
+
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/video.hpp"
+
+namespace vam::io {
+
+namespace {
+
+class StackSink : public FrameSink {
+ public:
+  StackSink(const std::string& path, const FrameSinkOptions& options) : writer_(path, options.info, options.stack) {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    for (const auto& frame : frames) {
+      model::ImageInfo about;
+      about.angle_deg = frame.angle_deg;
+      about.has_angle = true;
+      about.time_s = frame.time_s;
+      about.has_time = true;
+      writer_.write(frame.intensity, about);
+    }
+  }
+  void commit() override { writer_.commit(); }
+
+ private:
+  StackWriter writer_;
+};
+
+class VideoSink : public FrameSink {
+ public:
+  VideoSink(const std::string& path, const FrameSinkOptions& options)
+      : writer_(path, {options.info.width, options.info.height, options.bits, options.fps,
+                       join(options.info.history, "\n")}) {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    for (const auto& frame : frames) writer_.write(frame.levels);
+  }
+  void commit() override { writer_.commit(); }
+
+ private:
+  VideoWriter writer_;
+};
+
+}  // namespace
+
+FrameOutput frame_output(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (path == "-" || extension == ".exr") return FrameOutput::stack;
+  if (extension == ".mkv" || extension == ".mp4") return FrameOutput::video;
+  if (extension.empty()) return FrameOutput::folder;
+  throw Error{Fault::usage,
+              path + ": frames go to .exr, .mkv, .mp4 or a folder (end its name in /), not to " + extension};
+}
+
+std::unique_ptr<FrameSink> open_frame_sink(const std::string& path, const FrameSinkOptions& options) {
+  switch (frame_output(path)) {
+    case FrameOutput::stack:
+      return std::make_unique<StackSink>(path, options);
+    case FrameOutput::video:
+      return std::make_unique<VideoSink>(path, options);
+    default:
+      return open_frame_folder(path, options);
+  }
+}
+
+}  // namespace vam::io

@@ -1,0 +1,120 @@
+# vam-project end to end: forms of output, time, place, grey, flatland, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+png="python3 $VAM_SOURCE/tests/tools/png.py"
+
+# A small projector: 64 x 8 pixels of 0.26 mm; 36 frames a turn at 1 frame per second and 10 deg/s.
+cat >printer.toml <<'TOML'
+[projector]
+columns = 64
+rows = 8
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 5
+fps = 1
+TOML
+$exr make part.exr space=projector width=64 height=36 count=3   # slices at z = 0, 0.26, 0.52 mm, brightest 1, 2, 3
+
+# Forms
+quiet "a folder of pictures" vam-project part.exr -o frames/
+is "one frame per time step" "$(ls frames | grep -c png)" 36
+is "the first names" "$(ls frames | head -n 2 | tr '\n' ' ')" "00000.png 00001.png "
+is "size and depth" "$($png size frames/00000.png)" "64 8 8 1"
+is "the index" "$(sed -n '1p;3p' frames/frames.csv | tr '\n' ' ')" "file,time_s,angle_deg 00001.png,1,10 "
+is "history in the picture" "$($png text frames/00000.png Comment | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
+ok "an EXR stack" vam-project part.exr -o frames.exr --compression none
+is "frames of the projector" "$($exr attr frames.exr vam:kind) $($exr attr frames.exr vam:space)" "frames projector"
+vam-project <part.exr >pipe.exr
+is "stdin and stdout give the same pixels" "$($exr sum pipe.exr)" "$($exr sum frames.exr)"
+ok "a lossless video" vam-project part.exr -o print.mkv
+ok "a video to look at" vam-project part.exr -o look.mp4
+is "FFV1 at the projector's rate" "$(ffprobe -v error -count_frames -show_entries stream=codec_name,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 print.mkv)" "ffv1,gray,1/1,36"
+ffmpeg -v error -i print.mkv -f rawvideo -pix_fmt gray video.raw
+for i in 00000 00001 00035; do $png sum frames/$i.png; done | tr '\n' ' ' >pictures.sums
+python3 - >video.sums <<'PY'
+data = open("video.raw", "rb").read()
+print(*[sum(data[512 * n:512 * n + 512]) for n in (0, 1, 35)], end=" ")
+PY
+same "video and pictures have the same pixels" pictures.sums video.sums
+
+# Transposition: row 5 is slice 0, rows go up; the sinogram's row n is frame n.
+brightest=$($exr get pipe.exr 0 44 3)
+unit=$($exr get part.exr 2 44 0)
+is "rows are slices, z up" \
+  "$(for r in 2 3 4 5 6; do $exr get pipe.exr 0 44 $r; done | awk "{ printf \"%.5f \", \$1 / $brightest }")" \
+  "$(for s in 2 1 0; do $exr get part.exr $s 44 0; done | awk "BEGIN { printf \"0.00000 \" } { printf \"%.5f \", \$1 / $unit } END { printf \"0.00000 \" }")"
+holds "frame 9 is angle 9" "($($exr get pipe.exr 9 31 5) / $brightest - $($exr get part.exr 0 31 9) / $unit)^2 < 1e-12"
+
+# Time
+vam-project part.exr --turns 2.5 --speed 20 --report time.json >/dev/null
+is "two and a half turns at 20 deg/s" "$(json time.json frames) $(json time.json duration_s) $(json time.json step_deg)" "45 45.0 20.0"
+vam-project part.exr --turns 2 >twice.exr
+is "the second turn is the first again" "$($exr get twice.exr 40 30 5)" "$($exr get twice.exr 4 30 5)"
+
+# Place
+$exr make middle.exr space=projector width=64 height=36 count=3 reach=0
+vam-project middle.exr >middle-frames.exr
+vam-project middle.exr --column-offset 3 --row-offset -1 >moved.exr
+is "offsets to the right and up" "$($exr get moved.exr 0 39 4)" "$($exr get middle-frames.exr 0 36 5)"
+vam-project part.exr --orientation rotate-180 >turned.exr
+is "rotated by 180 degrees" "$($exr get turned.exr 0 19 2)" "$($exr get pipe.exr 0 44 5)"
+vam-project part.exr --set projector.orientation=flip-rows >flipped.exr
+is "flipped by the settings" "$($exr get flipped.exr 0 44 2)" "$($exr get pipe.exr 0 44 5)"
+
+# Grey
+for bits in 1 2 4 10 16; do
+  vam-project part.exr --bits $bits -o bits-$bits/
+  depth=$bits; [ $bits = 10 ] && depth=16
+  is "$bits bits a pixel" "$($png size bits-$bits/00000.png)" "64 8 $depth 1"
+done
+is "full grey of 2 bits" "$($png get bits-2/00000.png 44 3)" 3
+vam-project part.exr --bits 2 >quantised.exr
+holds "an EXR with --bits is quantised" "($($exr get quantised.exr 0 44 4) - 2 / 3)^2 < 1e-9"
+printf 'grey,intensity\n0,0\n128,1\n255,4\n' >curve.csv
+vam-project part.exr --set projector.response=curve.csv -o curved/
+# Slice 0 wants 1/3 of full, 4/3 of the table's units: above grey 128 on the curve, where the straight line has 85.
+holds "the inverse response" "$($png get curved/00000.png 44 5) > 140 && $($png get curved/00000.png 44 5) < 160"
+is "the straight line" "$($png get frames/00000.png 44 5)" 85
+vam-project part.exr --peak 6 -o half/
+is "--peak halves" "$($png get half/00000.png 44 3)" 127
+ok "clipping succeeds" vam-project part.exr --intensity 3 -o clipped/ --report clipped.json
+is "and says so in one line" "$(grep -c 'beyond full intensity' .log/err)" 1
+holds "and in the report" "$(json clipped.json clipped_fraction) > 0.1"
+
+# Flatland
+$exr make virtual.exr width=64 height=36 count=3
+quiet "flatland of the middle slice" vam-project virtual.exr --flatland 0.3 -o flat.exr --compression none
+holds "at 0 degrees every row is the projection" "($($exr get flat.exr 0 44 0) - $($exr get flat.exr 0 44 7))^2 < 1e-12 && $($exr get flat.exr 0 44 0) > 0.99"
+fails 65 'no slice at z = 3 mm; its slices lie from 0 to 0\.52 mm' vam-project virtual.exr --flatland 3 -o x.exr
+fails 65 'projector' vam-project part.exr --flatland 0 -o x.exr
+
+# The same bytes from one and two threads
+vam-project --threads 1 part.exr -o one.mkv; vam-project --threads 2 part.exr -o two.mkv
+ffmpeg -v error -i one.mkv -f rawvideo one.raw; ffmpeg -v error -i two.mkv -f rawvideo two.raw
+same "1 and 2 threads give identical frames" one.raw two.raw
+
+# Wrong inputs
+fails 65 'virtual.*projector' vam-project virtual.exr -o x/
+fails 65 'light on rows' vam-project part.exr --row-offset -4 -o x/
+fails 65 'light on columns .* projector has columns 0 to 63' vam-project part.exr --column-offset 30 -o x/
+fails 65 '64 columns, but the projector has 32' vam-project part.exr --set projector.columns=32 -o x.exr
+head -c 5000 part.exr >cut.exr
+fails 65 'cut|truncated' vam-project cut.exr -o x/
+$exr make dark.exr space=projector width=64 height=36 value=0
+fails 65 'all dark' vam-project dark.exr -o x.mkv
+$exr make negative.exr space=projector width=64 height=36 value=-1
+fails 65 'negative' vam-project negative.exr -o x.mkv
+printf '0,0\n9,2\n10,1\n' >falls.csv
+fails 65 'falls.csv:3: intensity 1 at grey 10 is below 2' vam-project part.exr --set projector.response=falls.csv -o x/
+fails 66 'none.exr' vam-project none.exr -o x/
+fails 64 'not to .avi' vam-project part.exr -o x.avi
+fails 64 'none of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
+fails 64 'frames a turn' vam-project part.exr --speed 300 -o x/
+fails 64 'part.exr' vam-project part.exr -o part.exr
+mkdir other; echo hello >other/letter.txt
+fails 73 'letter.txt, which is no frame' vam-project part.exr -o other/
+ok "an older folder of frames is replaced" vam-project part.exr --turns 0.5 -o frames/
+is "whole" "$(ls frames | grep -c png)" 18
+ln -s /dev/full full.mkv
+fails 74 'full.mkv' vam-project part.exr -o full.mkv
+done_testing

@@ -1,0 +1,262 @@
+// vam-project: projector frames from sinograms, for files; one frame per time step of the turning stage.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/log.hpp"
+#include "base/parallel.hpp"
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/exr_stack.hpp"
+#include "io/frame_sink.hpp"
+#include "io/printer_file.hpp"
+#include "io/report.hpp"
+#include "io/response_file.hpp"
+#include "io/stream.hpp"
+#include "optics/flatland.hpp"
+#include "optics/frames.hpp"
+#include "resin/response.hpp"
+
+namespace {
+
+using namespace vam;
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::optional<double> fps, speed_deg_s, turns, flatland_mm, peak;
+  std::optional<int> bits;
+  std::string orientation;
+  double column_offset = 0;
+  double row_offset = 0;
+  double intensity = 1;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+  std::string report;
+};
+
+cli::Manual manual() {
+  return {
+      "vam-project",
+      "turn sinograms into the frames that a projector shows",
+      {"A sinogram stack has an image for each slice, with a row for each angle. A projector needs the transposition: "
+       "an "
+       "image for each moment, with a row for each slice. vam-project reads the stack of vam-resample and writes one "
+       "frame for every frame period of the projector while the stage turns.",
+       "The name of the output chooses the form. A name without an ending, or that ends in /, is a folder of numbered "
+       "PNG "
+       "files with an index frames.csv (file, time_s, angle_deg). A name in .mkv is lossless FFV1 video, which may be "
+       "printed from. A name in .mp4 is H.264 video for looking at; it errs by up to 59 of 255 and must not be printed "
+       "from. A name in .exr, or standard output, is an EXR frame stack with the wanted intensity as a fraction of "
+       "full, "
+       "quantised only when --bits is given.",
+       "Time: frame n is centred on time n / fps, when the stage stands at n x speed / fps; it is shown for one frame "
+       "period around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its "
+       "rows; otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "
+       "angles, averaged over the angles that it spans, so that a turn delivers the same light.",
+       "Rows: z = 0 is at projector.axis_row, counted from the top, and z points upwards. Slices are interpolated "
+       "linearly "
+       "to rows, or averaged where they are finer than rows. Columns are those of vam-resample, which has put the axis "
+       "at "
+       "projector.axis_column; --column-offset moves them from there. Light that would fall outside the projector is "
+       "an "
+       "error. The orientation is applied last.",
+       "Grey: a value of --peak (by default the largest of the stack) becomes full intensity, times --intensity. Each "
+       "pixel gets the grey level whose intensity, by the measured response (projector.response) or else the straight "
+       "line from min_intensity to max_intensity, is nearest to the wanted one.",
+       "With --flatland the frames show one slice of a virtual sinogram from above: each is the 1-D projection at its "
+       "angle, smeared across the plane. Projected onto a thin layer of resin they print the cross-section, and the "
+       "sum "
+       "of the frames is its dose (Kelly et al. 2017, fig 3)."},
+      {{"A part's frames as numbered pictures:",
+        "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-resample -o "
+        "projector.exr && vam-project projector.exr -o frames/"},
+       {"The same as a lossless video of two turns at 24 deg/s and 30 frames per second:",
+        "vam-project projector.exr --turns 2 --speed 24 --fps 30 -o print.mkv"},
+       {"Black and white frames for a projector that hangs upside down:",
+        "vam-project projector.exr --bits 1 --orientation rotate-180 -o black-white/"},
+       {"The validation movie of the slice in the middle:",
+        "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-project "
+        "--flatland 0 "
+        "-o flatland.mp4"}},
+      {"Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
+       "x 200 "
+       "slices x 400 lit columns: 115 MB), and a few frames. A sinogram cannot be turned into frames slice by slice.",
+       "PNG: 1, 2, 4 and 8 bits are stored at that depth. 10 bits are stored in 16, spread over the full range and "
+       "marked "
+       "by an sBIT chunk, as the PNG specification asks; shifting right by 6 gives the level back. Video: depths below "
+       "8 "
+       "bits are spread over 0..255, 10 bits are gray10le with the levels as they are, 16 bits gray16le. Matroska "
+       "rounds "
+       "time stamps to 1 ms; the frame rate itself is exact.",
+       "stage.direction has done its work in vam-resample, whose rows are stage angles; the stage angle of frames only "
+       "rises.",
+       "Sources: Kelly et al., Computed Axial Lithography, 2017; Orth et al., Correcting ray distortion in tomographic "
+       "additive manufacturing, Opt. Express 2021."},
+      {"vam-resample", "vam-optimize", "vam-stage", "vam-view"}};
+}
+
+void declare(cli::App& app, Options& options) {
+  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) for the projector; with --flatland a virtual one.");
+  cli::add_output(app, options.output);
+  app.group("Time");
+  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second; without it projector.fps.");
+  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed; without it stage.speed_deg_s.");
+  app.option("--turns", "N", options.turns, cli::positive, "Turns, whole or not; without it stage.turns.");
+  app.group("Place");
+  app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
+             "How the projector is mounted; without it projector.orientation.");
+  app.option("--column-offset", "PX", options.column_offset, {-65536, 65536},
+             "Move the light to the right, by fractions too.");
+  app.option("--row-offset", "PX", options.row_offset, {-65536, 65536}, "Move the light down, by fractions too.");
+  app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
+  app.group("Grey");
+  app.option("--bits", "N", options.bits, {1, 16}, "1, 2, 4, 8, 10 or 16 bits a pixel; without it projector.bits.");
+  app.option("--peak", "VALUE", options.peak, cli::positive,
+             "The value that becomes full intensity; without it the largest of the stack.");
+  app.option("--intensity", "FACTOR", options.intensity, cli::positive,
+             "Multiplies all light; beyond full it is clipped.");
+  cli::add_printer(app, options.printer);
+  app.group("Output and machine");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  cli::add_report(app, options.report);
+  cli::add_threads(app);
+}
+
+model::Printer settings(const Options& options) {
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  printer.projector.fps = options.fps.value_or(printer.projector.fps);
+  printer.projector.bits = options.bits.value_or(printer.projector.bits);
+  printer.stage.speed_deg_s = options.speed_deg_s.value_or(printer.stage.speed_deg_s);
+  if (!options.orientation.empty()) printer.projector.orientation = options.orientation;
+  const int bits = printer.projector.bits;
+  if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 10 && bits != 16) {
+    throw Error{Fault::usage, "--bits: " + std::to_string(bits) + " is none of 1, 2, 4, 8, 10, 16"};
+  }
+  return printer;
+}
+
+// What to show around a stage angle, over a span of angles, in the units of the stack whose largest value is peak.
+struct Light {
+  std::function<Image(double angle_deg, double span_deg)> frame;
+  double peak = 0;
+};
+
+template <class Source>
+Light read_light(io::StackReader& reader, const std::shared_ptr<Source>& source) {
+  Progress progress("reading", reader.info().count);
+  Image slice;
+  for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source->add(slice, about.z_mm);
+  source->check();
+  return {[source](double angle, double span) { return source->frame(angle, span); },
+          static_cast<double>(source->peak())};
+}
+
+Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector) {
+  const auto& info = reader.info();
+  const double right = options.column_offset;
+  const double down = options.row_offset;
+  if (options.flatland_mm) {
+    io::require(options.input, info, model::Kind::sinogram, model::Space::virtual_);
+    const auto canvas = optics::flatland_canvas(projector, right, down);
+    return read_light(reader,
+                      std::make_shared<optics::FlatlandSlice>(options.input, info, canvas, *options.flatland_mm));
+  }
+  io::require(options.input, info, model::Kind::sinogram, model::Space::projector);
+  const auto place = optics::frame_place(projector, right, down);
+  return read_light(reader, std::make_shared<optics::FrameComposer>(options.input, info, place));
+}
+
+resin::Response response_of(const model::Projector& projector) {
+  if (projector.response.empty()) return resin::projector_response(projector);
+  return resin::Response(io::read_response(projector.response));
+}
+
+// All frames of the schedule through the grey levels into the sink, a few at a time.
+resin::LightTally show(const Light& light, float scale, const optics::FrameSchedule& schedule,
+                       const model::Projector& projector, bool quantise, io::FrameSink& sink) {
+  const resin::GreyLevels levels(response_of(projector), projector.bits);
+  std::vector<resin::LightTally> tallies(static_cast<std::size_t>(schedule.count));
+  const auto develop = [&](int n) {
+    io::ProjectorFrame frame;
+    frame.time_s = schedule.time_s(n);
+    frame.angle_deg = schedule.angle_deg(n);
+    frame.intensity = light.frame(frame.angle_deg, schedule.step_deg);
+    tallies[static_cast<std::size_t>(n)] = resin::limit_to_full(frame.intensity, scale);
+    optics::orient(frame.intensity, projector.orientation);
+    frame.levels = resin::to_levels(frame.intensity, levels);
+    if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
+    return frame;
+  };
+  Progress progress("projecting", schedule.count);
+  const int batch = 2 * threads();
+  for (int first = 0; first < schedule.count; first += batch) {
+    std::vector<io::ProjectorFrame> frames(static_cast<std::size_t>(std::min(batch, schedule.count - first)));
+    parallel_for(static_cast<int>(frames.size()),
+                 [&](int i) { frames[static_cast<std::size_t>(i)] = develop(first + i); });
+    sink.write(frames);
+    progress.tick(static_cast<long>(frames.size()));
+  }
+  sink.commit();
+  resin::LightTally all;
+  for (const auto& tally : tallies) all += tally;
+  return all;
+}
+
+Json figures(const optics::FrameSchedule& schedule, int bits, double peak, const resin::LightTally& tally) {
+  const auto lit = static_cast<double>(std::max(tally.lit, 1L));
+  return {{"frames", schedule.count},
+          {"fps_hz", schedule.fps},
+          {"step_deg", schedule.step_deg},
+          {"duration_s", schedule.count / schedule.fps},
+          {"bits", bits},
+          {"peak", peak},
+          {"mean_intensity_fraction", tally.light / static_cast<double>(tally.pixels)},
+          {"mean_lit_intensity_fraction", tally.light / lit},
+          {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};
+}
+
+void run(const cli::App& app, Options& options) {
+  const model::Printer printer = settings(options);
+  const model::Projector& projector = printer.projector;
+  if (options.printer.print) {
+    io::OutputFile out(options.output, io::Content::text);
+    out.write(io::printer_toml(printer));
+    return out.commit();
+  }
+  const double turns = options.turns.value_or(printer.stage.turns);
+  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
+  if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);
+
+  io::StackReader reader(options.input);
+  const Light light = read_light(options, reader, projector);
+  const double peak = options.peak.value_or(light.peak);
+
+  const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
+  io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
+                             projector.bits, options.stack};
+  facts.info.units = "fraction of full intensity";
+  facts.info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, facts);
+  const auto scale = static_cast<float>(options.intensity / peak);
+  const auto tally = show(light, scale, schedule, projector, app.given("--bits"), *sink);
+  if (tally.clipped > 0) {
+    warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
+         " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
+  }
+  io::write_report(options.report, "vam-project/1", figures(schedule, projector.bits, peak, tally));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::App app(manual());
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { run(app, options); });
+}
