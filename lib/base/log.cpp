@@ -18,6 +18,10 @@ void set_program_name(const std::string& name) { program = name; }
 
 void warn(const std::string& line) { std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), line.c_str()); }
 
+void note(const std::string& line) {
+  if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
 std::string format_number(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*g", digits, value);

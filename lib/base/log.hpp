@@ -13,6 +13,9 @@ void set_program_name(const std::string& name);
 /// One line on stderr: "<program>: warning: <line>".
 void warn(const std::string& line);
 
+/// One line on stderr, only when stderr is a terminal: a summary for the person who watches.
+void note(const std::string& line);
+
 /// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
 [[nodiscard]] std::string format_number(double value, int digits = 6);
 
