@@ -77,31 +77,26 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Pose& pose, const Surfa
   return pairs;
 }
 
-// Distances beyond three robust standard deviations (MAD) are outliers of the print, not of the pose.
-double outlier_limit(const Pairs& pairs) {
-  std::vector<double> sizes(pairs.distance.size());
-  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = (pairs.moved[i] - pairs.foot[i]).norm();
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 3 * 1.4826 * *middle + 1e-12;
-}
+// Huber's bound: farther points pull with constant force, so that debris turns the pose little. Not lower: to a bound
+// below the print's own growth or shrinkage, opposite faces that both stand out say nothing about where the middle is.
+double huber_bound(const Pairs& pairs) { return 2.5 * pairs.rms + 1e-12; }
 
 // One Gauss-Newton step of the point-to-plane error (Chen & Medioni 1992), linearised about `centre`: unknowns are
 // rotation vector, shift and relative scale. Returns how far the step moves the farthest point.
 double step(const Pairs& pairs, bool with_scale, Pose& pose) {
   const Vector3d centre = mean_of(pairs.moved);
-  const double limit = outlier_limit(pairs);
+  const double bound = huber_bound(pairs);
   Matrix7d normal = Matrix7d::Zero();
   Vector7d right = Vector7d::Zero();
   double reach = 0;
   for (std::size_t i = 0; i < pairs.moved.size(); ++i) {
     const Vector3d arm = pairs.moved[i] - centre;
     reach = std::max(reach, arm.norm());
-    if ((pairs.moved[i] - pairs.foot[i]).norm() > limit) continue;
+    const double weight = std::min(1.0, bound / ((pairs.moved[i] - pairs.foot[i]).norm() + 1e-300));
     Vector7d row;
     row << arm.cross(pairs.normal[i]), pairs.normal[i], with_scale ? arm.dot(pairs.normal[i]) : 0.0;
-    normal += row * row.transpose();
-    right -= row * pairs.distance[i];
+    normal += weight * row * row.transpose();
+    right -= weight * row * pairs.distance[i];
   }
   // Directions in which the surface slides on itself (a sphere, a cylinder) get no motion: minimum-norm solution.
   const double arm_unit = reach > 0 ? reach : 1;
@@ -131,9 +126,14 @@ double step(const Pairs& pairs, bool with_scale, Pose& pose) {
 Alignment iterate(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
                   int max_iterations, double size, Pose& pose) {
   Alignment result;
+  constexpr int patience = 3;  // pairs at edges change sides for ever: where the error rests, so may we
+  double best = 1e300;
+  int idle = 0;
   for (result.iterations = 0; result.iterations < max_iterations; ++result.iterations) {
     const Pairs pairs = pair_up(points, pose, reference);
-    if (step(pairs, options.with_scale, pose) < options.tolerance * size) {
+    idle = pairs.rms < best * (1 - 1e-4) ? 0 : idle + 1;
+    best = std::min(best, pairs.rms);
+    if (step(pairs, options.with_scale, pose) < options.tolerance * size || idle == patience) {
       result.converged = true;
       break;
     }

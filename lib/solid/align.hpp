@@ -24,7 +24,7 @@ struct AlignOptions {
   bool with_scale = false;
   int samples = 20000;  // points of the print in the final iterations
   int max_iterations = 100;
-  double tolerance = 1e-7;  // stop when a step moves no point by more than this part of the size
+  double tolerance = 1e-6;  // stop when a step moves no point by more than this part of the size, or helps no more
 };
 
 struct Alignment {

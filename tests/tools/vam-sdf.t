@@ -1,0 +1,66 @@
+# vam-sdf: meshes and volumes against each other, verdicts, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+cat >box.off <<'MESH'
+OFF
+8 12 0
+-2 -3 0
+2 -3 0
+2 3 0
+-2 3 0
+-2 -3 1
+2 -3 1
+2 3 1
+-2 3 1
+3 0 2 1
+3 0 3 2
+3 4 5 6
+3 4 6 7
+3 0 1 5
+3 0 5 4
+3 1 2 6
+3 1 6 5
+3 2 3 7
+3 2 7 6
+3 3 0 4
+3 3 4 7
+MESH
+# The same box, turned by 90 degrees about z (x -> y, y -> -x), moved by 10, 20, 30 and grown by 1 %.
+awk 'NR < 3 { print; next } NF == 3 { print -1.01 * $2 + 10, 1.01 * $1 + 20, 1.01 * $3 + 30; next } { print }' box.off >moved.off
+
+quiet 'a box against itself' vam-sdf box.off box.off --align none --report same.json
+holds 'deviates by nothing' "$(json same.json print_to_reference.rms_mm) < 1e-9"
+quiet 'a moved and grown box' vam-sdf moved.off box.off --scale --report moved.json -o moved.ply --histogram moved.csv
+holds 'is found again' "$(json moved.json hausdorff_mm) < 1e-3"
+holds 'with its growth' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
+quiet 'without scale' vam-sdf moved.off box.off --report rigid.json
+# Grown by 1 % about the centre: the faces stand out by 0.02, 0.03 and 0.005.
+holds 'the growth shows' "$(json rigid.json hausdorff_mm) > 0.02 && $(json rigid.json hausdorff_mm) < 0.045"
+holds 'outwards' "$(json rigid.json print_to_reference.mean_mm) > 0.004"
+head -c 400 moved.ply | grep -aq scalar_distance; report $? 'the PLY has the scalar CloudCompare reads'
+is 'the histogram is of the whole area' "$(awk -F, 'NR > 1 { s += $2 } END { printf "%.0f", s }' moved.csv)" 100
+
+vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
+vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
+quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --level 0.5 --align none --report volume.json
+# The bigger sphere stands on the same plane: its centre is 0.2 higher. Mean over the sphere 0.2 + d^2/(3R) = 0.204.
+holds 'two spheres of different size' "$(json volume.json print_to_reference.mean_mm) > 0.19 && $(json volume.json print_to_reference.mean_mm) < 0.22"
+
+quiet 'a verdict that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
+fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --level 0.5 --align none --require 'rms<=0.001'
+
+fails 64 'REFERENCE' vam-sdf box.off
+fails 64 'give the surface' vam-sdf sphere.vdb box.off
+fails 64 'rmse' vam-sdf box.off box.off --require 'rmse<=1'
+fails 64 'is also the input' vam-sdf box.off box.off -o box.off
+fails 64 'not one of none, icp, full' vam-sdf box.off box.off --align best
+fails 65 'no surface' vam-sdf sphere.vdb box.off --level 7
+fails 66 'missing.stl' vam-sdf missing.stl box.off
+printf 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n' >empty.off
+fails 65 'empty.off' vam-sdf box.off empty.off
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n' >flat.off
+fails 65 'no triangle with an area' vam-sdf box.off flat.off
+fails 74 'dev/full' vam-sdf box.off box.off -o /dev/full
+fails 73 'nowhere' vam-sdf box.off box.off -o nowhere/deviation.ply
+
+done_testing
