@@ -1,0 +1,46 @@
+// The print as it stands: overhead projections of the scattering volume, and how much of the design is there.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "model/grid.hpp"
+
+namespace vam::metrology {
+
+/// Sums along the light's three directions, in value x mm: x and y give side views (columns along y or x, z upwards),
+/// z the overhead view (columns along x, y upwards) [OST22 figs 4, 5]. With a threshold each voxel counts 1 or 0.
+struct SumProjections {
+  Image along_x;
+  Image along_y;
+  Image along_z;
+};
+[[nodiscard]] SumProjections sum_projections(const model::Volume& volume, std::optional<double> threshold = {});
+
+/// The value at a point in mm, trilinear between voxel centres; 0 outside.
+[[nodiscard]] float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_mm);
+
+/// Volumes in mm^3, of what is cured ({scatter >= I_p}) against a reference (coverage of 1/2 or more).
+struct Cured {
+  double reference_mm3 = 0;
+  double cured_mm3 = 0;
+  double missing_mm3 = 0;   // in the reference, not cured
+  double overcure_mm3 = 0;  // cured, not in the reference
+  double iou = 0;           // of the two
+  [[nodiscard]] double missing_percent() const { return 100 * missing_mm3 / reference_mm3; }
+  [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / reference_mm3; }
+};
+
+/// The reference lies in the same frame, on any grid. Throws Fault::data when it is empty.
+[[nodiscard]] Cured cured(const model::Volume& scatter, double level, const model::Volume& reference);
+
+[[nodiscard]] Json to_json(const Cured& state);
+
+/// The names and values that --until knows: missing and overcure in per cent, iou, cured in mm^3.
+[[nodiscard]] const std::vector<std::string>& cured_names();
+[[nodiscard]] double figure(const Cured& state, const std::string& name);
+
+}  // namespace vam::metrology

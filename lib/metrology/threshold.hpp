@@ -1,0 +1,35 @@
+// The gelation threshold I_p from a printed standard cylinder [OST22 section S2].
+#pragma once
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+
+namespace vam::metrology {
+
+/// A circle in pixels, centre of pixel (0, 0) at (0, 0).
+struct Circle {
+  double x = 0;
+  double y = 0;
+  double radius = 0;
+  double sigma = 0;  // RMS distance of the edge points from it
+};
+
+/// The strongest circle of a picture with one bright (or dark) disc: Hough transform on the gradient (OpenCV), then
+/// least squares on sub-pixel edge points along its radii. Throws Fault::data when there is none with a radius between
+/// 4 pixels and half the picture.
+[[nodiscard]] Circle find_circle(const Image& image);
+
+/// What the standard says: the mean of the overhead mean projection under the circle of the true diameter, centred on
+/// the circle that the projection itself shows.
+struct Threshold {
+  double level = 0;                 // I_p
+  double spread = 0;                // standard deviation along the circle
+  Circle circle;                    // in pixels of the overhead projection, with the true radius
+  double diameter_mm = 0;           // true
+  double apparent_diameter_mm = 0;  // of the steepest edge in the projection
+};
+[[nodiscard]] Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double diameter_mm);
+
+[[nodiscard]] Json to_json(const Threshold& threshold);
+
+}  // namespace vam::metrology
