@@ -1,0 +1,122 @@
+#include "io/view_source.hpp"
+
+#include <filesystem>
+#include <optional>
+
+#include "base/error.hpp"
+#include "io/exr_stack.hpp"
+#include "io/picture.hpp"
+#include "io/video.hpp"
+
+namespace vam::io {
+
+namespace {
+
+Image to_image(const GreyImage& grey) {
+  Image image(grey.width, grey.height);
+  const float scale = 1.0F / static_cast<float>(grey.full());
+  for (std::size_t i = 0; i < image.size(); ++i) image.values[i] = scale * static_cast<float>(grey.values[i]);
+  return image;
+}
+
+bool ends_in(const std::string& path, const std::string& ending) {
+  return path.size() >= ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+bool is_video(const std::string& path) {
+  return ends_in(path, ".mkv") || ends_in(path, ".mp4") || ends_in(path, ".avi");
+}
+
+bool is_picture(const std::string& path) {
+  return ends_in(path, ".png") || ends_in(path, ".tif") || ends_in(path, ".tiff");
+}
+
+}  // namespace
+
+struct ViewSource::State {
+  std::string path;
+  double step_deg = 0;
+  int index = 0;
+  std::unique_ptr<StackReader> stack;
+  std::unique_ptr<PictureFolder> folder;
+  std::unique_ptr<VideoReader> video;
+
+  bool next_of_stack(CameraFrame& frame) {
+    model::ImageInfo about;
+    while (!stack->next(frame.image, about)) {
+      if (!stack->next_stack()) return false;
+    }
+    if (about.has_time) frame.time_s = about.time_s;
+    const bool known = about.has_angle || stack->info().angle_step_deg != 0;
+    frame.angle_deg = known ? about.angle_deg : index * needed_step();
+    return true;
+  }
+
+  [[nodiscard]] double needed_step() const {
+    if (step_deg == 0) throw Error{Fault::usage, path + ": the frames have no angles; give their distance with --step"};
+    return step_deg;
+  }
+};
+
+ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::make_unique<State>()) {
+  state_->path = path;
+  state_->step_deg = step_deg;
+  if (path != "-" && std::filesystem::is_directory(path)) {
+    state_->folder = std::make_unique<PictureFolder>(path);
+    (void)state_->needed_step();
+  } else if (is_video(path)) {
+    state_->video = std::make_unique<VideoReader>(path);
+    (void)state_->needed_step();
+  } else {
+    state_->stack = std::make_unique<StackReader>(path);
+    require(path, state_->stack->info(), model::Kind::frames, model::Space::camera);
+  }
+}
+
+ViewSource::~ViewSource() = default;
+
+bool ViewSource::next(CameraFrame& frame) {
+  State& s = *state_;
+  frame.name = s.path + ": frame " + std::to_string(s.index);
+  if (s.stack) {
+    if (!s.next_of_stack(frame)) return false;
+  } else if (s.folder) {
+    if (s.index >= s.folder->count()) return false;
+    frame.name = s.folder->path(s.index);
+    frame.image = to_image(s.folder->read(s.index));
+    frame.angle_deg = s.index * s.step_deg;
+  } else {
+    GreyImage grey;
+    if (!s.video->next(grey)) return false;
+    frame.image = to_image(grey);
+    frame.angle_deg = s.index * s.step_deg;
+  }
+  ++s.index;
+  return true;
+}
+
+double ViewSource::pixel_mm() const { return state_->stack ? state_->stack->info().pixel_mm : 0; }
+
+std::vector<std::string> ViewSource::history() const {
+  return state_->stack ? state_->stack->info().history : std::vector<std::string>{};
+}
+
+Image read_field(const std::string& path) {
+  if (is_picture(path)) return to_image(read_picture(path));
+  StackReader reader(path);
+  Image sum;
+  Image image;
+  model::ImageInfo about;
+  int count = 0;
+  for (; reader.next(image, about); ++count) {
+    if (count == 0) {
+      sum = image;
+      continue;
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) sum.values[i] += image.values[i];
+  }
+  for (float& value : sum.values) value /= static_cast<float>(count);
+  return sum;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,42 @@
+// Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of numbered
+// pictures, or a video.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+
+namespace vam::io {
+
+struct CameraFrame {
+  Image image;  // EXR: as stored; pictures and video: 0...1 of full scale
+  double angle_deg = 0;
+  double time_s = 0;
+  std::string name;  // for messages: "views.exr: frame 12"
+};
+
+class ViewSource {
+ public:
+  /// A folder and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of its own
+  /// and without an angle step. Throws Error: no_input, data (not a frame stack of a camera), usage (angles are needed
+  /// but step_deg is 0).
+  ViewSource(const std::string& path, double step_deg);
+  ~ViewSource();
+  /// False after the last frame; a live stream continues with its next stack by itself.
+  bool next(CameraFrame& frame);
+  /// Column pitch at the axis as the stack says; 0 when nothing is said.
+  [[nodiscard]] double pixel_mm() const;
+  [[nodiscard]] std::vector<std::string> history() const;
+
+  struct State;
+
+ private:
+  std::unique_ptr<State> state_;
+};
+
+/// One picture or the mean of all images of a stack, for dark and flat fields.
+[[nodiscard]] Image read_field(const std::string& path);
+
+}  // namespace vam::io
