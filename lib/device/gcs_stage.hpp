@@ -1,0 +1,20 @@
+// A PI controller with one rotation stage, e.g. C-863 with M-060.PD.
+#pragma once
+
+#include <memory>
+
+#include "device/gcs_link.hpp"
+#include "device/stage.hpp"
+
+namespace vam::device {
+
+/// axis is the controller's name of it, "1" unless renamed.
+[[nodiscard]] std::unique_ptr<Stage> make_gcs_stage(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings,
+                                                    const std::string& axis, Guardian* guardian);
+
+/// Opens the serial port at `baud`, or at the first of 115200, 38400, 19200, 9600 at which "*IDN?" is answered. Throws
+/// Fault::busy when none is.
+[[nodiscard]] std::unique_ptr<Port> find_gcs(const std::string& path, std::optional<int> baud, Clock& clock,
+                                             const GcsSettings& settings);
+
+}  // namespace vam::device

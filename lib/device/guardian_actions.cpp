@@ -1,0 +1,73 @@
+#include "device/guardian_actions.hpp"
+
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <string>
+
+namespace vam::device {
+
+namespace {
+
+constexpr int write_timeout_ms = 50;
+
+int nibble(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
+
+// True when the bytes are on their way out of this process.
+bool write_all(int handle, const std::string& bytes) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    pollfd ready{handle, POLLOUT, 0};
+    if (poll(&ready, 1, write_timeout_ms) <= 0 || (ready.revents & POLLOUT) == 0) return false;
+    const ssize_t written = write(handle, bytes.data() + done, bytes.size() - done);
+    if (written <= 0) return false;
+    done += static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+// The last close of a serial port throws away what has not left yet, so wait for it, but not for ever: tcdrain() has no
+// time-out and a peer may hold the line by flow control.
+void drain(int handle) {
+  for (int waited_ms = 0; waited_ms < write_timeout_ms; ++waited_ms) {
+    int queued = 0;
+    if (ioctl(handle, TIOCOUTQ, &queued) != 0 || queued == 0) return;
+    usleep(1000);
+  }
+}
+
+}  // namespace
+
+std::string to_hex(const std::string& bytes) {
+  static const char* digits = "0123456789abcdef";
+  std::string hex;
+  for (const char c : bytes) {
+    const auto value = static_cast<unsigned char>(c);
+    hex += digits[value >> 4U];
+    hex += digits[value & 15U];
+  }
+  return hex;
+}
+
+std::string from_hex(const std::string& hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    bytes += static_cast<char>(nibble(hex[i]) * 16 + nibble(hex[i + 1]));
+  }
+  return bytes;
+}
+
+bool carry_out(const Json& action, int handle) {
+  const auto what = action.value("do", "");
+  if (what == "write") {
+    tcflush(handle, TCOFLUSH);  // half a command of the dead tool must not come first
+    const bool sent = write_all(handle, from_hex(action.value("hex", "")));
+    drain(handle);
+    return sent;
+  }
+  return false;
+}
+
+}  // namespace vam::device

@@ -1,0 +1,17 @@
+// What a guardian can do to a device. An action is JSON, so that it travels through a socket:
+//   {"do": "write", "order": 1, "hex": "18"}   writes the bytes to the handle that came with it, after throwing away
+//                                              what the dead tool had queued there
+// `order`: 0 for light, 1 for motion; lower first.
+#pragma once
+
+#include "base/json.hpp"
+
+namespace vam::device {
+
+/// Carries one action out; never throws, never blocks longer than about 100 ms. False when the device did not take it.
+bool carry_out(const Json& action, int handle);
+
+[[nodiscard]] std::string to_hex(const std::string& bytes);
+[[nodiscard]] std::string from_hex(const std::string& hex);
+
+}  // namespace vam::device

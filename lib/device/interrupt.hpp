@@ -1,0 +1,27 @@
+// SIGINT, SIGTERM and SIGHUP become an exception at the next wait, so that destructors bring the safe state before the
+// process dies of the very signal. This is the polite half of safety; the guardian is the half that cannot be missed.
+#pragma once
+
+#include <functional>
+
+namespace vam::device {
+
+/// Not an Error: it has no message and no fault. Caught by interruptible() only.
+struct Interrupted {
+  int signal;
+};
+
+/// Runs body with the three signals noted instead of obeyed. When one came, and the stack is unwound, the process dies
+/// of it (a shell sees 130 or 143). Errors pass through.
+void interruptible(const std::function<void()>& body);
+
+/// Throws Interrupted once after a signal; later calls do nothing, so that the way to the safe state is not cut short.
+void check_interrupted();
+
+/// From now on SIGTERM comes when the process that started this one ends, however it ends.
+void end_with_parent();
+
+/// Readable once a signal is noted and until check_interrupted() has thrown; -1 outside interruptible(). For poll().
+[[nodiscard]] int interrupt_fd();
+
+}  // namespace vam::device

@@ -1,0 +1,24 @@
+// One user per device. The lock dies with its holder (flock), whatever that dies of.
+#pragma once
+
+#include <string>
+
+namespace vam::device {
+
+/// Holds the device of that name for this process and, through handle(), for its guardian until the device is safe.
+/// The name is a path of a device node (links are followed, so /dev/serial/by-id/X and /dev/ttyUSB0 are one) or any
+/// other unique text ("usb-1ffb-00b3-00312345"). Throws Fault::busy naming the holder's pid, Fault::no_output when no
+/// lock can be made. Lock files are in $VAM_LOCK_DIR, or /run/lock, or /tmp; each holds its holder's pid.
+class DeviceLock {
+ public:
+  explicit DeviceLock(const std::string& name);
+  ~DeviceLock();
+  DeviceLock(const DeviceLock&) = delete;
+  DeviceLock& operator=(const DeviceLock&) = delete;
+  [[nodiscard]] int handle() const { return fd_; }
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace vam::device

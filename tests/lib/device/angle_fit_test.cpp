@@ -1,0 +1,68 @@
+#include "device/angle_fit.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "base/error.hpp"
+#include "fault_of.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+TEST_CASE("Samples on a line give the line") {
+  AngleFit fit(2);
+  for (int i = 0; i <= 100; ++i) fit.add({1e5 + 0.01 * i, -3 + 25 * 0.01 * i, 0.01});
+  REQUIRE(fit.ready());
+  // Times of 1e5 s leave 1.5e-11 s of a double; at 25 deg/s that is 4e-10 deg, so 1e-8 is rounding alone.
+  CHECK(fit.speed_deg_s() == doctest::Approx(25).epsilon(1e-9));
+  CHECK(std::abs(fit.at(1e5 + 1.05).angle_deg - (-3 + 25 * 1.05)) < 1e-8);
+}
+
+TEST_CASE("The promised sigma covers the error of the prediction") {
+  // 500 fits with Gaussian noise of the stated sigma: |error| <= 2 sigma in 95.4 % of them; the count has a standard
+  // deviation of sqrt(500 * 0.954 * 0.046) = 4.7, so 3 of those below 477 is 463.
+  std::mt19937_64 random(7);
+  int inside = 0;
+  for (int run = 0; run < 500; ++run) {
+    AngleFit fit(1);
+    for (int i = 0; i < 60; ++i) {
+      const double sigma = i % 5 == 0 ? 0.2 : 0.02;  // every fifth answer comes late
+      fit.add({0.01 * i, 10 * 0.01 * i + std::normal_distribution<double>(0, sigma)(random), sigma});
+    }
+    const AngleSample next = fit.at(0.62);
+    if (std::abs(next.angle_deg - 6.2) <= 2 * next.sigma_deg) ++inside;
+  }
+  CHECK(inside >= 463);
+}
+
+TEST_CASE("Old samples are forgotten and too few are not a line") {
+  AngleFit fit(1);
+  fit.add({0, 0, 0.01});
+  fit.add({0.01, 1, 0.01});
+  CHECK_FALSE(fit.ready());
+  for (int i = 0; i <= 200; ++i) fit.add({5 + 0.01 * i, 7.0, 0.01});
+  CHECK(fit.ready());
+  CHECK(fit.at(8).angle_deg == doctest::Approx(7));
+}
+
+TEST_CASE("Lines go out and come back") {
+  const AngleSample sample{123.4567891, -12.34567, 0.00123};
+  const AngleSample back = parse_angle_line(to_line(sample), 1);
+  CHECK(back.t_s == sample.t_s);
+  CHECK(back.angle_deg == sample.angle_deg);
+  CHECK(back.sigma_deg == sample.sigma_deg);
+  for (const char* bad : {"", "7", "{}", R"({"t_monotonic_s":1,"angle_deg":"x","sigma":1})",
+                          R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma":1})", "{\"t_mono"}) {
+    CAPTURE(bad);
+    CHECK(fault_of([&] { (void)parse_angle_line(bad, 7); }) == Fault::data);
+    CHECK(message_of([&] { (void)parse_angle_line(bad, 7); }).find("line 7") != std::string::npos);
+  }
+}
+
+TEST_CASE("A sample is dated in the middle and blurred by what the answer took") {
+  const AngleSample sample = to_angle_sample({90, 10.000, 10.012}, 25);
+  CHECK(sample.t_s == doctest::Approx(10.006));
+  CHECK(sample.sigma_deg == doctest::Approx(25 * 0.012 / std::sqrt(12.0)).epsilon(1e-3));
+}

@@ -1,0 +1,124 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "device/spin.hpp"
+#include "fault_of.hpp"
+#include "virtual_stage.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+TEST_CASE("A PI controller says who it is and what it can do") {
+  VirtualStage lab;
+  const Json about = describe(*lab.stage);
+  CHECK(about["model"] == "C-863.11");
+  CHECK(about["serial"] == "0116012345");
+  CHECK(about["unit"] == "deg");
+  CHECK(about["max_deg"] == 36000);
+  CHECK(about["max_speed_deg_s"] == 90);
+  CHECK_FALSE(status(*lab.stage)["moving"].get<bool>());
+}
+
+TEST_CASE("A controller of a daisy chain is addressed and its answers are checked") {
+  SimGcsSettings sim;
+  sim.address = 2;
+  GcsSettings gcs;
+  gcs.address = 2;
+  VirtualStage lab(sim, gcs);
+  CHECK(describe(*lab.stage)["model"] == "C-863.11");
+  gcs.address = 3;
+  VirtualStage other(sim, gcs);
+  CHECK(fault_of([&] { (void)other.stage->identify(); }) == Fault::busy);
+}
+
+TEST_CASE("Homing ends at the reference, moves end at their angle") {
+  VirtualStage lab;
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.stage->sample().angle_deg == 0);
+  const double start_s = lab.clock.now_s();
+  move(*lab.stage, lab.clock, 90, false, 30, 60);
+  CHECK(lab.stage->sample().angle_deg == 90);
+  // 90/30 + 30/60 = 3.5 s by the trapezium; looked at every 20 ms.
+  CHECK(std::abs(lab.clock.now_s() - start_s - 3.5) < 0.05);
+  move(*lab.stage, lab.clock, -100, true, 30, 60);
+  CHECK(lab.stage->sample().angle_deg == doctest::Approx(-10));
+}
+
+TEST_CASE("The controller's refusals are errors with their meaning") {
+  SimGcsSettings sim;
+  sim.max_deg = 100;
+  VirtualStage lab(sim);
+  CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("error 5") != std::string::npos);
+  home(*lab.stage, lab.clock, 60);
+  CHECK(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }).find("limits") != std::string::npos);
+  CHECK(message_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }).find("velocity") != std::string::npos);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::protocol);
+  CHECK_FALSE(lab.truly_moves());
+  // A refusal is cleared by being read: the next order is judged for itself.
+  move(*lab.stage, lab.clock, 50, false, 10, 10);
+  CHECK(lab.stage->sample().angle_deg == 50);
+}
+
+TEST_CASE("A slow motion times out and is stopped") {
+  VirtualStage lab;
+  home(*lab.stage, lab.clock, 60);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 90, false, 1, 5); }) == Fault::busy);
+  CHECK_FALSE(lab.truly_moves());
+}
+
+// Every command of a whole run, with every way of its answer to be wrong.
+TEST_CASE("Each protocol answer wrong in turn: the right fault, in time, and the table stands") {
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  plan.period_s = 0.05;
+  plan.run_up_turns = 0.5;
+  struct Case {
+    const char* kind;
+    Fault fault;
+  };
+  const std::vector<Case> answers{
+      {"garbage", Fault::protocol},     {"truncated", Fault::busy}, {"late", Fault::busy},
+      {"silent", Fault::busy},          {"unplug", Fault::absent},  {"power-loss", Fault::absent},
+      {"wrong-sender", Fault::protocol}};
+  const std::vector<Case> orders{{"error", Fault::protocol}, {"unplug", Fault::absent}, {"power-loss", Fault::absent}};
+  int cases = 0;
+  for (const std::string command : {"TMN?", "TMX?", "HLP?", "ACC?", "SPA?", "PUN?", "POS?", "ERR?", "#5", "#7", "FRF?",
+                                    "SVO", "RON", "FRF", "POS", "VEL", "MOV", "HLT"}) {
+    const bool asks = command.back() == '?' || command == "#5" || command == "#7";
+    for (const auto& [kind, fault] : asks ? answers : orders) {
+      for (const int occurrence : {1, 2, 5}) {
+        if (occurrence == 5 && command == "#5") continue;  // a run asks less often
+        if (occurrence > 1 && command != "POS?" && command != "ERR?" && command != "#5") continue;
+        if (command == "#7" && std::string(kind) == "truncated") continue;     // its answer is one byte, all or nothing
+        if (command == "#7" && std::string(kind) == "wrong-sender") continue;  // checked by its byte alone
+        CAPTURE(command);
+        CAPTURE(kind);
+        CAPTURE(occurrence);
+        SimGcsSettings sim;
+        sim.motor.acceleration_deg_s2 = 600;
+        sim.faults.push_back({kind, command, occurrence});
+        VirtualStage lab(sim);
+        double spoiled_s = 0;
+        const auto run = [&] {
+          home(*lab.stage, lab.clock, 60);
+          spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {});
+        };
+        CHECK(fault_of(run) == fault);
+        for (const auto& line : lab.log) {
+          if (line["event"] == "fault") spoiled_s = line["t_monotonic_s"].get<double>();
+        }
+        REQUIRE(spoiled_s > 0);
+        // One time-out of 0.25 s for the answer and one for the way to the safe state.
+        CHECK(lab.clock.now_s() - spoiled_s < 0.55);
+        lab.stage.reset();
+        lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+        // A pulled cable leaves the controller to its last order, as the manual says; all else must stand.
+        if (std::string(kind) != "unplug") CHECK_FALSE(lab.truly_moves());
+        ++cases;
+      }
+    }
+  }
+  CHECK(cases > 100);
+}

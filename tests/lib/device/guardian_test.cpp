@@ -1,0 +1,130 @@
+#include "device/guardian.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <functional>
+
+#include "device/clock.hpp"
+#include "device/guardian_actions.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+struct Outcome {
+  std::string bytes;   // what reached the device
+  double seconds = 0;  // from the cause to the last byte
+};
+
+// A tool in a child process: its guardian holds orders for a pipe that stands for the device; then `cause` ends it.
+// `cause` gets the guardian and runs in the tool; `outside` gets the tool's pid and runs in the test.
+Outcome outcome(const std::function<void(Guardian&, int)>& cause, const std::function<void(pid_t)>& outside = {}) {
+  std::array<int, 2> line{};
+  std::array<int, 2> ready{};
+  REQUIRE(pipe(line.data()) == 0);
+  REQUIRE(pipe(ready.data()) == 0);
+  const pid_t tool = fork();
+  if (tool == 0) {
+    close(line[0]);
+    dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
+    for (const int signal : {SIGSEGV, SIGABRT, SIGINT, SIGTERM, SIGBUS, SIGFPE, SIGILL})
+      std::signal(signal, SIG_DFL);  // doctest catches them
+    {
+      Guardian guardian(0.3);
+      guardian.add({{"do", "write"}, {"order", 1}, {"hex", to_hex("still\n")}}, line[1]);
+      guardian.add({{"do", "write"}, {"order", 0}, {"hex", to_hex("dark\n")}}, line[1]);
+      (void)!write(ready[1], "x", 1);
+      if (cause) cause(guardian, line[1]);
+      if (outside) pause();
+    }
+    _exit(0);
+  }
+  close(line[1]);
+  char byte = 0;
+  REQUIRE(read(ready[0], &byte, 1) == 1);
+  const double start_s = real_clock().now_s();
+  if (outside) outside(tool);
+  Outcome result;
+  std::array<char, 100> bytes{};
+  pollfd readable{line[0], POLLIN, 0};
+  while (poll(&readable, 1, 3000) > 0) {
+    const ssize_t count = read(line[0], bytes.data(), bytes.size());
+    if (count <= 0) break;
+    result.bytes.append(bytes.data(), static_cast<std::size_t>(count));
+    result.seconds = real_clock().now_s() - start_s;
+  }
+  kill(tool, SIGKILL);
+  waitpid(tool, nullptr, 0);
+  for (const int end : {line[0], ready[0], ready[1]}) close(end);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("Whatever the tool dies of, dark comes first, then still, within 100 ms") {
+  for (const int signal : {SIGKILL, SIGSEGV, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGBUS}) {
+    CAPTURE(signal);
+    const Outcome result = outcome({}, [signal](pid_t tool) { kill(tool, signal); });
+    CHECK(result.bytes == "dark\nstill\n");
+    CHECK(result.seconds < 0.1);
+  }
+}
+
+TEST_CASE("A tool that throws, returns or leaves by _exit has the same end") {
+  CHECK(outcome([](Guardian&, int) {}).bytes == "dark\nstill\n");
+  CHECK(outcome([](Guardian&, int) { _exit(3); }).bytes == "dark\nstill\n");
+}
+
+TEST_CASE("A tool that hangs is killed and made safe; one that beats is left alone") {
+  const Outcome stopped = outcome({}, [](pid_t tool) { kill(tool, SIGSTOP); });
+  CHECK(stopped.bytes == "dark\nstill\n");
+  CHECK(stopped.seconds > 0.25);
+  CHECK(stopped.seconds < 0.4);
+  const Outcome beating = outcome([](Guardian& guardian, int device) {
+    for (int i = 0; i < 12; ++i) {
+      usleep(50000);
+      guardian.beat();
+    }
+    (void)!write(device, "alive ", 6);
+  });
+  CHECK(beating.bytes == "alive dark\nstill\n");
+}
+
+TEST_CASE("What is safe is left alone") {
+  const Outcome result = outcome([](Guardian& guardian, int) {
+    guardian.forget(1);
+    guardian.forget(2);
+  });
+  CHECK(result.bytes.empty());
+}
+
+TEST_CASE("Without orders no heartbeat is needed") {
+  const Outcome result = outcome([](Guardian& guardian, int device) {
+    guardian.forget(1);
+    guardian.forget(2);
+    usleep(500000);
+    (void)!write(device, "alive", 5);
+  });
+  CHECK(result.bytes == "alive");
+}
+
+TEST_CASE("A tool learns that its guardian is gone") {
+  const Outcome result = outcome([](Guardian& guardian, int device) {
+    kill(guardian.pid(), SIGKILL);
+    usleep(20000);
+    try {
+      guardian.beat();
+    } catch (const std::exception&) {
+      (void)!write(device, "noticed", 7);
+    }
+    _exit(0);
+  });
+  CHECK(result.bytes == "noticed");
+}

@@ -1,0 +1,54 @@
+// A GCS stage in virtual time, with the simulator's truth in the test's hands.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "device/gcs_stage.hpp"
+#include "device/sim_gcs.hpp"
+
+namespace vam::device {
+
+class SharedDevice final : public SimDevice {
+ public:
+  explicit SharedDevice(std::shared_ptr<SimDevice> device) : device_(std::move(device)) {}
+  void receive(std::string_view bytes, double now_s) override { device_->receive(bytes, now_s); }
+  void advance(double now_s) override { device_->advance(now_s); }
+  std::optional<double> next_due_s() const override { return device_->next_due_s(); }
+  std::string take(double now_s) override { return device_->take(now_s); }
+  bool unplugged() const override { return device_->unplugged(); }
+
+ private:
+  std::shared_ptr<SimDevice> device_;
+};
+
+struct VirtualStage {
+  explicit VirtualStage(const SimGcsSettings& sim = {}, const GcsSettings& gcs = {})
+      : device(make_sim_gcs(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })),
+        stage(make_gcs_stage(make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, gcs, "1", nullptr)) {}
+
+  /// The last of "moving" and "standing" in the simulator's own log.
+  [[nodiscard]] bool truly_moves() {
+    device->advance(clock.now_s());
+    bool moves = false;
+    for (const auto& line : log) {
+      if (line["event"] == "moving") moves = true;
+      if (line["event"] == "standing") moves = false;
+    }
+    return moves;
+  }
+  [[nodiscard]] int commands(const std::string& mnemonic) const {
+    int count = 0;
+    for (const auto& line : log) {
+      if (line["event"] == "command" && line["text"].get<std::string>().rfind(mnemonic, 0) == 0) ++count;
+    }
+    return count;
+  }
+
+  VirtualClock clock;
+  std::vector<Json> log;
+  std::shared_ptr<SimDevice> device;
+  std::unique_ptr<Stage> stage;
+};
+
+}  // namespace vam::device

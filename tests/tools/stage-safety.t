@@ -1,0 +1,8 @@
+#!/bin/sh
+# Promise 1 for vam-stage alone: stopped within 100 ms of any end. VAM_TRIALS a cause (10; 100 under the label "long").
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+python3 "$VAM_SOURCE/tests/device/stage_trials.py" "${VAM_TRIALS:-10}" >table; status=$?
+cat table
+is 'every trial stopped in time' $status 0
+is 'every cause was tried' "$(grep -c trials table)" 9
+done_testing

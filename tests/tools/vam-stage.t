@@ -1,0 +1,101 @@
+#!/bin/sh
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
+shim=$(vam-sim-stage --shim)
+ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
+
+simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
+  rm -f truth path
+  vam-sim-stage --link stage --log truth --die-with-parent "$@" >path &
+  simulator=$!
+  await test -s path
+}
+await() {  # await COMMAND...: until it succeeds, at most 5 s
+  tries=0
+  until "$@" || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+}
+finish() { kill $simulator; wait $simulator; }
+stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
+turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
+stood() { grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -q standing; }
+
+# Bad options touch nothing.
+fails 64 'no command' vam-stage
+fails 64 'unknown scheme' vam-stage identify --device usb:1
+fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
+fails 64 'out of range' vam-stage spin --turns 0
+fails 64 'give 1 or -1' vam-stage spin --direction 0
+fails 64 'not a number' vam-stage spin --device 'sim:?jitter_ms=much'
+fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
+fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
+fails 73 'cannot be written' vam-stage identify --log missing/log
+
+# The simulator inside the tool.
+ok 'identify' vam-stage identify
+vam-stage identify >about
+is 'the model' "$(json about model)" C-863.11
+ok 'ports' vam-stage ports
+quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --to 20 --speed 80
+fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --to 20
+vam-stage follow --seconds 0.2 --rate 50 >samples
+is 'follow takes its samples' "$(wc -l <samples)" 10
+holds 'and says where the table stands' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
+
+# The same controller behind a serial line.
+simulate --acceleration 5000 --max-speed 720
+stage identify >about
+is 'identify over the line' "$(json about serial)" 0116012345
+quiet 'home over the line' stage home
+stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
+is 'spin ends well' $? 0
+is 'without a word' "$(cat errors)" ''
+holds 'its angle ends past the turn' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+holds 'and began before the run-up' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90"
+ok 'the table stands' stood
+is 'two events' "$(wc -l <events)" 2
+ok 'with both times' grep -Eq '"utc":"20[0-9-]+T[0-9:.]+Z","t_monotonic_s":[0-9.]+,"event":"end"' events
+
+# A second user is turned away at once and told by whom.
+LD_PRELOAD=$shim vam-stage spin --device "gcs:$PWD/stage" --speed 1 >/dev/null &
+first=$!
+await turning
+start=$(date +%s%N)
+fails 75 "in use by process $first;" stage status
+holds 'within a second' "$(date +%s%N) - $start < 1e9"
+kill -9 $first 2>/dev/null; wait $first
+is 'a killed user is killed' $? 137
+sleep 0.1
+ok 'the device is free again' stage status
+stage status >state
+is 'and the table stands' "$(json state moving)" false
+finish
+
+# Baud rates are found, and a silent line is not waited for.
+simulate --baud 9600
+stage identify >about
+is 'the baud rate is found' "$(json about model)" C-863.11
+LD_PRELOAD=$shim vam-stage identify --device "gcs:$PWD/stage?baud=115200" 2>errors
+is 'the wrong one is a wrong answer or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
+finish
+
+# Spoilt answers: the fault is named, and the table stands.
+spoilt() {  # spoilt STATUS REGEX FAULT
+  simulate --acceleration 5000 --max-speed 720 --fault "$3"
+  fails "$1" "$2" stage spin --speed 360 --run-up 0.25
+  case $3 in unplug*) ;; *) await stood; ok "$3: the table stands" stood ;; esac
+  finish
+}
+spoilt 76 'was answered' garbage@POS?:20
+spoilt 75 'no end of the answer' truncated@POS?:20
+spoilt 75 'no answer' late@POS?:20
+spoilt 75 'no answer' silent@ERR?:4
+spoilt 76 'controller 7 instead of 1' wrong-sender@POS?:20
+spoilt 76 'refused with error 17' error@VEL
+spoilt 69 'unplugged' unplug@POS?:20
+spoilt 69 'unplugged' power-loss@POS?:20
+spoilt 76 'was due' block@POS?:80
+spoilt 76 'is blocked' block@POS?:2
+
+# A full disk behind the samples.
+fails 74 'write failed' sh -c 'vam-stage follow --seconds 1 >/dev/full'
+done_testing
