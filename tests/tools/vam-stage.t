@@ -17,7 +17,7 @@ await() {  # await COMMAND...: until it succeeds, at most 5 s
 finish() { kill $simulator; wait $simulator; }
 stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
-stood() { grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -q standing; }
+stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
 
 # Bad options touch nothing.
 fails 64 'no command' vam-stage
