@@ -126,6 +126,21 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
   return binned(image, binning);
 }
 
+void require_exposed(const Image& raw, const std::string& subject) {
+  const auto [low, high] = std::minmax_element(raw.values.begin(), raw.values.end());
+  if (!(*high > *low)) {
+    throw Error{Fault::data, subject + ": dark, every pixel is " + format_number(static_cast<double>(*low)) +
+                                 "; check light and exposure"};
+  }
+  const auto full = std::count(raw.values.begin(), raw.values.end(), *high);
+  constexpr double allowed = 0.02;
+  const double part = static_cast<double>(full) / static_cast<double>(raw.size());
+  if (part > allowed) {
+    throw Error{Fault::data, subject + ": saturated, " + format_number(100 * part, 3) + " % of the pixels are at " +
+                                 format_number(static_cast<double>(*high)) + "; shorten the exposure"};
+  }
+}
+
 Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {
   if (axis.tilt_rad == 0 && row_stretch == 1) return image;
   Image out(image.width, std::max(1, static_cast<int>(std::floor(image.height * row_stretch))));

@@ -28,6 +28,10 @@ struct CameraFields {
 /// is not positive.
 [[nodiscard]] Image corrected(const Image& raw, const CameraFields& fields, int binning, const std::string& subject);
 
+/// Throws Fault::data when a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one
+/// and the same highest value (saturated).
+void require_exposed(const Image& raw, const std::string& subject);
+
 /// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
 /// end (last row) is displaced towards higher columns.
 struct AxisPose {

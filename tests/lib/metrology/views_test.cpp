@@ -71,6 +71,15 @@ TEST_CASE("dark, flat and binning undo what the camera did") {
   CHECK_THROWS_AS((void)corrected(Image(6, 5), fields, 1, "view"), Error);
 }
 
+TEST_CASE("dark and saturated frames are refused") {
+  Image image(100, 10);
+  CHECK_THROWS_WITH_AS(require_exposed(image, "frame 3"), doctest::Contains("frame 3: dark"), Error);
+  for (int x = 0; x < 100; ++x) image(x, 5) = static_cast<float>(x);
+  CHECK_NOTHROW(require_exposed(image, "frame 3"));
+  for (int x = 0; x < 30; ++x) image(x, 2) = 99;
+  CHECK_THROWS_WITH_AS(require_exposed(image, "frame 3"), doctest::Contains("saturated, 3.1 %"), Error);
+}
+
 TEST_CASE("even angles from uneven ones reproduce a sinusoid") {
   std::vector<double> angles;
   std::mt19937 random(3);

@@ -1,0 +1,21 @@
+// Logs that grow while a tool runs: a line of JSON an event, on the disk before the next one.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace vam::io {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const;
+};
+using EventLog = std::unique_ptr<std::FILE, CloseFile>;
+
+/// Appends to `path`; "-" is stdout; empty: no log. Throws Fault::no_output.
+[[nodiscard]] EventLog open_log(const std::string& path);
+
+/// Writes the line and flushes it. Throws Fault::io.
+void log_line(std::FILE& log, const std::string& line);
+
+}  // namespace vam::io
