@@ -1,30 +1,36 @@
 #include "optics/resample_kernel.hpp"
 
+#include "optics/kernel_vector.hpp"
+
 namespace vam::optics::VAM_SIMD {
 
-void mix_columns(const float* columns, long stride, const float* weights, int count, int rows, float* __restrict out) {
-  for (int r = 0; r < rows; ++r) {
-    float sum[resample_lanes] = {};
-    const float* at = columns + static_cast<long>(r) * resample_lanes;
-    for (int k = 0; k < count; ++k, at += stride) {
-      for (int s = 0; s < resample_lanes; ++s) sum[s] += weights[k] * at[s];
+namespace {
+constexpr int vectors = resample_lanes / vector_floats;
+}
+
+void mix_columns(const float* columns, long stride, const float* weights, int count, int rows, float* out) {
+  for (int r = 0; r < rows; ++r, columns += resample_lanes, out += resample_lanes) {
+    Vector sum[vectors] = {};
+    for (int k = 0; k < count; ++k) {
+#pragma GCC unroll 4
+      for (int v = 0; v < vectors; ++v) sum[v] += weights[k] * load(columns + k * stride + v * vector_floats);
     }
-    for (int s = 0; s < resample_lanes; ++s) out[static_cast<long>(r) * resample_lanes + s] = sum[s];
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v) store(out + v * vector_floats, sum[v]);
   }
 }
 
-void shift_rows(const float* column, int rows, int start, int sense, const float* weights, float* __restrict out) {
-  const float w0 = weights[0];
-  const float w1 = weights[1];
-  const float w2 = weights[2];
-  const float w3 = weights[3];
+void shift_rows(const float* column, int rows, int start, int sense, const float* weights, float* out) {
   int r = start;
-  for (int a = 0; a < rows; ++a) {
+  for (int a = 0; a < rows; ++a, out += resample_lanes) {
     const float* at = column + static_cast<long>(r) * resample_lanes;
-    float* to = out + static_cast<long>(a) * resample_lanes;
-    for (int s = 0; s < resample_lanes; ++s) {
-      to[s] =
-          w0 * at[s] + w1 * at[s + resample_lanes] + w2 * at[s + 2 * resample_lanes] + w3 * at[s + 3 * resample_lanes];
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; ++v, at += vector_floats) {
+      Vector sum = weights[0] * load(at);
+      sum += weights[1] * load(at + resample_lanes);
+      sum += weights[2] * load(at + 2 * resample_lanes);
+      sum += weights[3] * load(at + 3 * resample_lanes);
+      store(out + v * vector_floats, sum);
     }
     r += sense;
     if (r == rows) r = 0;

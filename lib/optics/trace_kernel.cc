@@ -1,5 +1,7 @@
 #include "optics/trace_kernel.hpp"
 
+#include "optics/kernel_vector.hpp"
+
 namespace vam::optics::VAM_SIMD {
 
 void trace_entries(const TraceSource& source, const TraceColumns& columns, int row, int rows,
@@ -33,16 +35,28 @@ void trace_entries(const TraceSource& source, const TraceColumns& columns, int r
 namespace {
 
 template <int lanes>
-inline void add(const float* slab, const TraceEntries& entries, int rows, float* __restrict dose) {
-  float sum[lanes];
-  for (int s = 0; s < lanes; ++s) sum[s] = dose[s];
-  for (int i = 0; i < rows; ++i) {
-    const float* at = slab + static_cast<long>(entries.cell[i]) * lanes;
-    const float left = entries.left[i];
-    const float right = entries.right[i];
-    for (int s = 0; s < lanes; ++s) sum[s] += left * at[s] + right * at[lanes + s];
+inline void add(const float* slab, const TraceEntries& entries, int rows, float* dose) {
+  constexpr int vectors = lanes / vector_floats;
+  // As many sums as fit into half the registers; more lanes take another turn.
+  constexpr int together = vectors < 8 ? vectors : 8;
+  for (int first = 0; first < vectors; first += together) {
+    Vector sum[together];
+#pragma GCC unroll 8
+    for (int v = 0; v < together; ++v) sum[v] = load(dose + (first + v) * vector_floats);
+    const float* begin = slab + first * vector_floats;
+    for (int i = 0; i < rows; ++i) {
+      const float* at = begin + static_cast<long>(entries.cell[i]) * lanes;
+      const float left = entries.left[i];
+      const float right = entries.right[i];
+#pragma GCC unroll 8
+      for (int v = 0; v < together; ++v) {
+        sum[v] += left * load(at + v * vector_floats);
+        sum[v] += right * load(at + lanes + v * vector_floats);
+      }
+    }
+#pragma GCC unroll 8
+    for (int v = 0; v < together; ++v) store(dose + (first + v) * vector_floats, sum[v]);
   }
-  for (int s = 0; s < lanes; ++s) dose[s] = sum[s];
 }
 
 }  // namespace
