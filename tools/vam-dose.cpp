@@ -1,0 +1,244 @@
+// vam-dose: the dose that sinograms leave in the resin.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/exr_stack.hpp"
+#include "io/printer_file.hpp"
+#include "io/report.hpp"
+#include "io/stack_batches.hpp"
+#include "io/stream.hpp"
+#include "io/vdb.hpp"
+#include "metrology/exposure.hpp"
+#include "metrology/simulation.hpp"
+#include "optics/blur.hpp"
+
+namespace {
+
+using namespace vam;
+
+constexpr int batch = 64;  // slices a pass; the fastest for the tracer
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string like;
+  std::optional<double> size_mm;
+  std::optional<double> full_scale;
+  std::optional<double> seconds;
+  bool no_blur = false;
+  bool keep_negative = false;
+  double angle_offset_deg = 0;
+  optics::Alignment alignment;
+  std::string report;
+  cli::PrinterOptions printer;
+};
+
+cli::Manual manual() {
+  return {
+      "vam-dose",
+      "simulate the dose that a print leaves in the resin",
+      {"vam-dose reads sinograms and writes the volume 'dose': the light that every voxel takes up in one turn of the "
+       "vial. It is the judge of the chain before resin is spent: what reaches the same dose will print alike.",
+       "A projector's sinograms (from vam-resample) are simulated by chief rays: for every voxel and stage angle the "
+       "column whose ray passes through the voxel, refraction and Fresnel losses included, its light per width by the "
+       "density of the rays at that depth, and absorption along the way through the resin. Virtual sinograms "
+       "(vam-sinogram, vam-optimize) are back-projected along parallel rays, with absorption if the resin has any.",
+       "The dose is in units of light times radian (an even light of 1 gives 2 pi at most), or in mJ/cm3 when the "
+       "resin "
+       "has resin.critical_dose_mj_cm3 and resin.absorption_per_mm: then the largest value of the stack, or "
+       "--full-scale, is taken as projector.max_intensity_mw_cm2, and the report says how many turns and seconds the "
+       "print takes at stage.speed_deg_s.",
+       "The point spread of the beam (resin.psf_mm) and the diffusion of dose while it prints (resin.diffusion_mm2_s) "
+       "blur the volume; beyond its faces it is taken as dark."},
+      {{"Will the disc grid print?",
+        "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb --filter ram-lak --negative clip "
+        "| "
+        "vam-resample | vam-dose --like part.vdb -o dose.vdb && vam-score dose.vdb --target part.vdb"},
+       {"What a telecentric correction would do on a projector that is not:",
+        "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.telecentric=true | "
+        "vam-dose --like part.vdb -o wrong.vdb"},
+       {"The time a print takes in a resin that absorbs:",
+        "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
+        "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"}},
+      {"Accuracy: chief-ray doses agree with rays counted one by one to 1e-3. A voxel holds the mean dose of its "
+       "volume "
+       "across the beam to second order; between columns light is linear. Outside the radius that is lit from all "
+       "sides "
+       "rays fold into caustics; there doses are good to some per cent. The rays' tilt along the axis is not followed: "
+       "a slice lights its own voxels.",
+       "Memory: the dose itself, the volume of --like, and three batches of 64 slices.",
+       "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
+       "8; "
+       "Kelly et al., Volumetric additive manufacturing via tomographic reconstruction, Science 2019, eq 1."},
+      {"vam-resample", "vam-optimize", "vam-score", "vam-view"}};
+}
+
+void declare(cli::App& app, Options& options) {
+  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) of a projector, or a virtual one.");
+  cli::add_output(app, options.output);
+  cli::add_report(app, options.report);
+  app.group("Volume");
+  app.option("--like", "FILE", options.like,
+             "Volume (VDB) whose voxels the dose takes; its grid 'target', if there, is the part of the report.");
+  app.option(
+      "--size", "MM", options.size_mm, cli::positive,
+      "Edge of the square around the axis. Without it all that is lit from every side (projector), or as wide as "
+      "the sinogram (virtual). Voxels are as high as slices.");
+  app.group("Light and resin");
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
+             "Sinogram value shown at full intensity; more is cut, less than projector.min_intensity_mw_cm2 raised. "
+             "Without it the largest value of the stack, and no light at grey 0.");
+  app.option("--seconds", "S", options.seconds, cli::non_negative,
+             "Time for which dose diffuses. Without it the time of stage.turns turns.");
+  app.flag("--no-blur", options.no_blur, "Leave out point spread and diffusion.");
+  app.flag("--keep-negative", options.keep_negative,
+           "Take a projector's negative light as it is; no projector can show it. A virtual sinogram's always is.");
+  app.group("Alignment");
+  app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
+             "The axis appears so many columns right of projector.axis_column.");
+  app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "The part stands at stage angle plus this.");
+  app.flag("--reverse", options.alignment.reverse, "The stage turns against stage.direction.");
+  cli::add_printer(app, options.printer);
+  app.group("Machine");
+  cli::add_threads(app);
+}
+
+// Takes doses slice by slice into the volume, eight at a time, and into the report.
+class Sink {
+ public:
+  Sink(io::SparseVolume& volume, const io::SparseVolume* target, int first)
+      : volume_(volume), target_(target), next_(first) {}
+
+  void add(const Image& dose) {
+    Image part;
+    if (target_ != nullptr) {
+      part = Image(dose.width, dose.height);
+      target_->read_slices(next_ + pending_, 1, part.values.data());
+    }
+    range_.add(dose, part);
+    buffer_.insert(buffer_.end(), dose.values.begin(), dose.values.end());
+    if (++pending_ + next_ % 8 == 8) flush();
+  }
+  void flush() {
+    if (pending_ > 0) volume_.write_slices(next_, pending_, buffer_.data());
+    next_ += pending_;
+    pending_ = 0;
+    buffer_.clear();
+  }
+  [[nodiscard]] const metrology::DoseRange& range() const { return range_; }
+
+ private:
+  io::SparseVolume& volume_;
+  const io::SparseVolume* target_;
+  int next_;
+  int pending_ = 0;
+  std::vector<float> buffer_;
+  metrology::DoseRange range_;
+};
+
+void scale_volume(io::SparseVolume& volume, double factor) {
+  const model::Grid& grid = volume.grid();
+  std::vector<float> slices(grid.slice_size() * 8);
+  for (int k = 0; k < grid.nz; k += 8) {
+    const int count = std::min(8, grid.nz - k);
+    volume.read_slices(k, count, slices.data());
+    for (float& value : slices) value = static_cast<float>(value * factor);
+    volume.write_slices(k, count, slices.data());
+  }
+}
+
+void warn_about(const Options& options, const metrology::LightSeen& seen, bool projector) {
+  if (!projector || seen.negative == 0) return;
+  warn(options.input + ": " + format_number(100 * seen.negative / seen.values, 3) +
+       " % of the light is negative, the least " + format_number(seen.least, 3) + " of " + format_number(seen.peak, 3) +
+       (options.keep_negative ? "; kept, though no projector can show it" : "; taken as 0"));
+}
+
+void run(const cli::App& app, Options& options) {
+  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  if (options.printer.print) {
+    io::OutputFile out(options.output, io::Content::text);
+    out.write(io::printer_toml(printer));
+    return out.commit();
+  }
+  if (!options.like.empty() && options.size_mm) {
+    throw Error{Fault::usage, "--size: --like already says which voxels"};
+  }
+  options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
+  io::refuse_same_file(options.input, options.output);
+
+  std::vector<io::SparseVolume> like;
+  if (!options.like.empty()) like = io::read_volumes(options.like);
+  const auto target = std::find_if(like.begin(), like.end(), [](const auto& v) { return v.name() == "target"; });
+  io::StackReader in(options.input);
+  const model::StackInfo& info = in.info();
+  io::require(options.input, info, model::Kind::sinogram);
+  const bool projector = info.space == model::Space::projector;
+  const model::Grid grid = like.empty() ? metrology::dose_grid(printer, info, options.size_mm)
+                                        : (target != like.end() ? target->grid() : like.front().grid());
+  const int first = metrology::first_slice(grid, info);
+  const metrology::Simulation simulation(printer, options.alignment, info, grid);
+
+  io::SparseVolume volume("dose", grid);
+  volume.metadata = info.extra;
+  if (!like.empty()) volume.metadata.insert(like.front().metadata.begin(), like.front().metadata.end());
+  volume.history = info.history;
+  volume.history.push_back(app.history());
+
+  Sink sink(volume, target != like.end() ? &*target : nullptr, first);
+  const double seconds = options.seconds.value_or(printer.stage.turns * 360 / printer.stage.speed_deg_s);
+  const double spread_mm =
+      options.no_blur ? 0 : optics::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
+  optics::VolumeBlur blur(spread_mm / grid.voxel_mm, [&](const Image& dose) { sink.add(dose); });
+  const metrology::Light light{projector && !options.keep_negative, options.full_scale,
+                               printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  metrology::LightSeen seen;
+  Progress progress("dose", info.count);
+  io::ReadAhead reader(in, batch);
+  for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
+    metrology::shine(light, slices, seen);
+    std::vector<Image> doses(slices.size());
+    simulation.dose(slices, doses);
+    for (Image& dose : doses) spread_mm > 0 ? blur.push(std::move(dose)) : sink.add(dose);
+    progress.tick(static_cast<long>(slices.size()));
+  }
+  blur.finish();
+  sink.flush();
+  warn_about(options, seen, projector);
+
+  const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
+  const double full = options.full_scale ? 1.0 : seen.peak;
+  const double scale = per_radian && full > 0 ? *per_radian / full : 1.0;
+  if (per_radian) {
+    scale_volume(volume, scale);
+    volume.units = "mJ/cm3";
+  }
+  io::write_volume(options.output, volume);
+
+  Json figures = sink.range().figures(printer, per_radian.has_value(), scale);
+  figures["model"] = projector ? "chief rays" : "parallel";
+  figures["full_scale"] = options.full_scale.value_or(seen.peak);
+  figures["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
+  figures["blur_sigma_mm"] = spread_mm;
+  figures["absorption_per_mm"] = printer.resin.absorption_per_mm;
+  // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.
+  figures["absorption_for_shortest_print_per_mm"] = 1 / model::resin_radius_mm(printer.vial);
+  io::write_report(options.report, "vam-dose/1", figures);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::App app(manual());
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { run(app, options); });
+}
