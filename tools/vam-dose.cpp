@@ -162,56 +162,82 @@ void warn_about(const Options& options, const metrology::LightSeen& seen, bool p
        (options.keep_negative ? "; kept, though no projector can show it" : "; taken as 0"));
 }
 
-void run(const cli::App& app, Options& options) {
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(printer));
-    return out.commit();
-  }
-  if (!options.like.empty() && options.size_mm) {
-    throw Error{Fault::usage, "--size: --like already says which voxels"};
-  }
-  options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
-  io::refuse_same_file(options.input, options.output);
-
+/// Where the dose goes: the voxels, what is known about them, and the part if there is one.
+struct Place {
   std::vector<io::SparseVolume> like;
-  if (!options.like.empty()) like = io::read_volumes(options.like);
-  const auto target = std::find_if(like.begin(), like.end(), [](const auto& v) { return v.name() == "target"; });
-  io::StackReader in(options.input);
-  const model::StackInfo& info = in.info();
-  io::require(options.input, info, model::Kind::sinogram);
-  const bool projector = info.space == model::Space::projector;
-  const model::Grid grid = like.empty() ? metrology::dose_grid(printer, info, options.size_mm)
-                                        : (target != like.end() ? target->grid() : like.front().grid());
-  const int first = metrology::first_slice(grid, info);
-  const metrology::Simulation simulation(printer, options.alignment, info, grid);
+  const io::SparseVolume* target = nullptr;
+  model::Grid grid;
+};
 
-  io::SparseVolume volume("dose", grid);
+Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
+  Place place;
+  if (options.like.empty()) {
+    place.grid = metrology::dose_grid(printer, info, options.size_mm);
+    return place;
+  }
+  place.like = io::read_volumes(options.like);
+  for (const io::SparseVolume& volume : place.like) {
+    if (volume.name() == "target") place.target = &volume;
+  }
+  place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
+  return place;
+}
+
+io::SparseVolume empty_volume(const cli::App& app, const Place& place, const model::StackInfo& info) {
+  io::SparseVolume volume("dose", place.grid);
   volume.metadata = info.extra;
-  if (!like.empty()) volume.metadata.insert(like.front().metadata.begin(), like.front().metadata.end());
+  if (!place.like.empty()) {
+    volume.metadata.insert(place.like.front().metadata.begin(), place.like.front().metadata.end());
+  }
   volume.history = info.history;
   volume.history.push_back(app.history());
+  return volume;
+}
 
-  Sink sink(volume, target != like.end() ? &*target : nullptr, first);
+double blur_mm(const Options& options, const model::Printer& printer) {
+  if (options.no_blur) return 0;
   const double seconds = options.seconds.value_or(printer.stage.turns * 360 / printer.stage.speed_deg_s);
-  const double spread_mm =
-      options.no_blur ? 0 : optics::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
-  optics::VolumeBlur blur(spread_mm / grid.voxel_mm, [&](const Image& dose) { sink.add(dose); });
-  const metrology::Light light{projector && !options.keep_negative, options.full_scale,
-                               printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  return optics::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
+}
+
+metrology::LightSeen expose(io::StackReader& in, const metrology::Simulation& simulation, const metrology::Light& light,
+                            double blur_px, Sink& sink) {
   metrology::LightSeen seen;
-  Progress progress("dose", info.count);
+  optics::VolumeBlur blur(blur_px, [&](const Image& dose) { sink.add(dose); });
+  Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
     metrology::shine(light, slices, seen);
     std::vector<Image> doses(slices.size());
     simulation.dose(slices, doses);
-    for (Image& dose : doses) spread_mm > 0 ? blur.push(std::move(dose)) : sink.add(dose);
+    for (Image& dose : doses) {
+      if (blur_px > 0) {
+        blur.push(std::move(dose));
+      } else {
+        sink.add(dose);
+      }
+    }
     progress.tick(static_cast<long>(slices.size()));
   }
   blur.finish();
   sink.flush();
+  return seen;
+}
+
+void simulate(const cli::App& app, const Options& options, const model::Printer& printer) {
+  io::StackReader in(options.input);
+  const model::StackInfo& info = in.info();
+  io::require(options.input, info, model::Kind::sinogram);
+  const bool projector = info.space == model::Space::projector;
+  const Place place = place_of(options, printer, info);
+  const int first = metrology::first_slice(place.grid, info);
+  const metrology::Simulation simulation(printer, options.alignment, info, place.grid);
+  io::SparseVolume volume = empty_volume(app, place, info);
+  Sink sink(volume, place.target, first);
+  const double sigma_mm = blur_mm(options, printer);
+  const metrology::Light light{projector && !options.keep_negative, options.full_scale,
+                               printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  const metrology::LightSeen seen = expose(in, simulation, light, sigma_mm / place.grid.voxel_mm, sink);
   warn_about(options, seen, projector);
 
   const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
@@ -227,11 +253,26 @@ void run(const cli::App& app, Options& options) {
   figures["model"] = projector ? "chief rays" : "parallel";
   figures["full_scale"] = options.full_scale.value_or(seen.peak);
   figures["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
-  figures["blur_sigma_mm"] = spread_mm;
+  figures["blur_sigma_mm"] = sigma_mm;
   figures["absorption_per_mm"] = printer.resin.absorption_per_mm;
   // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.
   figures["absorption_for_shortest_print_per_mm"] = 1 / model::resin_radius_mm(printer.vial);
   io::write_report(options.report, "vam-dose/1", figures);
+}
+
+void run(const cli::App& app, Options& options) {
+  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  if (options.printer.print) {
+    io::OutputFile out(options.output, io::Content::text);
+    out.write(io::printer_toml(printer));
+    return out.commit();
+  }
+  if (!options.like.empty() && options.size_mm) {
+    throw Error{Fault::usage, "--size: --like already says which voxels"};
+  }
+  options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
+  io::refuse_same_file(options.input, options.output);
+  simulate(app, options, printer);
 }
 
 }  // namespace

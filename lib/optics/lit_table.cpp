@@ -57,8 +57,8 @@ LitTable::LitTable(const View& view, int stage_angles, int sense, double absorpt
     zone.x_p_mm.resize(series(zone, zone.rows, 0, 0));
     zone.strength.resize(zone.x_p_mm.size());
   };
-  const double inside = std::min(reach_mm * rim, r_max_mm);
-  inner.rows = static_cast<int>(std::ceil(inside / pitch_mm)) + 1;
+  const double inside = std::min(reach_mm * rim, std::max(r_max_mm, pitch_mm));
+  inner.rows = std::max(2, static_cast<int>(std::ceil(inside / pitch_mm)) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
   allocate(inner);
   parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });

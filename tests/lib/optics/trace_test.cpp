@@ -274,6 +274,13 @@ TEST_CASE("slices do not depend on their neighbours or on the number of threads"
   }
 }
 
+TEST_CASE("a single voxel, on the axis or larger than the vial") {
+  for (const double size : {0.1, 60.0}) {
+    TraceSetup setup = setup_of(matched, 1, size);
+    CHECK(dose_of(setup, Image(440, 360, 1.0F))(0, 0) > 0);
+  }
+}
+
 TEST_CASE("half a turn and foreign shapes are refused") {
   TraceSetup setup = setup_of(vial, 8, 8);
   CHECK_THROWS_AS(dose_of(setup, Image(441, 360)), Error);

@@ -1,0 +1,81 @@
+# vam-dose end to end: both models, the volume, absolute doses and times, blur, streams, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+
+ok "a part" vam-slice --shape disc-grid:height=0.4 --voxel 0.1 -o part.vdb
+ok "its projections" vam-sinogram part.vdb --filter ram-lak --negative clip -o virtual.exr
+ok "for the projector" vam-resample virtual.exr -o frames.exr
+quiet "the dose" vam-dose frames.exr --like part.vdb -o dose.vdb --report report.json
+is "by chief rays" "$(json report.json model)" "chief rays"
+quiet "the parallel dose" vam-dose virtual.exr --like part.vdb -o parallel.vdb --report parallel.json
+is "by back-projection" "$(json parallel.json model)" parallel
+a=$(json report.json part_dose_per_turn_mean_relative); b=$(json parallel.json part_dose_per_turn_mean_relative)
+holds "the corrected print takes the parallel dose" "($a / $b - 1)^2 < 0.02^2"
+ok "it prints" vam-score dose.vdb --target part.vdb --require 'iou>=0.95'
+vam-resample virtual.exr --set projector.telecentric=true | vam-dose --like part.vdb -o wrong.vdb
+fails 1 iou vam-score wrong.vdb --target part.vdb --require 'iou>=0.95'
+
+# Streams and threads
+vam-dose <frames.exr --like part.vdb >stdin.vdb
+ok "stdin to stdout" vam-score stdin.vdb --target part.vdb
+# The identity of an archive depends on its history, so the command must be the same: one core stands for one thread.
+taskset -c 0 vam-dose --like part.vdb frames.exr >one.vdb
+vam-dose --like part.vdb frames.exr >two.vdb
+ok "which is a volume" vam-score one.vdb --target part.vdb
+same "1 and 2 threads give identical bytes" one.vdb two.vdb
+
+# Misalignment, and its cure by the same options
+holds "a column offset spoils the dose" "$(vam-resample virtual.exr --column-offset 12 | vam-dose --like part.vdb | vam-score --target part.vdb | awk '/^iou/ { print $2 }') < 0.9"
+vam-resample virtual.exr --column-offset 12 --angle-offset 10 --reverse >moved.exr
+vam-dose moved.exr --column-offset 12 --angle-offset 10 --reverse --like part.vdb -o moved.vdb
+ok "which the same offset cures" vam-score moved.vdb --target part.vdb --require 'iou>=0.95'
+
+# Absolute: even light of 3.8 mW/cm2 in a telecentric bath of the resin's index, 36 s a turn: on the axis
+# mu I 36 s e^{-mu R} = 0.5/cm * 3.8 * 36 * e^{-0.635} = 36.25 mJ/cm3, without the loss at the window.
+$exr make flat.exr space=projector width=1024 height=8 pixel=0.065 row=0.065 value=0.5 count=1
+flat="--set projector.telecentric=true --set bath.index=1.53 --set resin.absorption_per_mm=0.05 --set resin.critical_dose_mj_cm3=100"
+ok "absolute dose" vam-dose flat.exr $flat --size 0.065 -o flat.vdb --report flat.json
+window=$(vam-resample --explain --set projector.telecentric=true --set bath.index=1.53 | awk -F, 'NR == 500 { print $4 }')
+holds "on the axis" "($(json flat.json dose_per_turn_max_mj_cm3) / (36.2488 * $window) - 1)^2 < 1e-6"
+is "turns" "$(json flat.json turns_to_critical_max)" 3.0
+is "seconds" "$(json flat.json seconds_to_critical_max)" 108.0
+ok "half the light at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
+holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
+
+# Blur
+ok "point spread and diffusion" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --set resin.diffusion_mm2_s=0.0005 --report blur.json -o blur.vdb
+holds "sqrt(0.3^2 + 2 * 0.0005 * 36)" "($(json blur.json blur_sigma_mm) - 0.3549648)^2 < 1e-12"
+holds "smears the dose" "$(json blur.json part_dose_per_turn_min_relative) < $(json report.json part_dose_per_turn_min_relative)"
+ok "none on demand" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --no-blur --report sharp.json -o sharp.vdb
+is "is none" "$(json sharp.json part_dose_per_turn_min_relative)" "$(json report.json part_dose_per_turn_min_relative)"
+
+# Negative light
+vam-sinogram part.vdb --filter ram-lak | vam-resample --keep-negative >negative.exr
+ok "negative light" vam-dose negative.exr --like part.vdb -o x.vdb; rm x.vdb
+is "is said to be taken as 0" "$(grep -c 'taken as 0' .log/err)" 1
+
+# Wrong inputs
+head -c 100000 frames.exr >cut.exr
+$exr make camera.exr space=camera
+$exr make pictures.exr kind=frames
+$exr make flattened.exr pixel=0.1 row=0.3
+$exr make half.exr width=64 step=3
+printf 'no volume' >noise.vdb
+fails 66 nothing.exr vam-dose nothing.exr -o x.vdb
+fails 66 nothing.vdb vam-dose frames.exr --like nothing.vdb -o x.vdb
+fails 65 noise.vdb vam-dose frames.exr --like noise.vdb -o x.vdb
+fails 65 cut.exr vam-dose cut.exr -o x.vdb
+fails 65 camera vam-dose camera.exr -o x.vdb
+fails 65 frames vam-dose pictures.exr -o x.vdb
+fails 65 cubes vam-dose flattened.exr -o x.vdb
+fails 65 'cover 180 deg' vam-dose half.exr -o x.vdb
+fails 65 'not slices of the volume' vam-dose flat.exr --like part.vdb -o x.vdb
+fails 65 'the printer it was resampled for' vam-dose frames.exr --set projector.columns=800 -o x.vdb
+fails 64 'already says' vam-dose frames.exr --like part.vdb --size 5 -o x.vdb
+fails 64 size vam-dose frames.exr --size -5 -o x.vdb
+fails 64 full-scale vam-dose frames.exr --full-scale 0 -o x.vdb
+fails 64 radius vam-dose frames.exr --set vial.radius_mm=-3 -o x.vdb
+fails 64 'also the input' vam-dose frames.exr -o frames.exr
+fails 73 nowhere vam-dose frames.exr -o nowhere/x.vdb
+fails 74 full vam-dose frames.exr -o /dev/full
+done_testing
