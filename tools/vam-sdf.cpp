@@ -10,6 +10,8 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/mesh_file.hpp"
+#include "io/picture.hpp"
+#include "io/plot.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
@@ -79,7 +81,8 @@ void declare(cli::App& app, Options& options) {
   app.flag("--scale", options.scale, "Fit a uniform scale too.");
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Points spread over each surface.");
-  app.option("--histogram", "FILE.csv", options.histogram, "Share of the area per distance, as CSV.");
+  app.option("--histogram", "FILE", options.histogram,
+             "Share of the area per distance: .png draws it, any other name is CSV.");
   app.option("--bins", "N", options.bins, {2, 10000}, "Bins of the histogram.");
   app.option("--limit", "MM", options.limit_mm, cli::positive,
              "End of the histogram and of the colours; the 99th percentile without it.");
@@ -140,11 +143,24 @@ void write_coloured(const std::string& path, const model::TriangleSoup& print, c
                               " (blue) to +" + format_number(limit_mm, 4) + " mm (red)"});
 }
 
-void write_histogram(const std::string& path, const metrology::Histogram& histogram) {
-  std::string text = "distance_mm,area_percent\n";
-  for (std::size_t i = 0; i < histogram.share.size(); ++i) {
-    text += format_number(histogram.low_mm + (static_cast<double>(i) + 0.5) * histogram.bin_mm()) + "," +
-            format_number(histogram.share[i]) + "\n";
+void write_histogram(const Options& options, const metrology::Comparison& found, double limit_mm) {
+  io::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
+  for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
+  const io::Histogram histogram = builder.done();
+  const std::string& path = options.histogram;
+  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
+    io::Plot plot;
+    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_reference.rms_mm, 3) + " mm";
+    plot.x = {"distance to the reference / mm (positive: outside)", -limit_mm, limit_mm};
+    plot.y.label = "share of the area / %";
+    plot.series.push_back({"", histogram.edges, histogram.percent, io::paint::blue, io::SeriesStyle::bars});
+    plot.markers.push_back({0, "reference", io::paint::grey});
+    return io::write_png(path, io::draw(plot));
+  }
+  std::string text = "from_mm,to_mm,area_percent\n";
+  for (std::size_t i = 0; i < histogram.percent.size(); ++i) {
+    text += format_number(histogram.edges[i]) + "," + format_number(histogram.edges[i + 1]) + "," +
+            format_number(histogram.percent[i]) + "\n";
   }
   io::OutputFile out(path, io::Content::text);
   out.write(text);
@@ -174,8 +190,7 @@ void run(const cli::App& app, const Options& options) {
   const double limit_mm =
       options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
   if (!options.output.empty()) write_coloured(options.output, print, reference, limit_mm, app.history());
-  if (!options.histogram.empty())
-    write_histogram(options.histogram, metrology::histogram(found.samples_mm, options.bins, limit_mm));
+  if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
   Json figures = metrology::to_json(found);
   figures["alignment"] = {{"method", options.align},
                           {"scale", alignment.transform.scale},

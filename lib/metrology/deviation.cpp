@@ -79,16 +79,6 @@ Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& 
   return result;
 }
 
-Histogram histogram(std::span<const float> distances_mm, int bins, double limit_mm) {
-  Histogram h{-limit_mm, limit_mm, std::vector<double>(static_cast<std::size_t>(bins), 0.0)};
-  const double share = 100.0 / static_cast<double>(distances_mm.size());
-  for (const float distance : distances_mm) {
-    const double at = (static_cast<double>(distance) - h.low_mm) / h.bin_mm();
-    h.share[static_cast<std::size_t>(std::clamp(at, 0.0, bins - 1.0))] += share;
-  }
-  return h;
-}
-
 std::array<std::uint8_t, 3> blue_white_red(double distance_mm, double limit_mm) {
   const double at = std::clamp(distance_mm / limit_mm, -1.0, 1.0);
   const auto pale = static_cast<std::uint8_t>(std::lround(255 * (1 - std::abs(at))));

@@ -41,15 +41,6 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
                                  const solid::Surface& reference, int samples);
 
-/// Equal bins over [low, high]; the ends count what lies beyond.
-struct Histogram {
-  double low_mm = 0;
-  double high_mm = 0;
-  std::vector<double> share;  // per cent of the area
-  [[nodiscard]] double bin_mm() const { return (high_mm - low_mm) / static_cast<double>(share.size()); }
-};
-[[nodiscard]] Histogram histogram(std::span<const float> distances_mm, int bins, double limit_mm);
-
 /// Blue (inside, -limit) over white (0) to red (outside, +limit), as CloudCompare's and [OST22 fig 6]'s scale.
 [[nodiscard]] std::array<std::uint8_t, 3> blue_white_red(double distance_mm, double limit_mm);
 

@@ -48,13 +48,6 @@ TEST_CASE("statistics of known numbers") {
   CHECK_THROWS_AS((void)metrology::deviation({}), Error);
 }
 
-TEST_CASE("the histogram holds all of the area, the ends what lies beyond") {
-  const std::vector<float> values{-9, -0.4F, 0.1F, 0.1F, 9};
-  const auto h = metrology::histogram(values, 4, 1.0);
-  CHECK(h.share == std::vector<double>{20, 20, 40, 20});
-  CHECK(h.bin_mm() == 0.5);
-}
-
 TEST_CASE("colours: blue inside, white at zero, red outside") {
   CHECK(metrology::blue_white_red(-2, 1) == std::array<std::uint8_t, 3>{0, 0, 255});
   CHECK(metrology::blue_white_red(0, 1) == std::array<std::uint8_t, 3>{255, 255, 255});
