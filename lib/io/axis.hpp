@@ -14,6 +14,7 @@ struct Axis {
   double low = 0;
   double high = 0;
   bool logarithmic = false;
+  double step = 0;  // distance of the ticks; 0: whatever is round
 };
 
 /// Round numbers (1, 2, 5 x 10^n) between the ends, about `wanted` of them; for a logarithmic axis the powers of ten,

@@ -12,11 +12,13 @@ namespace {
 
 class StackSink : public FrameSink {
  public:
-  StackSink(const std::string& path, const FrameSinkOptions& options) : writer_(path, options.info, options.stack) {}
+  StackSink(const std::string& path, const FrameSinkOptions& options)
+      : writer_(path, options.info, options.stack), z_start_mm_(options.info.z_start_mm) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
     for (const auto& frame : frames) {
       model::ImageInfo about;
+      about.z_mm = z_start_mm_;  // of row 0
       about.angle_deg = frame.angle_deg;
       about.has_angle = true;
       about.time_s = frame.time_s;
@@ -28,6 +30,7 @@ class StackSink : public FrameSink {
 
  private:
   StackWriter writer_;
+  double z_start_mm_;
 };
 
 class VideoSink : public FrameSink {

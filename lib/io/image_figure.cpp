@@ -10,6 +10,7 @@ namespace {
 
 constexpr double bar_gap = 22;  // picture to colour bar
 constexpr double bar_width = 20;
+constexpr int bar_ticks = 7;
 
 struct Scale {
   double x;
@@ -51,15 +52,12 @@ void draw_outline(Canvas& canvas, const Panel& panel, Spot corner, Scale scale) 
 void draw_scale_bar(Canvas& canvas, double pixel_mm, Scale scale, Spot corner, double width, double height) {
   const double bar_mm = round_step(0.35 * width / scale.x * pixel_mm);
   const double bar = bar_mm / pixel_mm * scale.x;
-  const Spot left{corner.x + 12, corner.y + height - 14};
-  canvas.line(left, {left.x + bar, left.y}, paint::black, 6);
-  canvas.line(left, {left.x + bar, left.y}, paint::white, 3);
+  const Spot left{corner.x + 14, corner.y + height - 16};
   const std::string words = tick_label(bar_mm) + " mm";
-  const Spot middle{left.x + 0.5 * bar, left.y - 8};
-  for (const Spot seam : {Spot{-1, 0}, Spot{1, 0}, Spot{0, -1}, Spot{0, 1}}) {
-    canvas.text({middle.x + seam.x, middle.y + seam.y}, words, label_size, paint::black, Align::middle, Align::end);
-  }
-  canvas.text(middle, words, label_size, paint::white, Align::middle, Align::end);
+  const double covered = std::max(bar, Canvas::text_width(words, label_size));
+  canvas.fill({left.x - 8, left.y - 28}, {left.x + covered + 8, left.y + 9}, paint::black, 0.55);
+  canvas.line(left, {left.x + bar, left.y}, paint::white, 3);
+  canvas.text({left.x + 0.5 * bar, left.y - 8}, words, label_size, paint::white, Align::middle, Align::end);
 }
 
 void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, double top, double bottom) {
@@ -71,7 +69,7 @@ void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, dou
   const Axis axis{"", figure.low, figure.high, false};
   const Frame frame{left, top, left + bar_width, bottom, {}, axis};
   double widest = 0;
-  for (const double value : ticks(axis, std::max(2, static_cast<int>((bottom - top) / 60)))) {
+  for (const double value : ticks(axis, std::clamp(static_cast<int>((bottom - top) / 60), 2, bar_ticks))) {
     const double y = frame.spot_y(value);
     canvas.line({left + bar_width, y}, {left + bar_width + 5, y}, paint::black);
     canvas.text({left + bar_width + 8, y}, tick_label(value), label_size);
@@ -83,7 +81,7 @@ void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, dou
 
 double colour_bar_room(const ImageFigure& figure) {
   double widest = 0;
-  for (const double value : ticks({"", figure.low, figure.high, false}, 8)) {
+  for (const double value : ticks({"", figure.low, figure.high, false}, bar_ticks)) {
     widest = std::max(widest, Canvas::text_width(tick_label(value), label_size));
   }
   return bar_gap + bar_width + widest + 46;

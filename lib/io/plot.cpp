@@ -82,15 +82,34 @@ void draw_bars(Canvas& canvas, const Frame& frame, const Series& series, bool fi
   if (!filling) canvas.polyline(top, series.colour, 1.5);
 }
 
-void draw_legend(Canvas& canvas, const Frame& frame, const std::vector<Series>& series) {
+// Spots of data and markers in the upper part of one half of the frame: where the legend would be in their way.
+int crowd(const Frame& frame, const Plot& plot, bool right_half) {
+  const auto in_the_way = [&](double x, double y) {
+    const bool half = right_half ? x > 0.5 * (frame.left + frame.right) : x < 0.5 * (frame.left + frame.right);
+    return half && y < frame.top + 0.3 * (frame.bottom - frame.top);
+  };
+  int spots = 0;
+  for (const auto& one : plot.series) {
+    for (std::size_t i = 0; i < one.y.size(); ++i) {
+      if (!shown(frame.x, one.x[i]) || !shown(frame.y, one.y[i])) continue;
+      spots += in_the_way(frame.spot_x(one.x[i]), frame.spot_y(one.y[i])) ? 1 : 0;
+    }
+  }
+  for (const auto& marker : plot.markers) spots += in_the_way(frame.spot_x(marker.x), frame.top) ? 10 : 0;
+  return spots;
+}
+
+void draw_legend(Canvas& canvas, const Frame& frame, const Plot& plot) {
+  const auto& series = plot.series;
   double widest = 0;
   for (const auto& one : series) widest = std::max(widest, Canvas::text_width(one.name, label_size));
   if (widest == 0) return;
   constexpr double row = 24;
-  const double left = frame.right - widest - 60;
+  const bool to_the_left = crowd(frame, plot, true) > crowd(frame, plot, false);
+  const double left = to_the_left ? frame.left + 18 : frame.right - widest - 60;
   double y = frame.top + 20;
   const auto named = std::count_if(series.begin(), series.end(), [](const Series& one) { return !one.name.empty(); });
-  canvas.fill({left - 8, y - 14}, {frame.right - 6, y + row * static_cast<double>(named) - 10}, paint::white, 0.75);
+  canvas.fill({left - 8, y - 14}, {left + widest + 44, y + row * static_cast<double>(named) - 10}, paint::white, 0.75);
   for (const auto& one : series) {
     if (one.name.empty()) continue;
     if (one.style == SeriesStyle::bars) {
@@ -140,7 +159,7 @@ RgbImage draw(const Plot& plot) {
     if (series.style == SeriesStyle::bars) draw_bars(canvas, frame, series, false);
   }
   draw_markers(canvas, frame, plot.markers);
-  draw_legend(canvas, frame, plot.series);
+  draw_legend(canvas, frame, plot);
   canvas.text({0.5 * (frame.left + frame.right), 26}, plot.title, title_size, paint::black, Align::middle);
   return canvas.picture();
 }

@@ -48,8 +48,12 @@ class VideoReader {
   bool next(GreyImage& frame);
 
  private:
+  friend int count_video_frames(const std::string& path);
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Frames of the first video stream, counted without decoding them. Throws as VideoReader does.
+int count_video_frames(const std::string& path);
 
 }  // namespace vam::io

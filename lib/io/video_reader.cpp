@@ -1,5 +1,8 @@
+#include <bit>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "io/av_handles.hpp"
 #include "io/video.hpp"
@@ -20,6 +23,39 @@ int bits_of(int pixel_format) {
       return 16;
     default:
       return 0;
+  }
+}
+
+// An EBML size (RFC 8794 section 4): the leading zeros of the first byte tell how many bytes follow. Empty where it is
+// cut, or "unknown", as in a stream.
+std::optional<std::uint64_t> ebml_size(std::istream& in) {
+  const int first = in.get();
+  if (first <= 0) return std::nullopt;
+  const int following = std::countl_zero(static_cast<std::uint8_t>(first));
+  std::uint64_t value = static_cast<std::uint64_t>(first) & (0x7FU >> following);
+  for (int i = 0; i < following; ++i) value = value << 8 | static_cast<std::uint8_t>(in.get());
+  const std::uint64_t unknown = (std::uint64_t{1} << (7 * (following + 1))) - 1;
+  return in && value != unknown ? std::optional(value) : std::nullopt;
+}
+
+// libavformat takes the end of a cut Matroska file for the end of the film; the segment's size knows better.
+void refuse_cut_matroska(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const auto identifier = [&] {
+    std::string four(4, '\0');
+    in.read(four.data(), 4);
+    return four;
+  };
+  if (identifier() != "\x1a\x45\xdf\xa3") return;
+  if (const auto head = ebml_size(in)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
+  if (identifier() != "\x18\x53\x80\x67") throw Error{Fault::data, path + ": the video is truncated in its head"};
+  const auto size = ebml_size(in);
+  if (!size) return;
+  const std::uint64_t whole = static_cast<std::uint64_t>(in.tellg()) + *size;
+  const std::uint64_t there = std::filesystem::file_size(path);
+  if (there < whole) {
+    throw Error{Fault::data, path + ": the video is truncated: " + std::to_string(there) + " of " +
+                                 std::to_string(whole) + " bytes"};
   }
 }
 
@@ -53,6 +89,17 @@ struct VideoReader::State {
       format.comment = entry->value;
   }
 
+  // The next packet of the stream; false at the end.
+  bool read_packet() {
+    int status = av_read_frame(container, packet.get());
+    while (status >= 0 && packet->stream_index != stream) {
+      av_packet_unref(packet.get());
+      status = av_read_frame(container, packet.get());
+    }
+    if (status != AVERROR_EOF) check(status, "reading the video");
+    return status >= 0;
+  }
+
   // Feeds packets until the decoder has a frame; false at the end.
   bool decode() {
     for (;;) {
@@ -63,13 +110,8 @@ struct VideoReader::State {
         if (frame->decode_error_flags != 0) throw Error{Fault::data, path + ": a frame is damaged"};
         return true;
       }
-      int read = av_read_frame(container, packet.get());
-      while (read >= 0 && packet->stream_index != stream) {
-        av_packet_unref(packet.get());
-        read = av_read_frame(container, packet.get());
-      }
-      if (read < 0 && read != AVERROR_EOF) check(read, "reading the video");
-      check(avcodec_send_packet(codec.get(), read < 0 ? nullptr : packet.get()), "decoding the video");
+      const bool more = read_packet();
+      check(avcodec_send_packet(codec.get(), more ? packet.get() : nullptr), "decoding the video");
       av_packet_unref(packet.get());
     }
   }
@@ -77,6 +119,7 @@ struct VideoReader::State {
 
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
   if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": no such file"};
+  refuse_cut_matroska(path);
   av_log_set_level(AV_LOG_QUIET);
   state_->path = path;
   state_->open();
@@ -99,6 +142,13 @@ bool VideoReader::next(GreyImage& image) {
     }
   }
   return true;
+}
+
+int count_video_frames(const std::string& path) {
+  VideoReader reader(path);
+  int count = 0;
+  for (; reader.state_->read_packet(); ++count) av_packet_unref(reader.state_->packet.get());
+  return count;
 }
 
 }  // namespace vam::io

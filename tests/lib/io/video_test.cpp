@@ -126,3 +126,25 @@ TEST_CASE("without commit nothing is left; other endings, missing and foreign fi
   std::filesystem::create_symlink("/dev/full", scratch.path("full.mkv"));
   CHECK(fault_of([&] { write_video(scratch.path("full.mkv"), 3, 8); }) == vam::Fault::io);
 }
+
+TEST_CASE("no cut video passes for a shorter one") {
+  const Scratch scratch;
+  for (const char* name : {"a.mkv", "a.mp4"}) {
+    write_video(scratch.path(name), 10, 8);
+    const std::string whole = slurp(scratch.path(name));
+    for (std::size_t size = 0; size < whole.size(); size += 97) {
+      CAPTURE(size);
+      std::ofstream(scratch.path("cut"), std::ios::binary) << whole.substr(0, size);
+      bool refused = false;
+      int frames = 0;
+      try {
+        VideoReader reader(scratch.path("cut"));
+        GreyImage image;
+        while (reader.next(image)) ++frames;
+      } catch (const vam::Error& error) {
+        refused = error.fault == vam::Fault::data;
+      }
+      CHECK((refused || frames == 10));  // the last bytes of MP4 are but comments
+    }
+  }
+}

@@ -1,0 +1,19 @@
+// What a file is, by its first bytes.
+#pragma once
+
+#include <string>
+
+namespace vam::io {
+
+enum class FileType {
+  volume,    // OpenVDB
+  stack,     // OpenEXR
+  video,     // Matroska or MP4
+  pictures,  // a folder
+};
+
+/// Looks without taking anything away, so that whoever reads next gets every byte; "-" is stdin, a file or a pipe.
+/// Throws Error: no_input, data (none of these).
+[[nodiscard]] FileType file_type(const std::string& path);
+
+}  // namespace vam::io

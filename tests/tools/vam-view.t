@@ -1,0 +1,95 @@
+# vam-view end to end: every kind of file, sections, sheets, histogram, export, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+png="python3 $VAM_SOURCE/tests/tools/png.py"
+
+vam-slice --shape gyroid --voxel 0.4 -o part.vdb
+quiet "a volume" vam-view part.vdb -o axial.png
+holds "a picture of useful size" "$($png size axial.png | cut -d' ' -f1) > 600 && $($png size axial.png | cut -d' ' -f2) > 500"
+holds "anti-aliased, in greys" "$($png colours axial.png) > 50"
+is "history in the picture" "$($png text axial.png Comment | cut -d' ' -f1,3-)" "vam-view part.vdb -o axial.png"
+for plane in axial coronal sagittal; do
+  ok "$plane at 1 mm" vam-view part.vdb --plane $plane --at 1 -o $plane.png
+done
+ok "a sheet" vam-view part.vdb --sheet 9 -o sheet.png
+quiet "the same from a pipe" sh -c 'cat part.vdb | vam-view --at 1 --plane coronal >pipe.png'
+vam-view part.vdb --at 1 --plane coronal --plain -o plain.png
+vam-view --at 1 --plane coronal --plain -o redirected.png <part.vdb
+is "plain pixels, one a voxel" "$($png size plain.png | cut -d' ' -f3-)" "8 3"
+is "a redirected file is the same" "$($png sum redirected.png)" "$($png sum plain.png)"
+
+# Sinogram: the brightest pixel of slice 2 at angle 0 is at column 44 of 64.
+$exr make sino.exr width=64 height=60 count=3
+ok "a sinogram" vam-view sino.exr -o sino.png
+ok "its slice at 0.52 mm" vam-view sino.exr --at 0.52 --plain --colours grey -o slice.png
+is "one pixel a value" "$($png size slice.png)" "64 60 8 3"
+is "columns to the right, angles down" "$($png get slice.png 44 0) $($png get slice.png 19 30)" "255 255 255 255 255 255"
+is "from a pipe" "$(vam-view --at 0.52 --plain --colours grey <sino.exr >piped.png; $png sum piped.png)" "$($png sum slice.png)"
+
+# Frames of a projector, as EXR, pictures and video: the same pixels
+cat >printer.toml <<'TOML'
+[projector]
+columns = 64
+rows = 8
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 5
+fps = 1
+TOML
+$exr make projector.exr space=projector width=64 height=36 count=3
+vam-project projector.exr --bits 8 -o frames.exr; vam-project projector.exr -o frames/; vam-project projector.exr -o frames.mkv
+for file in frames.exr frames frames.mkv; do
+  ok "a sheet of $file" vam-view $file --sheet 6 -o sheet-$file.png
+  vam-view $file --plain --high 1 -o plain-$file.png
+done
+is "pictures as the EXR" "$($png sum plain-frames.png)" "$($png sum plain-frames.exr.png)"
+is "the video as the EXR" "$($png sum plain-frames.mkv.png)" "$($png sum plain-frames.exr.png)"
+vam-view frames.exr --at 90 --plain -o at90.png; vam-view frames --at 90 --plain -o folder90.png
+is "a frame by its angle, also of a folder with an index" "$($png sum folder90.png)" "$($png sum at90.png)"
+
+# Dose with outline and histogram; here the part's own coverage stands for a dose
+ok "the outline of the part" vam-view part.vdb --target part.vdb -o outlined.png
+holds "is drawn" "$($png sum outlined.png) != $($png sum axial.png)"
+ok "the histogram" vam-view part.vdb --grid target --target part.vdb --histogram -o histogram.png
+is "is a figure" "$($png size histogram.png)" "900 600 8 3"
+
+# NRRD
+ok "export of a volume" vam-view part.vdb --export part.nrrd
+python3 - >check <<'PY'
+import struct
+data = open("part.nrrd", "rb").read()
+head, body = data.split(b"\n\n", 1)
+fields = dict(line.split(": ", 1) for line in head.decode().split("\n") if ": " in line and line[0] != "#")
+sizes = list(map(int, fields["sizes"].split()))
+values = struct.unpack("<%df" % (len(body) // 4), body)
+print(sizes[0] * sizes[1] * sizes[2] == len(values), fields["space units"], min(values), max(values))
+PY
+is "all voxels behind a header" "$(cat check)" 'True "mm" "mm" "mm" 0.0 1.0'
+ok "export of a stack" vam-view sino.exr --export sino.nrrd
+is "with its axes" "$(strings -n 6 sino.nrrd | grep -E '^(sizes|spacings|units)' | tr '\n' ';')" 'sizes: 64 60 3;spacings: 0.26 6 0.26;units: "mm" "deg" "mm";'
+
+# Wrong inputs
+fails 66 'none.vdb' vam-view none.vdb -o x.png
+echo hello >text.txt
+fails 65 'neither a volume' vam-view text.txt -o x.png
+: >empty
+fails 65 'is empty' vam-view empty -o x.png
+fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'
+head -c 3000 part.vdb >cut.vdb
+fails 65 'cut.vdb' vam-view cut.vdb -o x.png
+head -c 9000 sino.exr >cut.exr
+fails 65 'cut' vam-view cut.exr -o x.png
+head -c 2000 frames.mkv >cut.mkv
+fails 65 'cut.mkv' vam-view cut.mkv -o x.png
+fails 65 'no axial section at 90 mm' vam-view part.vdb --at 90 -o x.png
+fails 65 'has none at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
+fails 65 'target' vam-view part.vdb --grid dose -o x.png
+fails 65 'need a volume' vam-view sino.exr --histogram -o x.png
+mkdir hollow
+fails 65 'no PNG or TIFF' vam-view hollow -o x.png
+fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
+fails 64 'part.vdb' vam-view part.vdb -o part.vdb
+fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd
+fails 74 'full' vam-view part.vdb -o /dev/full
+fails 73 'missing/x.png' vam-view part.vdb -o missing/x.png
+done_testing
