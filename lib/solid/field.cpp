@@ -35,6 +35,7 @@ Field transformed(const Field& field, const Affine& map) {
   }
   Field result;
   result.lipschitz = field.lipschitz * std::sqrt(lipschitz_squared);
+  result.curvature_per_mm = field.curvature_per_mm * std::sqrt(lipschitz_squared);
   for (std::size_t a = 0; a < 3; ++a) {
     Point d{};
     d[a] = 1;
@@ -88,11 +89,13 @@ double cube_fraction(double offset, const Point& normal) {
 
 namespace {
 
-constexpr int block = 8;    // voxels along the edge of a block
+constexpr int block = 4;    // voxels along the edge of a block
 constexpr int deepest = 3;  // halvings of a voxel
-// Departure from a linear field, relative to its change across the cell. Smooth curvature shows up as an even residual,
-// which the mean value of the cell accounts for; an edge anywhere but in the middle has an odd part.
-constexpr double even_limit = 0.015;
+// Departure from a linear field, relative to its change across the cell. Smooth curvature shows up as an even residual
+// of at most a quarter of the curvature times the edge, which the mean value of the cell accounts for; edges show
+// more, and an edge anywhere but in the middle has an odd part.
+constexpr double even_least = 0.01;
+constexpr double even_most = 0.04;
 constexpr double odd_limit = 0.01;
 constexpr double half_diagonal = 0.8660254037844386;  // of a unit cube
 constexpr double slack = 1.05;  // numerically projected distances (gyroid) are Lipschitz to a few per cent
@@ -122,19 +125,30 @@ double cell_fraction(const Field& field, const Point& centre, double edge_mm, co
     odd = std::max(odd, 0.5 * std::abs(residual[c] - residual[7 - c]));
   }
   const double steepness = length(slope);
+  const double even_limit = std::clamp(0.3 * field.curvature_per_mm * edge_mm, even_least, even_most);
   if ((even <= even_limit * steepness && odd <= odd_limit * steepness) || depth == deepest) {
     if (steepness == 0) return middle < 0 ? 1 : 0;
     // The mean over the cell of a field that is quadratic: two thirds centre, one third corners.
     return cube_fraction((2 * middle + mean) / 3, slope);
   }
+  // Nodes of the eight parts, 3 x 3 x 3: the corners and the middle are known.
+  std::array<double, 27> nodes{};
+  for (unsigned n = 0; n < 27; ++n) {
+    const unsigned i = n % 3;
+    const unsigned j = n / 3 % 3;
+    const unsigned k = n / 9;
+    const bool corner = i != 1 && j != 1 && k != 1;
+    nodes[n] = corner    ? corners[i / 2 + j / 2 * 2 + k / 2 * 4]
+               : n == 13 ? middle
+                         : field.value(centre + (edge_mm / 2) * Point{i - 1.0, j - 1.0, k - 1.0});
+  }
   double fraction = 0;
   for (unsigned part = 0; part < 8; ++part) {
-    const Point part_centre = centre + (edge_mm / 2) * corner_sign(part);
+    const unsigned first = (part & 1U) + 3 * (part >> 1U & 1U) + 9 * (part >> 2U);
     Corners part_corners{};
-    for (unsigned c = 0; c < 8; ++c) {
-      part_corners[c] = c == part ? corners[c] : field.value(part_centre + (edge_mm / 2) * corner_sign(c));
-    }
-    fraction += cell_fraction(field, part_centre, edge_mm / 2, part_corners, depth + 1) / 8;
+    for (unsigned c = 0; c < 8; ++c) part_corners[c] = nodes[first + (c & 1U) + 3 * (c >> 1U & 1U) + 9 * (c >> 2U)];
+    fraction +=
+        cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, part_corners, depth + 1) / 8;
   }
   return fraction;
 }

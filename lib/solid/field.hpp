@@ -13,6 +13,8 @@ struct Field {
   std::function<double(const Point&)> value;
   /// |value(p)| <= lipschitz * (distance from p to the surface), so a large value proves a ball free of surface.
   double lipschitz = 1;
+  /// Largest curvature of the smooth parts of the surface, 1/mm: tells roundness from edges within a voxel.
+  double curvature_per_mm = 0;
   Box box;               // holds the solid, tight
   double radius_mm = 0;  // of the smallest cylinder about the z axis that holds the solid
   double ball_mm = 0;    // of the smallest ball about box.centre() that holds the solid

@@ -9,19 +9,24 @@ void require(bool holds, const char* line) {
   if (!holds) throw Error{Fault::usage, line};
 }
 
-Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm) {
+Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm,
+            double curvature_per_mm) {
   Field field;
   field.value = std::move(value);
   field.box = {low, high};
   field.radius_mm = std::min(radius_mm, std::hypot(std::max(-low[0], high[0]), std::max(-low[1], high[1])));
   field.ball_mm = 0.5 * field.box.diagonal();
+  field.curvature_per_mm = curvature_per_mm;
   return field;
 }
 
 namespace {
 
-Field upright(std::function<double(const Point&)> value, double radius, double half_height) {
-  Field field = solid(std::move(value), {-radius, -radius, -half_height}, {radius, radius, half_height}, radius);
+constexpr double least_radius = 1e-3;
+
+Field upright(std::function<double(const Point&)> value, double radius, double half_height, double curvature_per_mm) {
+  Field field = solid(std::move(value), {-radius, -radius, -half_height}, {radius, radius, half_height}, radius,
+                      curvature_per_mm);
   field.ball_mm = std::hypot(radius, half_height);
   return field;
 }
@@ -30,7 +35,7 @@ Field upright(std::function<double(const Point&)> value, double radius, double h
 
 Field sphere(Values v) {
   const double radius = v[0] / 2;
-  Field field = upright([=](const Point& p) { return sdf::ball(p, radius); }, radius, radius);
+  Field field = upright([=](const Point& p) { return sdf::ball(p, radius); }, radius, radius, 1 / radius);
   field.ball_mm = radius;
   return field;
 }
@@ -38,7 +43,7 @@ Field sphere(Values v) {
 Field cylinder(Values v) {
   const double radius = v[0] / 2;
   const double half = v[1] / 2;
-  return upright([=](const Point& p) { return sdf::cylinder(p, radius, half); }, radius, half);
+  return upright([=](const Point& p) { return sdf::cylinder(p, radius, half); }, radius, half, 1 / radius);
 }
 
 Field half_cylinder(Values v) {
@@ -49,7 +54,7 @@ Field half_cylinder(Values v) {
       [=](const Point& p) {
         return std::max(sdf::cylinder({p[0], p[1] - flat, p[2]}, radius, half), flat - p[1]);
       },
-      {-radius, flat, -half}, {radius, flat + radius, half}, std::hypot(radius, flat));
+      {-radius, flat, -half}, {radius, flat + radius, half}, std::hypot(radius, flat), 1 / radius);
 }
 
 Field hollow_cylinder(Values v) {
@@ -57,12 +62,13 @@ Field hollow_cylinder(Values v) {
   const double inner = v[1] / 2;
   const double half = v[2] / 2;
   require(inner < outer, "--shape hollow-cylinder: inner must be below outer");
-  return upright([=](const Point& p) { return sdf::tube(p, inner, outer, half); }, outer, half);
+  return upright([=](const Point& p) { return sdf::tube(p, inner, outer, half); }, outer, half,
+                 1 / std::max(inner, least_radius));
 }
 
 Field box(Values v) {
   const Point half{v[0] / 2, v[1] / 2, v[2] / 2};
-  return solid([=](const Point& p) { return sdf::box(p, half); }, -1.0 * half, half, 1e300);
+  return solid([=](const Point& p) { return sdf::box(p, half); }, -1.0 * half, half, 1e300, 0);
 }
 
 Field cone(Values v) {
@@ -70,14 +76,15 @@ Field cone(Values v) {
   const double top = v[1] / 2;
   const double half = v[2] / 2;
   require(bottom + top > 0, "--shape cone: bottom and top cannot both be 0");
-  return upright([=](const Point& p) { return sdf::frustum(p, bottom, top, half); }, std::max(bottom, top), half);
+  return upright([=](const Point& p) { return sdf::frustum(p, bottom, top, half); }, std::max(bottom, top), half,
+                 1 / std::max(bottom, top));
 }
 
 Field torus(Values v) {
   const double tube = v[1] / 2;
   const double ring = v[0] / 2 - tube;
   require(ring >= tube, "--shape torus: tube must not exceed half of outer");
-  return upright([=](const Point& p) { return sdf::torus(p, ring, tube); }, ring + tube, tube);
+  return upright([=](const Point& p) { return sdf::torus(p, ring, tube); }, ring + tube, tube, 1 / tube);
 }
 
 // The hull of two balls, hollow, with a round opening at the top (egg prints of [CURE19, fig 1]).
@@ -93,8 +100,8 @@ Field egg_shell(Values v) {
   // Profile of the hull of two balls: where its upper part has the radius r.
   const double slant = (low - high) / distance;
   const double flat = std::sqrt(1 - slant * slant);
-  const double top = opening <= high * flat ? distance + std::sqrt(high * high - opening * opening)
-                                            : (low - opening * flat) / slant;
+  const double top =
+      opening <= high * flat ? distance + std::sqrt(high * high - opening * opening) : (low - opening * flat) / slant;
   const double half = 0.5 * (top + low);
   const double base = low - half;  // the centre of the blunt ball
   return upright(
@@ -106,7 +113,7 @@ Field egg_shell(Values v) {
         const double hole = std::max(std::hypot(p[0], p[1]) - opening, -q[2]);
         return std::max(shell, -hole);
       },
-      low, half);
+      low, half, 1 / (high - wall));
 }
 
 }  // namespace vam::solid::build

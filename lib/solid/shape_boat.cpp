@@ -46,7 +46,7 @@ Field boat(Values v) {
             sdf::tube({p[0] + 2.2 * u, p[1], p[2] - (funnel_top - height)}, 0.9 * u, 0.9 * u + wall, height);
         return std::min({hull, house, top, funnel});
       },
-      {stern - shift, -beam, bottom}, {bow - shift, beam, funnel_top}, 1e300);
+      {stern - shift, -beam, bottom}, {bow - shift, beam, funnel_top}, 1e300, 1 / (0.9 * u));
   // The deck's outline is widest on the axis: its corners are at the transom.
   const double stern_half = std::sqrt(ball * ball - stern * stern) - (ball - beam);
   field.radius_mm = std::max({std::hypot(stern - shift, stern_half), bow - shift, beam});
@@ -68,7 +68,7 @@ Field screwdriver(Values v) {
         const double plane = (std::abs(p[1]) - blade - slope * (half - p[2])) / std::hypot(1, slope);
         return std::max(shaft, plane);
       },
-      {-radius, -radius, -half}, {radius, radius, half}, radius);
+      {-radius, -radius, -half}, {radius, radius, half}, radius, 1 / radius);
 }
 
 // A fluted handle around such a shaft: rounded ends, a blind hole from the top [CAL19 fig 4].
@@ -89,7 +89,7 @@ Field handle(Values v) {
         const double hole = std::max(r - bore, -half + radius - p[2]);
         return std::max({body, -groove, -hole});
       },
-      {-radius, -radius, -half}, {radius, radius, half}, radius);
+      {-radius, -radius, -half}, {radius, radius, half}, radius, 1 / (0.2 * radius));
 }
 
 }  // namespace vam::solid::build

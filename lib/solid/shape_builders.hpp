@@ -37,7 +37,8 @@ Field handle(Values v);
 /// Throws Fault::usage with the line unless it holds.
 void require(bool holds, const char* line);
 
-/// A solid from its field, its box and its radius about the z axis; the ball defaults to that of the box.
-Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm);
+/// A solid from its field, its box, its radius about the z axis and its largest curvature; the ball is that of the box.
+Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm,
+            double curvature_per_mm);
 
 }  // namespace vam::solid::build

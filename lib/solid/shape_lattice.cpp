@@ -65,13 +65,16 @@ Field gyroid(Values v) {
   const double half = v[3] / 2;
   require(v[1] <= 0.2 * v[0],
           "--shape gyroid: sheet must not exceed 0.2 times cell (beyond it the offset surface is not smooth)");
+  // Exact well beyond the sheet's surface, but not near the extrema of F (1.5), where Newton's steps go astray.
+  const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
   Field field = solid(
       [=](const Point& p) {
         const double hull = sdf::cylinder(p, radius, half);
         if (hull > half_sheet) return hull;
-        return std::max(hull, gyroid_distance(k * p, 1.1 * k * half_sheet) / k - half_sheet);
+        return std::max(hull, gyroid_distance(k * p, near) / k - half_sheet);
       },
-      {-radius, -radius, -half}, {radius, radius, half}, radius);
+      {-radius, -radius, -half}, {radius, radius, half}, radius,
+      1 / (0.2 * v[0] - half_sheet));  // the minimal surface bends to a radius of 0.2 cell
   field.ball_mm = std::hypot(radius, half);
   return field;
 }
@@ -104,8 +107,8 @@ Field octet(Values v) {
         const Point around = q - Point{h - u, u, 0};
         return std::sqrt(std::min(dot(to_corner, to_corner), dot(around, around))) - strut;
       },
-      -1.0 * half - Point{strut, strut, strut}, half + Point{strut, strut, strut},
-      std::hypot(half[0], half[1]) + strut);
+      -1.0 * half - Point{strut, strut, strut}, half + Point{strut, strut, strut}, std::hypot(half[0], half[1]) + strut,
+      1 / strut);
   field.ball_mm = length(half) + strut;
   return field;
 }
@@ -127,7 +130,8 @@ Field ball_in_cage(Values v) {
         const double cage = std::min(std::hypot(in_plane, r * std::sin(angle)) - strut, sdf::torus(p, ring, strut));
         return std::min(cage, sdf::ball(p, ball));
       },
-      {-ring - strut, -ring - strut, -ring - strut}, {ring + strut, ring + strut, ring + strut}, ring + strut);
+      {-ring - strut, -ring - strut, -ring - strut}, {ring + strut, ring + strut, ring + strut}, ring + strut,
+      1 / strut);
   field.ball_mm = ring + strut;
   return field;
 }

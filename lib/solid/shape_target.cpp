@@ -42,7 +42,7 @@ Field disc_grid(Values v) {
         if (nearest == 1e300) nearest = std::max(std::hypot(p[0], p[1]) - reach, radius + 0.5 * period);
         return sdf::rectangle(nearest, p[2], radius, half);
       },
-      {-extent, -extent, -half}, {extent, extent, half}, far);
+      {-extent, -extent, -half}, {extent, extent, half}, far, 1 / radius);
 }
 
 // Two rails with rungs between them [CURE19 fig 2a]; gaps below the first and above the last rung.
@@ -65,7 +65,7 @@ Field ladder(Values v) {
             sdf::box({p[0], p[1], p[2] - first - index * (rung + gap)}, {half_width, half_depth, rung / 2});
         return std::min(rails, bar);
       },
-      {-half_width, -half_depth, -half}, {half_width, half_depth, half}, 1e300);
+      {-half_width, -half_depth, -half}, {half_width, half_depth, half}, 1e300, 0);
 }
 
 // On a round base: for y > 0 straight bars, for y < 0 half rings about the axis. Each bar is followed by a gap of its
@@ -112,7 +112,7 @@ Field resolution(Values v) {
         const double relief = std::max({pattern, apart - std::abs(p[1]), sdf::cylinder(p, radius, half)});
         return base > 0 ? std::min(plate, relief) : relief;
       },
-      {-radius, -radius, -half}, {radius, radius, half}, radius);
+      {-radius, -radius, -half}, {radius, radius, half}, radius, 1 / finest);
 }
 
 }  // namespace vam::solid::build
