@@ -15,7 +15,7 @@ struct Field {
   double lipschitz = 1;
   /// Largest curvature of the smooth parts of the surface, 1/mm: tells roundness from edges within a voxel.
   double curvature_per_mm = 0;
-  Box box;               // holds the solid, tight
+  Bounds box;            // holds the solid, tight
   double radius_mm = 0;  // of the smallest cylinder about the z axis that holds the solid
   double ball_mm = 0;    // of the smallest ball about box.centre() that holds the solid
 
@@ -24,7 +24,7 @@ struct Field {
   [[nodiscard]] double support_mm(const Point& d) const;
 };
 
-/// The solid moved by a map. Box, radius and ball stay bounds, tight where support_mm() is.
+/// The solid moved by a map. Bounds, radius and ball stay bounds, tight where support_mm() is.
 [[nodiscard]] Field transformed(const Field& field, const Affine& map);
 
 /// Fraction of the unit cube centred at the origin where offset + dot(normal, x) < 0; normal of any length but 0.

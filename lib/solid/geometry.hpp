@@ -1,4 +1,4 @@
-// Points, boxes and affine maps in mm: what meshes and implicit shapes have in common.
+// Boxes and affine maps in mm: what meshes and implicit shapes have in common.
 #pragma once
 
 #include <algorithm>
@@ -6,21 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vector3.hpp"
+
 namespace vam::solid {
 
-using Point = std::array<double, 3>;
-
-[[nodiscard]] inline Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-[[nodiscard]] inline Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-[[nodiscard]] inline Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
-[[nodiscard]] inline double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-[[nodiscard]] inline double length(const Point& a) { return std::sqrt(dot(a, a)); }
-[[nodiscard]] inline Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
+using Point = Vector3;
 
 /// An axis-aligned box; empty when low > high.
-struct Box {
+struct Bounds {
   Point low{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
   Point high{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest(),
              std::numeric_limits<double>::lowest()};
@@ -34,7 +27,7 @@ struct Box {
   [[nodiscard]] Point size() const { return high - low; }
   [[nodiscard]] Point centre() const { return 0.5 * (low + high); }
   [[nodiscard]] double diagonal() const { return length(size()); }
-  [[nodiscard]] bool contains(const Box& other) const {
+  [[nodiscard]] bool contains(const Bounds& other) const {
     for (std::size_t a = 0; a < 3; ++a) {
       if (other.low[a] < low[a] || other.high[a] > high[a]) return false;
     }

@@ -6,13 +6,9 @@
 
 #include "model/grid.hpp"
 #include "solid/placement.hpp"
+#include "solid/voxelize.hpp"
 
 namespace vam::solid {
-
-/// Receives slices k0 .. k0 + count - 1, coverage 0...1, row-major, one after the other, in ascending order.
-using SliceSink = std::function<void(int k0, int count, const float* slices)>;
-
-inline constexpr int slab = 16;  // slices at a time
 
 /// A placed part: where it is, and how to cover a grid with it.
 struct Part {

@@ -32,7 +32,7 @@ struct Writable {
 
 /// Extent of a placed part.
 struct Extent {
-  Box box;
+  Bounds box;
   double radius_mm = 0;  // about the z axis
 };
 [[nodiscard]] Extent extent(const model::TriangleSoup& soup);

@@ -144,7 +144,7 @@ TEST_CASE("every shape: inside its bounds, not empty, converging, empty and full
     // Both are accurate at features of a few voxels, so they agree far better than voxels of 0.2 mm would by counting.
     CHECK(coarse.volume_mm3 == doctest::Approx(fine.volume_mm3).epsilon(2e-3));
     double radius = 0;
-    Box box;
+    Bounds box;
     std::size_t exact = 0;
     std::size_t wrong = 0;
     for (std::size_t index = 0; index < fine.values.size(); ++index) {

@@ -1,0 +1,20 @@
+// Consistent, then outward orientation of the components of a welded mesh.
+#pragma once
+
+#include <vector>
+
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+struct Orientation {
+  long flipped = 0;
+  long components = 0;
+  long cavities = 0;
+  long unorientable = 0;  // edges with two triangles that cannot agree
+};
+
+/// Orients in place; see repair().
+Orientation orient(model::TriangleSoup& mesh);
+
+}  // namespace vam::solid

@@ -1,0 +1,39 @@
+// From a triangle soup to a surface whose inside is on the left: weld, drop, orient; and a record of what was done.
+#pragma once
+
+#include <string>
+
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+/// What repair() found and did.
+struct Repair {
+  long points_welded = 0;       // equal coordinates, or near points on borders
+  double weld_distance = 0;     // of near points, in the mesh's unit; 0 when none were needed
+  long degenerate_dropped = 0;  // triangles that use a point twice
+  long duplicates_dropped = 0;
+  long flipped = 0;           // triangles turned over
+  long components = 0;        // connected through edges shared by two triangles
+  long cavities = 0;          // closed components that bound a void
+  long open_edges = 0;        // borders of holes: edges with an odd number of triangles
+  long crowded_edges = 0;     // non-manifold: more than two triangles
+  long unbalanced_edges = 0;  // as many triangles one way as the other: not so. 0 means that inside is exact
+  long unorientable = 0;      // edges across which no consistent orientation exists
+
+  /// Every edge is run through as often one way as the other, so winding numbers are whole numbers everywhere.
+  [[nodiscard]] bool closed() const { return unbalanced_edges == 0; }
+  /// Was the mesh changed, beyond the welding of equal points that every STL file needs?
+  [[nodiscard]] bool changed() const;
+  /// "welded 12 near points, dropped 3 duplicate triangles, turned over 7 triangles; 40 open edges remain"
+  [[nodiscard]] std::string summary() const;
+};
+
+/// Welds equal points; where borders remain, also near points on them (up to 1e-4 of the diagonal and a fifth of the
+/// median border edge). Drops degenerate and duplicate triangles. Orients each component consistently, keeping the
+/// majority's choice, then outwards: a component inside another of the opposite orientation is a cavity and stays one;
+/// one of the same orientation is a solid within a solid. A file that is inside out as a whole is turned over.
+/// Pieces too open to have an outside keep the file's orientation. Throws Fault::data when no triangle remains.
+Repair repair(model::TriangleSoup& mesh, const std::string& subject);
+
+}  // namespace vam::solid

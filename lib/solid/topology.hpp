@@ -1,0 +1,56 @@
+// Who shares an edge with whom in a triangle soup with welded points.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+using Triangle = std::array<int, 3>;
+
+/// One side of a triangle: from corner `side` to the next.
+struct HalfEdge {
+  int high = 0;  // the edge's larger point index
+  int triangle = 0;
+  int side = 0;
+  bool rising = false;  // runs from the lower index to the higher
+};
+
+/// All half-edges, those of the same edge next to each other.
+class EdgeTable {
+ public:
+  EdgeTable(std::span<const Triangle> triangles, std::size_t points);
+
+  /// Calls visit(low, half_edges) for every edge, by ascending point indices.
+  template <typename Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t low = 0; low + 1 < first_.size(); ++low) {
+      std::size_t begin = first_[low];
+      const std::size_t end = first_[low + 1];
+      while (begin < end) {
+        std::size_t next = begin + 1;
+        while (next < end && half_edges_[next].high == half_edges_[begin].high) ++next;
+        visit(static_cast<int>(low), std::span<const HalfEdge>(half_edges_).subspan(begin, next - begin));
+        begin = next;
+      }
+    }
+  }
+
+ private:
+  std::vector<std::size_t> first_;  // by lower index
+  std::vector<HalfEdge> half_edges_;
+};
+
+/// Signed volume, area and the like of a set of triangles.
+struct Measure {
+  double volume = 0;  // about the origin given; positive when normals point outwards
+  double area = 0;
+  std::array<double, 3> vector_area{};  // 0 for a closed surface
+};
+void add(Measure& measure, const model::TriangleSoup& mesh, const Triangle& triangle,
+         const std::array<double, 3>& origin);
+
+}  // namespace vam::solid

@@ -1,0 +1,159 @@
+#include "solid/weld.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "base/vector3.hpp"
+#include "solid/topology.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+std::uint64_t mix(std::uint64_t x) {  // the finaliser of MurmurHash3
+  x = (x ^ (x >> 33)) * 0xff51afd7ed558ccdULL;
+  x = (x ^ (x >> 33)) * 0xc4ceb9fe1a85ec53ULL;
+  return x ^ (x >> 33);
+}
+
+std::uint64_t hash(const Vector3& p) {
+  std::uint64_t h = 0;
+  for (const double c : p) h = mix(h + std::bit_cast<std::uint64_t>(c + 0.0));  // + 0.0 makes -0 equal to 0
+  return h;
+}
+
+// Points get the numbers in `target`; numbers that nobody uses are closed up.
+void renumber(model::TriangleSoup& mesh, std::vector<int>& target) {
+  std::vector<int> number(mesh.points.size(), -1);
+  std::vector<Vector3> points;
+  points.reserve(mesh.points.size());
+  for (Triangle& triangle : mesh.triangles) {
+    for (int& corner : triangle) {
+      const auto old = static_cast<std::size_t>(target[static_cast<std::size_t>(corner)]);
+      if (number[old] < 0) {
+        number[old] = static_cast<int>(points.size());
+        points.push_back(mesh.points[old]);
+      }
+      corner = number[old];
+    }
+  }
+  mesh.points = std::move(points);
+}
+
+}  // namespace
+
+long weld_equal_points(model::TriangleSoup& mesh) {
+  const std::size_t before = mesh.points.size();
+  const std::size_t slots = std::bit_ceil(2 * before + 1);
+  std::vector<int> table(slots, -1);
+  std::vector<int> target(before);
+  for (std::size_t i = 0; i < before; ++i) {
+    std::size_t slot = hash(mesh.points[i]) & (slots - 1);
+    while (table[slot] >= 0 && mesh.points[static_cast<std::size_t>(table[slot])] != mesh.points[i]) {
+      slot = (slot + 1) & (slots - 1);
+    }
+    if (table[slot] < 0) table[slot] = static_cast<int>(i);
+    target[i] = table[slot];
+  }
+  renumber(mesh, target);
+  return static_cast<long>(before - mesh.points.size());
+}
+
+long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates, double distance) {
+  // Sweep along x: only candidates within `distance` in x can be near.
+  std::vector<int> order(candidates.begin(), candidates.end());
+  const auto point = [&](int index) -> const Vector3& { return mesh.points[static_cast<std::size_t>(index)]; };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return point(a) < point(b); });
+  std::vector<int> target(mesh.points.size());
+  std::iota(target.begin(), target.end(), 0);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (target[static_cast<std::size_t>(order[i])] != order[i]) continue;  // has joined another
+    for (std::size_t j = i + 1; j < order.size() && point(order[j])[0] - point(order[i])[0] <= distance; ++j) {
+      int& joined = target[static_cast<std::size_t>(order[j])];
+      if (joined == order[j] && length(point(order[j]) - point(order[i])) <= distance) joined = order[i];
+    }
+  }
+  const std::size_t before = mesh.points.size();
+  renumber(mesh, target);
+  return static_cast<long>(before - mesh.points.size());
+}
+
+long drop_degenerate(model::TriangleSoup& mesh) {
+  return static_cast<long>(
+      std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }));
+}
+
+long drop_duplicates(model::TriangleSoup& mesh) {
+  // Duplicates share their longest-standing edge, so a look at the fan of every edge would do; sorting keys is simpler.
+  struct Key {
+    Triangle sorted;
+    int index;
+    bool even;  // the triangle is an even permutation of its sorted corners
+  };
+  std::vector<std::size_t> first(mesh.points.size() + 1);
+  const auto least = [](const Triangle& t) { return static_cast<std::size_t>(std::min({t[0], t[1], t[2]})); };
+  for (const Triangle& t : mesh.triangles) ++first[least(t) + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  std::vector<Key> keys(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    Triangle t = mesh.triangles[i];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    const bool even = t[1] < t[2];
+    if (!even) std::swap(t[1], t[2]);
+    keys[next[static_cast<std::size_t>(t[0])]++] = {t, static_cast<int>(i), even};
+  }
+  std::vector<char> drop(mesh.triangles.size(), 0);
+  std::vector<int> undecided;  // the one left of copies that cancel
+  for (std::size_t low = 0; low + 1 < first.size(); ++low) {
+    const auto begin = keys.begin() + static_cast<std::ptrdiff_t>(first[low]);
+    const auto end = keys.begin() + static_cast<std::ptrdiff_t>(first[low + 1]);
+    std::sort(begin, end, [](const Key& a, const Key& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.index < b.index;
+    });
+    for (auto group = begin; group != end;) {
+      auto stop = group;
+      long balance = 0;
+      for (; stop != end && stop->sorted == group->sorted; ++stop) balance += stop->even ? 1 : -1;
+      if (stop - group > 1) {
+        const auto keep =
+            std::find_if(group, stop, [&](const Key& key) { return balance == 0 || key.even == (balance > 0); });
+        for (auto key = group; key != stop; ++key) drop[static_cast<std::size_t>(key->index)] = key != keep ? 1 : 0;
+        if (balance == 0) undecided.push_back(keep->index);
+      }
+      group = stop;
+    }
+  }
+  const auto sweep = [&] {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (drop[i] == 0) mesh.triangles[kept++] = mesh.triangles[i];
+    }
+    mesh.triangles.resize(kept);
+  };
+  const std::size_t before = mesh.triangles.size();
+  if (!undecided.empty()) {
+    // With one copy left, an edge that the others close has an odd number of triangles.
+    std::vector<char> closed(mesh.triangles.size(), 1);
+    std::vector<Triangle> rest;
+    std::vector<int> original;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      if (drop[i] != 0) continue;
+      rest.push_back(mesh.triangles[i]);
+      original.push_back(static_cast<int>(i));
+    }
+    EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+      if (edge.size() % 2 == 1) return;
+      for (const HalfEdge& half : edge)
+        closed[static_cast<std::size_t>(original[static_cast<std::size_t>(half.triangle)])] = 0;
+    });
+    for (const int index : undecided) drop[static_cast<std::size_t>(index)] = closed[static_cast<std::size_t>(index)];
+  }
+  sweep();
+  return static_cast<long>(before - mesh.triangles.size());
+}
+
+}  // namespace vam::solid
