@@ -31,15 +31,12 @@ Affine turn(std::size_t axis, double angle_deg) {
 
 Affine rotation(const Point& xyz_deg) { return turn(2, xyz_deg[2]) * (turn(1, xyz_deg[1]) * turn(0, xyz_deg[0])); }
 
-Affine operator*(const Affine& a, const Affine& b) {
+Affine Affine::after(const Affine& b) const {
   Affine result;
   for (std::size_t r = 0; r < 3; ++r) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      result.linear[r][c] =
-          a.linear[r][0] * b.linear[0][c] + a.linear[r][1] * b.linear[1][c] + a.linear[r][2] * b.linear[2][c];
-    }
+    result.linear[r] = linear[r][0] * b.linear[0] + linear[r][1] * b.linear[1] + linear[r][2] * b.linear[2];
   }
-  result.shift = a(b.shift);
+  result.shift = (*this)(b.shift);
   return result;
 }
 

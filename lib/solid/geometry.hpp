@@ -43,14 +43,16 @@ struct Affine {
   [[nodiscard]] Point operator()(const Point& p) const {
     return {dot(linear[0], p) + shift[0], dot(linear[1], p) + shift[1], dot(linear[2], p) + shift[2]};
   }
+  /// First b, then a.
+  [[nodiscard]] friend Affine operator*(const Affine& a, const Affine& b) { return a.after(b); }
+
+  [[nodiscard]] Affine after(const Affine& b) const;
 };
 
 /// Scales by s about the origin.
 [[nodiscard]] Affine scaling(const Point& s);
 /// Turns about x, then y, then z (fixed axes), right-handed, degrees.
 [[nodiscard]] Affine rotation(const Point& xyz_deg);
-/// First b, then a.
-[[nodiscard]] Affine operator*(const Affine& a, const Affine& b);
 /// The inverse map; the linear part must not be singular.
 [[nodiscard]] Affine inverse(const Affine& a);
 

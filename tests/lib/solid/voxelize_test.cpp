@@ -1,0 +1,274 @@
+// Coverage against exact volumes, and what damage does to it.
+#include "solid/voxelize.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "oracle/convex.hpp"
+#include "oracle/meshes.hpp"
+#include "solid/placement.hpp"
+#include "solid/repair.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+using model::TriangleSoup;
+
+namespace {
+
+struct Result {
+  std::vector<float> values;
+  Repair repair;
+  Vote vote;
+
+  [[nodiscard]] double sum() const {
+    double total = 0;
+    for (const float v : values) total += v;
+    return total;
+  }
+};
+
+Result voxels(TriangleSoup mesh, const model::Grid& grid) {
+  Result result;
+  result.repair = repair(mesh, "test");
+  result.values.reserve(grid.size());
+  result.vote = voxelize(
+      mesh, grid, result.repair.closed() ? Fill::exact : Fill::vote, [&](int k0, int count, const float* slices) {
+        REQUIRE(static_cast<std::size_t>(k0) * grid.slice_size() == result.values.size());
+        result.values.insert(result.values.end(), slices, slices + static_cast<std::size_t>(count) * grid.slice_size());
+      });
+  REQUIRE(result.values.size() == grid.size());
+  return result;
+}
+
+model::Grid cube_grid(int side, double voxel = 1) {
+  return model::centred_grid(side, side, side, voxel, -0.5 * (side - 1) * voxel);
+}
+
+// Share of the part's voxels whose coverage is wrong by more than a half.
+double grossly_wrong(const std::vector<float>& got, const std::vector<float>& want) {
+  long wrong = 0;
+  long part = 0;
+  for (std::size_t i = 0; i < want.size(); ++i) {
+    if (want[i] > 0) ++part;
+    if (std::abs(got[i] - want[i]) > 0.5F) ++wrong;
+  }
+  return static_cast<double>(wrong) / static_cast<double>(part);
+}
+
+// A turned box as half spaces and as a mesh.
+struct Turned {
+  std::vector<oracle::HalfSpace> planes;
+  TriangleSoup mesh;
+};
+Turned turned_box(const Vector3& half, const Affine& turn) {
+  Turned result;
+  result.mesh = oracle::box(-1.0 * half, half);
+  for (Vector3& p : result.mesh.points) p = turn(p);
+  const Affine linear{turn.linear, {}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (const double sign : {-1.0, 1.0}) {
+      Vector3 axis{};
+      axis[a] = sign;
+      const Vector3 normal = linear(axis);
+      result.planes.push_back({normal, half[a] + dot(normal, turn.shift)});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("a sphere of 80,000 triangles has the volume of its mesh") {
+  const TriangleSoup mesh = oracle::sphere(45, 142);
+  REQUIRE(mesh.triangles.size() > 80000);
+  const Result result = voxels(mesh, cube_grid(96));
+  CHECK(result.repair.closed());
+  // The bar is 1e-4; what is left is the rounding of 900,000 floats.
+  CHECK(std::abs(result.sum() / oracle::signed_volume(mesh) - 1) < 1e-6);
+}
+
+TEST_CASE("every voxel of turned boxes against cutting cubes with half spaces") {
+  for (const Vector3& turn :
+       {Vector3{0, 0, 0}, Vector3{10, 20, 30}, Vector3{45, 0, 0}, Vector3{0, 0, 45}, Vector3{1e-7, 0, 1e-5}}) {
+    CAPTURE(turn[0]);
+    Affine map = rotation(turn);
+    map.shift = {0.3, -0.2, 0.13};
+    const Turned body = turned_box({5, 3.25, 4}, map);
+    const model::Grid grid = cube_grid(20, 0.8);
+    for (const Fill fill : {Fill::exact, Fill::vote}) {
+      std::vector<float> values;
+      (void)voxelize(body.mesh, grid, fill, [&](int, int count, const float* slices) {
+        values.insert(values.end(), slices, slices + static_cast<std::size_t>(count) * grid.slice_size());
+      });
+      double worst = 0;
+      for (int k = 0; k < grid.nz; ++k) {
+        for (int j = 0; j < grid.ny; ++j) {
+          for (int i = 0; i < grid.nx; ++i) {
+            const double want =
+                oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, body.planes) /
+                std::pow(grid.voxel_mm, 3);
+            const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
+            worst = std::max(worst, std::abs(values[at] - want));
+          }
+        }
+      }
+      CHECK(worst < 2e-6);  // the snapping to 0 and 1, and float
+    }
+  }
+}
+
+TEST_CASE("a sphere's surface against counting points") {
+  const double radius = 13.3;
+  const TriangleSoup mesh = oracle::sphere(radius, 300);  // sagitta radius (pi / 600)^2 / 2 = 2e-4 voxels
+  const model::Grid grid = cube_grid(30);
+  const Result result = voxels(mesh, grid);
+  constexpr int n = 24;
+  double square = 0;
+  long surface = 0;
+  for (int k = 0; k < 30; ++k) {
+    for (int j = 0; j < 30; ++j) {
+      for (int i = 0; i < 30; ++i) {
+        const double centre = std::hypot(grid.x_mm(i), grid.y_mm(j), grid.z_mm(k));
+        const auto at = static_cast<std::size_t>((k * 30 + j) * 30 + i);
+        if (std::abs(centre - radius) > 0.9) {
+          CHECK(result.values[at] == (centre < radius ? 1.0F : 0.0F));
+          continue;
+        }
+        int inside = 0;
+        for (int s = 0; s < n * n * n; ++s) {
+          const double x = grid.x_mm(i) + (s % n + 0.5) / n - 0.5;
+          const double y = grid.y_mm(j) + (s / n % n + 0.5) / n - 0.5;
+          const double z = grid.z_mm(k) + (s / n / n + 0.5) / n - 0.5;
+          if (x * x + y * y + z * z < radius * radius) ++inside;
+        }
+        square += std::pow(result.values[at] - inside / std::pow(n, 3), 2);
+        ++surface;
+      }
+    }
+  }
+  CHECK(std::sqrt(square / static_cast<double>(surface)) < 0.002);  // the bar is 0.01; counting 24^3 points errs 0.001
+}
+
+TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
+  const model::Grid grid = cube_grid(100);
+  const double radius = 44;
+  const TriangleSoup whole = oracle::lumpy_sphere(radius, 100, 0.05);
+  const std::vector<float> want = voxels(whole, grid).values;
+  const double hole = 0.08 * radius;  // a diameter of 8 % of the part's
+
+  struct Case {
+    const char* name;
+    TriangleSoup mesh;
+    bool closed;  // repair is expected to close it
+  };
+  const std::vector<Case> cases{
+      {"hole in the side", oracle::punched(whole, {radius, 0, 0}, hole), false},
+      {"hole at the top", oracle::punched(whole, {0, 0, radius}, hole), false},
+      {"hole at a slant", oracle::punched(whole, {0.577 * radius, 0.577 * radius, 0.577 * radius}, hole), false},
+      {"facets missing", oracle::without(whole, 0.005, 1), false},
+      {"all facets flipped", oracle::flipped(whole, 1, 1), true},
+      {"some facets flipped", oracle::flipped(whole, 0.01, 2), true},
+      {"half of the facets flipped", oracle::flipped(whole, 0.49, 3), true},
+      {"some facets flipped, in an STL file", oracle::unwelded(oracle::flipped(whole, 0.01, 4)), true},
+      {"cracks of rounding", oracle::cracked(whole, 1e-5 * radius, 5), true},
+      {"cracks that are not welded", oracle::cracked(whole, 2e-3 * radius, 6), false},
+      {"cracks, all inside out", oracle::flipped(oracle::cracked(whole, 2e-3 * radius, 6), 1, 1), false},
+      {"all facets twice", oracle::repeated(whole, 1, 7), true},
+      {"some facets twice", oracle::repeated(whole, 0.1, 8), true},
+      {"some facets twice, once turned over",
+       oracle::join(whole, oracle::flipped(oracle::without(whole, 0.9, 9), 1, 9)), true},
+      {"missing and flipped", oracle::flipped(oracle::without(whole, 0.005, 10), 0.01, 11), false},
+      {"missing, all inside out", oracle::flipped(oracle::without(whole, 0.005, 12), 1, 1), false},
+  };
+  for (const Case& c : cases) {
+    CAPTURE(std::string(c.name));
+    const Result result = voxels(c.mesh, grid);
+    CHECK(result.repair.closed() == c.closed);
+    const double wrong = grossly_wrong(result.values, want);
+    CHECK(wrong <= 1e-3);  // the bar of the project
+    for (const float v : result.values) {
+      if (!(v >= 0 && v <= 1)) FAIL("coverage ", v);
+    }
+  }
+}
+
+TEST_CASE("overlapping solids are one solid") {
+  const TriangleSoup ball = oracle::sphere(20, 60);
+  const model::Grid grid = cube_grid(80);
+  const std::vector<float> left = voxels(oracle::join({}, ball, {-10, 0, 0}), grid).values;
+  const std::vector<float> right = voxels(oracle::join({}, ball, {10, 1, 0}), grid).values;
+  std::vector<float> want(left.size());
+  for (std::size_t i = 0; i < want.size(); ++i) want[i] = std::max(left[i], right[i]);
+  const TriangleSoup both = oracle::join(oracle::join({}, ball, {-10, 0, 0}), ball, {10, 1, 0});
+  CHECK(grossly_wrong(voxels(both, grid).values, want) <= 1e-3);
+  // The same when one of the two is inside out, and when a small one lies within a large one.
+  const TriangleSoup mixed = oracle::join(oracle::join({}, ball, {-10, 0, 0}), oracle::flipped(ball, 1, 1), {10, 1, 0});
+  CHECK(grossly_wrong(voxels(mixed, grid).values, want) <= 1e-3);
+  const Result nested = voxels(oracle::join(ball, oracle::sphere(8, 20)), grid);
+  CHECK(nested.values == voxels(ball, grid).values);
+}
+
+TEST_CASE("a closed cavity stays a void, however the file is turned") {
+  const TriangleSoup outer = oracle::sphere(30, 80);
+  const TriangleSoup inner = oracle::sphere(12, 40);
+  const TriangleSoup part = oracle::join(outer, oracle::flipped(inner, 1, 1), {3, 4, 5});
+  const model::Grid grid = cube_grid(64);
+  const double volume = oracle::signed_volume(outer) - oracle::signed_volume(inner);
+  for (const TriangleSoup& mesh :
+       {part, oracle::flipped(part, 1, 1), oracle::flipped(part, 0.01, 2), oracle::unwelded(part)}) {
+    const Result result = voxels(mesh, grid);
+    CHECK(result.repair.cavities == 1);
+    CHECK(std::abs(result.sum() / volume - 1) < 1e-6);
+    CHECK(result.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 0);
+  }
+  // An island within the cavity is a solid again.
+  const Result island = voxels(oracle::join(part, oracle::sphere(5, 20), {3, 4, 5}), grid);
+  CHECK(island.repair.cavities == 1);
+  CHECK(island.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 1);
+  // With a hole in the outer surface the cavity is still there.
+  const TriangleSoup open =
+      oracle::join(oracle::punched(outer, {30, 0, 0}, 2.4), oracle::flipped(inner, 1, 1), {3, 4, 5});
+  const std::vector<float> want = voxels(part, grid).values;
+  CHECK(grossly_wrong(voxels(open, grid).values, want) <= 1e-3);
+}
+
+TEST_CASE("faces on voxel borders, and thin walls") {
+  const model::Grid grid = cube_grid(16);
+  // The box fills voxels exactly: borders at whole voxels, up to the edge of the grid.
+  const Result block = voxels(oracle::box({-8, -3, -8}, {2, 5, 8}), grid);
+  for (std::size_t at = 0; at < block.values.size(); ++at) {
+    const std::size_t i = at % 16;
+    const std::size_t j = at / 16 % 16;
+    const bool inside = i < 10 && j >= 5 && j < 13;
+    if (block.values[at] != (inside ? 1.0F : 0.0F)) FAIL("voxel ", i, " ", j, " ", at / 256);
+  }
+  // A wall of a hundredth of a voxel is not lost.
+  const Result wall = voxels(oracle::box({-5, -5, 0.4}, {5, 5, 0.41}), grid);
+  CHECK(wall.sum() == doctest::Approx(1.0).epsilon(1e-5));
+}
+
+TEST_CASE("a cup without its lid is full, an open sheet is nothing") {
+  const model::Grid grid = cube_grid(20);
+  TriangleSoup cup = oracle::box({-5, -5, -5}, {5, 5, 5});
+  cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);  // the face z = 5
+  const Result full = voxels(cup, grid);
+  CHECK(full.vote.undecided == 0);
+  CHECK(full.sum() == doctest::Approx(1000));
+  TriangleSoup sheet{{{-5, -5, 0.2}, {5, -5, 0.2}, {5, 5, 0.2}, {-5, 5, 0.2}}, {{0, 1, 2}, {0, 2, 3}}};
+  CHECK(voxels(sheet, grid).sum() == 0);
+}
+
+TEST_CASE("the same bytes for any number of threads") {
+  const TriangleSoup whole = oracle::lumpy_sphere(20, 60, 0.1);
+  const model::Grid grid = cube_grid(52);
+  for (const TriangleSoup& mesh : {whole, oracle::without(whole, 0.01, 3)}) {
+    set_threads(1);
+    const std::vector<float> one = voxels(mesh, grid).values;
+    set_threads(0);
+    CHECK(one == voxels(mesh, grid).values);
+  }
+}
