@@ -126,7 +126,14 @@ double cell_fraction(const Field& field, const Point& centre, double edge_mm, co
   }
   const double steepness = length(slope);
   const double even_limit = std::clamp(0.3 * field.curvature_per_mm * edge_mm, even_least, even_most);
-  if ((even <= even_limit * steepness && odd <= odd_limit * steepness) || depth == deepest) {
+  const bool smooth = even <= even_limit * steepness && odd <= odd_limit * steepness;
+  if (!smooth && depth == deepest) {
+    // What an edge makes of a plane fitted to it must not cut corners that are all on one side.
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
+    if (*high <= 0 && middle <= 0) return 1;
+    if (*low >= 0 && middle >= 0) return 0;
+  }
+  if (smooth || depth == deepest) {
     if (steepness == 0) return middle < 0 ? 1 : 0;
     // The mean over the cell of a field that is quadratic: two thirds centre, one third corners.
     return cube_fraction((2 * middle + mean) / 3, slope);

@@ -1,6 +1,6 @@
 #include "solid/part.hpp"
 
-#include <cmath>
+#include <memory>
 #include <vector>
 
 #include "base/error.hpp"
@@ -13,7 +13,8 @@ Part shape_part(const std::string& text, const Placement& placement, const Writa
   const Field shape = make_shape(text);
   Part part;
   part.subject = "--shape " + text;
-  const Field placed = transformed(shape, place(shape, placement, room));
+  part.map = place(shape, placement, room, part.subject);
+  const Field placed = transformed(shape, part.map);
   part.extent = extent(placed);
   part.fill = [placed](const model::Grid& grid, const SliceSink& sink) {
     std::vector<float> slices(grid.slice_size() * slab);
@@ -22,6 +23,43 @@ Part shape_part(const std::string& text, const Placement& placement, const Writa
       cover(placed, grid, k, count, slices.data());
       sink(k, count, slices.data());
     }
+    return Vote{};
+  };
+  return part;
+}
+
+namespace {
+
+// A vote that did not settle: nothing enclosed, or too much left open.
+void require_settled(const Vote& vote, const Repair& repair, const std::string& subject) {
+  if (vote.inside > 0 && vote.undecided <= vote.inside / 100) return;
+  const std::string found = vote.inside == 0 ? "it encloses no volume"
+                                             : std::to_string(vote.undecided) + " of " + std::to_string(vote.inside) +
+                                                   " voxels are undecided";
+  throw Error{Fault::data, subject + ": inside is ambiguous: the surface has " + std::to_string(repair.open_edges) +
+                               " open edges and " + found + "; close it in a mesh editor"};
+}
+
+}  // namespace
+
+Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affine& map, FillMode mode) {
+  transform(mesh, map);
+  Part part;
+  part.subject = subject;
+  part.map = map;
+  part.repair = repair(mesh, subject);
+  if (mode == FillMode::exact && !part.repair->closed()) {
+    throw Error{Fault::data,
+                subject + ": is not closed (" + part.repair->summary() + "); --fill auto votes on what is inside"};
+  }
+  part.voted = mode == FillMode::vote || !part.repair->closed();
+  part.extent = extent(mesh);
+  const auto kept = std::make_shared<model::TriangleSoup>(std::move(mesh));
+  part.fill = [kept, subject, repair = *part.repair, voted = part.voted](const model::Grid& grid,
+                                                                         const SliceSink& sink) {
+    const Vote vote = voxelize(*kept, grid, voted ? Fill::vote : Fill::exact, sink);
+    if (voted) require_settled(vote, repair, subject);
+    return vote;
   };
   return part;
 }
@@ -29,15 +67,14 @@ Part shape_part(const std::string& text, const Placement& placement, const Writa
 Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   Content content;
   double voxels = 0;
-  part.fill(grid, [&](int k0, int count, const float* slices) {
-    const float* value = slices;
-    for (int row = 0; row < count * grid.ny; ++row) {
-      const double y = grid.y_mm(row % grid.ny);
-      for (int i = 0; i < grid.nx; ++i, ++value) {
-        if (*value == 0) continue;
-        voxels += *value;
-        ++(*value == 1 ? content.solid_voxels : content.surface_voxels);
-        if (*value >= 0.5F) content.radius_mm = std::max(content.radius_mm, std::hypot(grid.x_mm(i), y));
+  content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
+    const std::size_t size = grid.slice_size() * static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < size; ++i) {
+      voxels += slices[i];
+      if (slices[i] == 1) {
+        ++content.solid_voxels;
+      } else if (slices[i] > 0) {
+        ++content.surface_voxels;
       }
     }
     sink(k0, count, slices);

@@ -14,7 +14,7 @@ constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the bo
 
 using ExtentUnder = std::function<Extent(const Affine&)>;
 
-Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room) {
+Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room, const std::string& subject) {
   Affine map = rotation(placement.rotate_deg) * scaling({placement.scale, placement.scale, placement.scale});
   Extent part = under(map);
   const auto centred = [](const Affine& m, const Extent& e) {
@@ -24,7 +24,7 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
   };
   const Point size = part.box.size();
   const double largest = std::max({size[0], size[1], size[2]});
-  if (!(largest > 0)) throw Error{Fault::data, "the part has no size: all its points coincide"};
+  if (!(largest > 0)) throw Error{Fault::data, subject + ": has no size, all its points coincide"};
   if (placement.centre) map = centred(map, part);
   double factor = 1;
   if (placement.fit_mm) factor = *placement.fit_mm / largest;
@@ -60,7 +60,8 @@ Extent extent(const model::TriangleSoup& soup) {
 
 Extent extent(const Field& field) { return {field.box, field.radius_mm}; }
 
-Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room) {
+Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
+             const std::string& subject) {
   const auto under = [&](const Affine& map) {
     Extent result;
     for (const auto& triangle : soup.triangles) {
@@ -72,11 +73,11 @@ Affine place(const model::TriangleSoup& soup, const Placement& placement, const 
     }
     return result;
   };
-  return place(under, placement, room);
+  return place(under, placement, room, subject);
 }
 
-Affine place(const Field& field, const Placement& placement, const Writable& room) {
-  return place([&](const Affine& map) { return extent(transformed(field, map)); }, placement, room);
+Affine place(const Field& field, const Placement& placement, const Writable& room, const std::string& subject) {
+  return place([&](const Affine& map) { return extent(transformed(field, map)); }, placement, room, subject);
 }
 
 void transform(model::TriangleSoup& soup, const Affine& map) {
@@ -87,19 +88,21 @@ void transform(model::TriangleSoup& soup, const Affine& map) {
   }
 }
 
-model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const std::string& subject) {
-  const double radius = std::max(part.radius_mm, radius_mm);
-  const double half = std::ceil(radius / voxel_mm - 1e-9) + 1;
-  const double first = std::floor(part.box.low[2] / voxel_mm + 1e-9);
-  const double last = std::max(std::ceil(part.box.high[2] / voxel_mm - 1e-9), first + 1);
-  if (2 * half > most_voxels || last - first > most_voxels) {
-    throw Error{Fault::data, subject + ": " + format_number(2 * half) + " x " + format_number(2 * half) + " x " +
+model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
+                        const std::string& subject) {
+  const double odd = lattice.odd_side ? 1 : 0;
+  const double half = std::ceil(std::max(part.radius_mm, radius_mm) / voxel_mm - 0.5 * odd - 1e-9) + 1;
+  const double first = std::floor(part.box.low[2] / voxel_mm - lattice.z_phase + 1e-9);
+  const double last = std::max(std::ceil(part.box.high[2] / voxel_mm - lattice.z_phase - 1e-9), first + 1);
+  const double side = 2 * half + odd;
+  if (side > most_voxels || last - first > most_voxels) {
+    throw Error{Fault::data, subject + ": " + format_number(side) + " x " + format_number(side) + " x " +
                                  format_number(last - first) + " voxels of " + format_number(voxel_mm) +
                                  " mm are more than " + std::to_string(most_voxels) +
-                                 " a side; check --unit, or take a larger --voxel or --fit"};
+                                 " a side; check --unit, or take a larger --voxel or a smaller --fit"};
   }
-  const int side = 2 * static_cast<int>(half);
-  return model::centred_grid(side, side, static_cast<int>(last - first), voxel_mm, (first + 0.5) * voxel_mm);
+  return model::centred_grid(static_cast<int>(side), static_cast<int>(side), static_cast<int>(last - first), voxel_mm,
+                             (first + lattice.z_phase + 0.5) * voxel_mm);
 }
 
 void require_writable(const Extent& part, const Writable& room, const std::string& subject) {
@@ -114,6 +117,13 @@ void require_writable(const Extent& part, const Writable& room, const std::strin
                                  format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
                                  " mm; --fit-writable shrinks it"};
   }
+}
+
+void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject) {
+  if (insert.radius_mm <= vial_radius_mm) return;
+  throw Error{Fault::data, subject + ": reaches " + format_number(insert.radius_mm, 4) +
+                               " mm from the axis, beyond the vial's inner radius of " +
+                               format_number(vial_radius_mm, 4) + " mm; check --unit and --no-center"};
 }
 
 }  // namespace vam::solid

@@ -39,19 +39,30 @@ struct Extent {
 [[nodiscard]] Extent extent(const Field& field);
 
 /// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size.
-[[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room);
-[[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room);
+[[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
+                           const std::string& subject);
+[[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room,
+                           const std::string& subject);
 
 /// All points moved; triangles turned over when the map mirrors.
 void transform(model::TriangleSoup& soup, const Affine& map);
 
-/// The smallest lattice of voxels around the axis that holds the part with one voxel to spare in x and y, and at least
-/// `radius_mm` in every direction. nx = ny is even; faces of voxels lie at multiples of voxel_mm in x, y and z, so with
-/// voxel_mm = pixel_mm slices coincide with rows of the projector. Throws Fault::data above 4096 voxels a side.
-[[nodiscard]] model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm,
+/// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z, so that with
+/// voxel_mm = pixel_mm slices coincide with rows of the projector. Stacks of pictures bring a lattice of their own.
+struct Lattice {
+  bool odd_side = false;  // a voxel's centre on the axis, not a corner
+  double z_phase = 0;     // faces at multiples plus this share of a voxel
+};
+
+/// The smallest grid around the axis that holds the part with one voxel to spare in x and y, and at least `radius_mm`
+/// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side.
+[[nodiscard]] model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
                                       const std::string& subject);
 
 /// Throws Fault::data, with both numbers and the remedy, when the part leaves the writable cylinder.
 void require_writable(const Extent& part, const Writable& room, const std::string& subject);
+
+/// Throws Fault::data when an insert is wider than the vial.
+void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject);
 
 }  // namespace vam::solid

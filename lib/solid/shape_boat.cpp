@@ -71,7 +71,7 @@ Field screwdriver(Values v) {
       {-radius, -radius, -half}, {radius, radius, half}, radius, 1 / radius);
 }
 
-// A fluted handle around such a shaft: rounded ends, a blind hole from the top [CAL19 fig 4].
+// A fluted handle around such a shaft: rounded ends, bored through [CAL19 fig 4].
 Field handle(Values v) {
   const double radius = v[0] / 2;
   const double half = v[1] / 2;
@@ -86,8 +86,7 @@ Field handle(Values v) {
         const double angle = std::remainder(std::atan2(p[1], p[0]), 2 * std::numbers::pi / flutes);
         // Grooves of a fifth of the radius, their middles a little outside the body.
         const double groove = std::hypot(r * std::cos(angle) - 1.08 * radius, r * std::sin(angle)) - 0.2 * radius;
-        const double hole = std::max(r - bore, -half + radius - p[2]);
-        return std::max({body, -groove, -hole});
+        return std::max({body, -groove, bore - r});
       },
       {-radius, -radius, -half}, {radius, radius, half}, radius, 1 / (0.2 * radius));
 }

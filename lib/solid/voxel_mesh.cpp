@@ -6,21 +6,47 @@
 
 namespace vam::solid {
 
+namespace {
+
+constexpr double rounding = 1e-6;
+
+// The part of a triangle between the planes z = 0 and z = nz, in triangles.
+void add_between(const Corners& corners, int nz, std::vector<Corners>& triangles) {
+  Polygon below;
+  Polygon rest;
+  Polygon inside;
+  Polygon above;
+  split(polygon(corners), 2, 0, below, rest);
+  split(rest, 2, nz, inside, above);
+  for (int i = 1; i + 1 < inside.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    triangles.push_back({inside.corners[0], inside.corners[c], inside.corners[c + 1]});
+  }
+}
+
+}  // namespace
+
 std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid) {
-  const std::array<int, 3> size{grid.nx, grid.ny, grid.nz};
-  constexpr double rounding = 1e-6;
   std::vector<Vector3> points(mesh.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      points[i][a] = (mesh.points[i][a] - grid.origin_mm[a]) / grid.voxel_mm + 0.5;
-      if (!(points[i][a] > -rounding && points[i][a] < size[a] + rounding)) {
-        throw Error{Fault::bug, "voxelize: the mesh leaves its grid"};
-      }
-    }
+    for (std::size_t a = 0; a < 3; ++a) points[i][a] = (mesh.points[i][a] - grid.origin_mm[a]) / grid.voxel_mm + 0.5;
+    const auto within = [&](std::size_t a, int size) {
+      return points[i][a] > -rounding && points[i][a] < size + rounding;
+    };
+    if (!within(0, grid.nx) || !within(1, grid.ny)) throw Error{Fault::bug, "voxelize: the mesh leaves its grid"};
   }
-  std::vector<Corners> triangles(mesh.triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t c = 0; c < 3; ++c) triangles[t][c] = points[static_cast<std::size_t>(mesh.triangles[t][c])];
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) {
+    Corners corners{};
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = points[static_cast<std::size_t>(triangle[c])];
+    const double low = std::min({corners[0][2], corners[1][2], corners[2][2]});
+    const double high = std::max({corners[0][2], corners[1][2], corners[2][2]});
+    if (low > -rounding && high < grid.nz + rounding) {
+      triangles.push_back(corners);
+    } else if (low < grid.nz && high > 0) {
+      add_between(corners, grid.nz, triangles);
+    }
   }
   return triangles;
 }

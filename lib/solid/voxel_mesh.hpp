@@ -14,7 +14,8 @@ namespace vam::solid {
 
 using Corners = std::array<Vector3, 3>;
 
-/// Triangles in voxel units: voxel (i, j, k) spans i ... i + 1 and so on. Throws Fault::bug when one leaves the grid.
+/// Triangles in voxel units: voxel (i, j, k) spans i ... i + 1 and so on. What lies below or above the grid is cut off.
+/// Throws Fault::bug when one leaves the grid in x or y.
 [[nodiscard]] std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid);
 
 [[nodiscard]] Polygon polygon(const Corners& corners);

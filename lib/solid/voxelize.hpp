@@ -23,18 +23,19 @@ struct Vote {
   long undecided = 0;  // voxels about which the axes disagree; they take their neighbours' mean
 };
 
-/// Coverage of the voxels of `grid` by the mesh, which must lie within it. Every triangle is cut to voxels. A piece
-/// with outward vector area (Ax, Ay, Az) in voxel faces removes Ax from all voxels of its row further along x, and the
-/// share of Ax behind it from its own: the divergence theorem for the field (x, 0, 0). Prefix sums along the row give
-/// the coverage, which for a closed mesh is the winding number averaged over the voxel; its magnitude is cut off at 1,
-/// so solids may overlap (where the surfaces of two overlapping solids cross in one voxel, its coverage is the sum).
+/// Coverage of the voxels of `grid` by the mesh, which must lie within it in x and y. Every triangle is cut to voxels.
+/// A piece with outward vector area (Ax, Ay, Az) in voxel faces removes Ax from all voxels of its row further along x,
+/// and the share of Ax behind it from its own: the divergence theorem for the field (x, 0, 0). Prefix sums along the
+/// row give the coverage, which for a closed mesh is the winding number averaged over the voxel; its magnitude is cut
+/// off at 1, so solids may overlap (where the surfaces of two overlapping solids cross in one voxel, its coverage is
+/// the sum).
 ///
 /// With Fill::vote each axis gives an interval: the sums from either end of the row, which agree unless the row runs
 /// through a hole. The median of the six ends is the coverage; undecided are voxels where the two middle ones are more
 /// than a half apart.
 ///
 /// Memory: the mesh, its bins (4 bytes a triangle and slice), 16 slices. Same bytes for any number of threads.
-/// Throws Fault::bug when the mesh is not within the grid.
+/// Throws Fault::bug when the mesh leaves the grid in x or y.
 Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fill, const SliceSink& sink);
 
 }  // namespace vam::solid

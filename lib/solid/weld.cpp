@@ -50,6 +50,7 @@ long weld_equal_points(model::TriangleSoup& mesh) {
   const std::size_t slots = std::bit_ceil(2 * before + 1);
   std::vector<int> table(slots, -1);
   std::vector<int> target(before);
+  long welded = 0;
   for (std::size_t i = 0; i < before; ++i) {
     std::size_t slot = hash(mesh.points[i]) & (slots - 1);
     while (table[slot] >= 0 && mesh.points[static_cast<std::size_t>(table[slot])] != mesh.points[i]) {
@@ -57,9 +58,10 @@ long weld_equal_points(model::TriangleSoup& mesh) {
     }
     if (table[slot] < 0) table[slot] = static_cast<int>(i);
     target[i] = table[slot];
+    if (target[i] != static_cast<int>(i)) ++welded;
   }
   renumber(mesh, target);
-  return static_cast<long>(before - mesh.points.size());
+  return welded;
 }
 
 long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates, double distance) {
@@ -69,16 +71,18 @@ long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates
   std::sort(order.begin(), order.end(), [&](int a, int b) { return point(a) < point(b); });
   std::vector<int> target(mesh.points.size());
   std::iota(target.begin(), target.end(), 0);
+  long welded = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (target[static_cast<std::size_t>(order[i])] != order[i]) continue;  // has joined another
     for (std::size_t j = i + 1; j < order.size() && point(order[j])[0] - point(order[i])[0] <= distance; ++j) {
       int& joined = target[static_cast<std::size_t>(order[j])];
-      if (joined == order[j] && length(point(order[j]) - point(order[i])) <= distance) joined = order[i];
+      if (joined != order[j] || length(point(order[j]) - point(order[i])) > distance) continue;
+      joined = order[i];
+      ++welded;
     }
   }
-  const std::size_t before = mesh.points.size();
   renumber(mesh, target);
-  return static_cast<long>(before - mesh.points.size());
+  return welded;
 }
 
 long drop_degenerate(model::TriangleSoup& mesh) {

@@ -1,0 +1,135 @@
+# vam-slice: shapes, meshes and pictures in, target volumes out; and every input that is wrong.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+# mesh.py NAME: a test mesh. Cubes have an edge of 4; "x" is what is wrong with it.
+cat >mesh.py <<'PY'
+import struct, sys
+def cube(low, high):
+    p = [[(high if c >> a & 1 else low) for a in range(3)] for c in range(8)]
+    f = [(0,2,3),(0,3,1),(4,5,7),(4,7,6),(0,1,5),(0,5,4),(2,6,7),(2,7,3),(0,4,6),(0,6,2),(1,3,7),(1,7,5)]
+    return [[p[i] for i in t] for t in f]
+def stl(name, triangles):
+    with open(name, "wb") as out:
+        out.write(bytes(80) + struct.pack("<I", len(triangles)))
+        for t in triangles:
+            out.write(struct.pack("<12fH", 0, 0, 0, *t[0], *t[1], *t[2], 0))
+turn = lambda ts: [[t[0], t[2], t[1]] for t in ts]
+c = cube(-2, 2)
+stl("cube.stl", c)
+stl("inside-out.stl", turn(c))
+stl("lidless.stl", c[:2] + c[4:])
+stl("hollow.stl", c + turn(cube(-1, 1)))
+stl("twice.stl", c + c[:5])
+stl("sheet.stl", c[:2])
+stl("point.stl", [[[1, 1, 1]] * 3] * 4)
+stl("nan.stl", [[[0, 0, 0], [1, 0, 0], [0, float("nan"), 0]]])
+stl("empty.stl", [])
+stl("far.stl", [[[x + 100 for x in v] for v in t] for t in c])
+stl("high.stl", [[[v[0], v[1], v[2] + 100] for v in t] for t in c])
+open("cut.stl", "wb").write(open("cube.stl", "rb").read()[:300])
+open("quads.obj", "w").write("".join("v %g %g %g\n" % tuple((1 if n >> a & 1 else -1) for a in range(3)) for n in range(8))
+    + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
+PY
+python3 mesh.py
+
+# volume WANT COMMAND...: vam-slice reports this volume, to 1e-5 (meshes) or 1e-4 (shapes, whose edges are approximate)
+volume() {
+  want=$1; shift
+  case $* in *--shape*) within=1e-4 ;; *) within=1e-5 ;; esac
+  ok "runs: $*" "$@" -o out.vdb --report report.json
+  got=$(json report.json volume_mm3)
+  holds "volume $want: $*" "($got - $want)^2 < ($want * $within)^2"
+}
+
+# Shapes
+ok "a gyroid" vam-slice --shape gyroid --voxel 0.2 -o gyroid.vdb --report gyroid.json
+holds "its size is that of the paper" "$(json gyroid.json size_mm.0) == 14 && ($(json gyroid.json size_mm.2) - 10)^2 < 1e-12"
+holds "it is stretched by 1/M_vp" "($(json gyroid.json stretch_z) - 1 / (1 - 12.7 * (1 - 1 / 1.53) / 119.808))^2 < 1e-12"
+volume 64 vam-slice --shape box:x=4,y=4,z=4 --voxel 0.25
+volume 64 vam-slice --shape box:x=4,y=4,z=4 --voxel 0.25 --stretch-z 1
+volume 8 vam-slice --shape box:x=4,y=4,z=4 --voxel 0.25 --scale 0.5
+quiet "nothing on stderr" vam-slice --shape sphere --voxel 0.5 -o out.vdb
+ok "to a pipe" sh -c 'vam-slice --shape ladder --voxel 0.25 | cat >pipe.vdb'
+ok "from the file" vam-slice --shape ladder --voxel 0.25 --threads 1 -o file1.vdb
+ok "with two threads" vam-slice --shape ladder --voxel 0.25 --threads 2 -o file2.vdb
+is "the same voxels" "$(vdb_print -l file1.vdb | grep -v vam:history | tail -n +2)" "$(vdb_print -l file2.vdb | grep -v vam:history | tail -n +2)"
+
+# Meshes
+volume 64 vam-slice cube.stl --voxel 0.25
+volume 64 vam-slice cube.stl --voxel 0.23 --rotate 30,40,50
+volume 64 vam-slice far.stl --voxel 0.25
+volume 64 vam-slice inside-out.stl --voxel 0.25
+is "turned over" "$(json report.json repair.triangles_flipped)" 12
+volume 56 vam-slice hollow.stl --voxel 0.25
+is "a cavity" "$(json report.json repair.cavities)" 1
+volume 64 vam-slice twice.stl --voxel 0.25
+is "duplicates" "$(json report.json repair.duplicates_dropped)" 5
+volume 64 vam-slice lidless.stl --voxel 0.25
+volume 64 vam-slice cube.stl --voxel 0.25 --fill vote
+volume 8 vam-slice quads.obj --voxel 0.25
+volume 1000 vam-slice quads.obj --unit cm --scale 0.5 --voxel 0.25
+volume 216 vam-slice cube.stl --fit 6 --voxel 0.25
+volume 64 sh -c 'vam-slice --voxel 0.25 "$@" <cube.stl' -
+ok "repairs are said" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
+ok "votes are said" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 open edges remain; inside is decided by vote"'
+quiet "a closed mesh is not talked about" vam-slice cube.stl --voxel 0.5 -o out.vdb
+ok "as large as it gets" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
+holds "it fills the circle" "($(json report.json radius_mm) - $(json report.json writable_radius_mm))^2 < 1e-12"
+ok "the writable circle" vam-slice cube.stl --extent writable --voxel 0.25 -o out.vdb --report report.json
+is "its voxels" "$(json report.json voxels.0)" 70
+
+# Inserts
+ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
+ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
+ok "a mesh as insert, longer than the part" vam-slice cube.stl --insert hollow.stl --voxel 0.25 -o insert.vdb
+
+# Pictures: 6 x 4 pixels, 3 slices; the middle one half grey
+cat >pictures.py <<'PY'
+import os, struct, sys, zlib
+def png(name, rows):
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    raw = b"".join(b"\0" + bytes(row) for row in rows)
+    open(name, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">2I5B", len(rows[0]), len(rows), 8, 0, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
+for folder in ("stack", "odd", "black"): os.mkdir(folder)
+for k, level in enumerate((255, 51, 255)):
+    png("stack/s%d.png" % k, [[level] * 6] * 4)
+    png("odd/s%d.png" % k, [[0] * 5, [255] * 5, [0] * 5, [0] * 5, [0] * 5])
+    png("black/s%d.png" % k, [[0] * 4] * 4)
+PY
+python3 pictures.py
+volume 52.8 vam-slice stack --voxel 1 --stretch-z 1
+is "as many slices as pictures" "$(json report.json voxels.2)" 3
+volume 52.8 vam-slice stack --voxel 1
+volume 15 vam-slice odd --voxel 1 --stretch-z 1
+is "whole voxels" "$(json report.json surface_voxels)" 0
+
+# What is wrong
+fails 64 'unknown.*did you mean gyroid' vam-slice --shape gyrod -o x.vdb
+fails 64 'outside' vam-slice --shape sphere:diameter=-3 -o x.vdb
+fails 64 '--voxel' vam-slice --shape sphere --voxel -1 -o x.vdb
+fails 64 '--voxel' vam-slice --shape sphere --voxel 0 -o x.vdb
+fails 64 '--rotate' vam-slice --shape sphere --rotate 1,2 -o x.vdb
+fails 64 'either PART or --shape' vam-slice cube.stl --shape sphere -o x.vdb
+fails 64 'for meshes' vam-slice --shape sphere --unit in -o x.vdb
+fails 64 'either --fit' vam-slice cube.stl --fit 3 --fit-writable -o x.vdb
+fails 64 'taken as they are' vam-slice stack --fit 3 -o x.vdb
+fails 65 'truncated' vam-slice cut.stl -o x.vdb
+fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
+fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
+fails 65 'no size' vam-slice point.stl -o x.vdb
+fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-center --voxel 0.3 -o x.vdb
+fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
+fails 65 'reaches .* mm from the axis, beyond the writable radius of 8.301 mm' vam-slice cube.stl --scale 5 -o x.vdb
+fails 65 'beyond the writable radius' vam-slice far.stl --no-center -o x.vdb
+fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
+fails 65 'more than 4096 a side' vam-slice cube.stl --voxel 0.001 -o x.vdb
+fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-center -o x.vdb
+fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-center -o x.vdb
+fails 65 'black' vam-slice black -o x.vdb
+fails 66 'missing.stl' vam-slice missing.stl -o x.vdb
+fails 66 'printer' vam-slice cube.stl --printer none.toml -o x.vdb
+fails 64 'cube.stl' vam-slice cube.stl -o cube.stl
+fails 73 'no/such' vam-slice cube.stl -o no/such/x.vdb
+fails 74 'full' vam-slice cube.stl -o /dev/full
+done_testing
