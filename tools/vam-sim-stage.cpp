@@ -9,6 +9,7 @@
 #include "device/interrupt.hpp"
 #include "device/lines.hpp"
 #include "device/pty_host.hpp"
+#include "device/sim_grbl.hpp"
 #include "device/sim_options.hpp"
 
 namespace {
@@ -24,6 +25,7 @@ struct Options {
   std::vector<std::string> faults;
   std::string log;
   std::string link;
+  std::string protocol = "gcs";
   bool shim = false;
   bool with_parent = false;
 };
@@ -67,6 +69,8 @@ void declare(cli::App& app, Options& options) {
   app.option("--at", "DEG", options.stage.home_deg, {-180, 180},
              "Where the table stands at power-on, from its reference.");
   app.group("The line");
+  app.choice("--protocol", options.protocol, {"gcs", "grbl"},
+             "A PI controller, or a GRBL 1.1 board with the table on X.");
   app.option("--latency", "MS", options.latency_ms, {0, 1000}, "From question to answer.");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
              "Random part more, before and after the controller looks at its axis.");
@@ -118,8 +122,8 @@ void run(Options& options) {
   options.stage.jitter_s = 1e-3 * options.jitter_ms;
   options.stage.seed = static_cast<std::uint64_t>(options.seed);
   for (const auto& fault : options.faults) options.stage.faults.push_back(device::parse_sim_fault(fault));
-  const auto stage =
-      device::make_sim_gcs(options.stage, device::real_clock().now_s(), device::file_sim_log(options.log));
+  const auto make = options.protocol == "grbl" ? device::make_sim_grbl : device::make_sim_gcs;
+  const auto stage = make(options.stage, device::real_clock().now_s(), device::file_sim_log(options.log));
   device::Pty pty;
   const Link link(options.link, pty.path());
   device::print_line(pty.path());

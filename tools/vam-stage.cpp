@@ -45,7 +45,10 @@ cli::Manual manual() {
        "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
        "example C-863 with M-060.PD) on a serial or USB port; its baud rate is found by asking unless ?baud=115200 is "
        "given; ?address=2 talks to one controller of a daisy chain and ?axis=NAME to an axis of another name. "
-       "sim: is the same controller simulated inside the tool; its options speed_error, ripple (relative), jitter_ms, "
+       "grbl:/dev/ttyACM0 is a GRBL 1.1 board with the table on axis X, in degrees (?axis=Y for another). "
+       "tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial number may be left "
+       "out when there is one. "
+       "sim: is the PI controller simulated inside the tool; its options speed_error, ripple (relative), jitter_ms, "
        "latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log make it as bad as wanted. "
        "vam-sim-stage(1) puts this simulator behind a pseudo-terminal.",
        "A device has one user at a time: the second one exits with status 75 and names the process that has it."},
@@ -70,7 +73,7 @@ cli::Manual manual() {
 
 void add_common(cli::App& command, Options& options) {
   command.option("--device", "DEVICE", options.device,
-                 "The stage: gcs:PATH or sim: with options after a question mark.");
+                 "The stage: sim:, gcs:PATH, grbl:PATH or tic:SERIAL, with options after a question mark.");
   command.option("--log", "FILE", options.log,
                  "Append one JSON line per event, with UTC and monotonic time; /dev/stderr for the terminal.");
   command.flag("--die-with-parent", options.with_parent, "Stop and end when the process that started this one ends.");

@@ -7,6 +7,8 @@
 
 #include <string>
 
+#include "device/usb_link.hpp"
+
 namespace vam::device {
 
 namespace {
@@ -38,6 +40,31 @@ void drain(int handle) {
   }
 }
 
+bool try_usb(const Json& action) {
+  try {
+    const std::string ids = action.at("usb_id");
+    const UsbId id{
+        std::stoi(ids.substr(0, 4), nullptr, 16), {std::stoi(ids.substr(5), nullptr, 16)}, action.at("serial")};
+    const auto link = open_usb(id, action.at("interface").get<int>());
+    for (const auto& request : action.value("control", Json::array())) {
+      link->control_out(request.at(0), request.at(1), request.at(2));
+    }
+    for (const auto& report : action.value("reports", Json::array())) link->write_report(from_hex(report));
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+// The device is opened afresh. The dead tool's claim on it goes with the tool, which may take some milliseconds.
+bool carry_out_usb(const Json& action) {
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    if (try_usb(action)) return true;
+    usleep(10000);
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string to_hex(const std::string& bytes) {
@@ -67,6 +94,7 @@ bool carry_out(const Json& action, int handle) {
     drain(handle);
     return sent;
   }
+  if (what == "usb") return carry_out_usb(action);
   return false;
 }
 

@@ -1,6 +1,9 @@
 // What a guardian can do to a device. An action is JSON, so that it travels through a socket:
 //   {"do": "write", "order": 1, "hex": "18"}   writes the bytes to the handle that came with it, after throwing away
 //                                              what the dead tool had queued there
+//   {"do": "usb", "order": 1, "usb_id": "1ffb:00b3", "serial": "0031", "interface": -1,
+//    "control": [[137, 0, 0]], "reports": ["..."]}   sends vendor requests (request, value, index), then HID reports
+//    (hex)
 // `order`: 0 for light, 1 for motion; lower first.
 #pragma once
 

@@ -1,8 +1,11 @@
 #include "base/error.hpp"
 #include "device/gcs_stage.hpp"
+#include "device/grbl_stage.hpp"
 #include "device/lock.hpp"
+#include "device/serial_port.hpp"
 #include "device/sim_options.hpp"
 #include "device/stage.hpp"
+#include "device/tic_stage.hpp"
 
 namespace vam::device {
 
@@ -34,16 +37,45 @@ std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* 
   return stage;
 }
 
+std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"baud", "axis"});
+  const std::string axis = address.word("axis", "X");
+  if (axis != "X" && axis != "Y" && axis != "Z") {
+    throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is none of X, Y, Z"};
+  }
+  auto lock = lock_device(address.place, guardian);
+  auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
+  auto stage = make_grbl_stage(std::move(port), clock, axis.front() - 'X', guardian);
+  stage->hold(std::move(lock));
+  return stage;
+}
+
+std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"steps_per_deg"});
+  const double steps_per_deg = address.number("steps_per_deg", 0, -1e6, 1e6);
+  if (steps_per_deg == 0) {
+    throw Error{Fault::usage,
+                "device '" + address.text + "': needs ?steps_per_deg=N, the microsteps a degree of the table"};
+  }
+  auto link = open_usb(tic_id(address.place), -1);
+  auto lock = lock_device(link->name(), guardian);
+  auto stage = make_tic_stage(std::move(link), clock, steps_per_deg, guardian);
+  stage->hold(std::move(lock));
+  return stage;
+}
+
 }  // namespace
 
 const std::vector<std::string>& stage_schemes() {
-  static const std::vector<std::string> schemes{"sim", "gcs"};
+  static const std::vector<std::string> schemes{"sim", "gcs", "tic", "grbl"};
   return schemes;
 }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
   const Address address = parse_address(device, stage_schemes());
   if (address.scheme == "sim") return open_sim(address, clock, guardian);
+  if (address.scheme == "grbl") return open_grbl(address, clock, guardian);
+  if (address.scheme == "tic") return open_tic(address, clock, guardian);
   return open_gcs(address, clock, guardian);
 }
 

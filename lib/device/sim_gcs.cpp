@@ -4,12 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <random>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "device/sim_controller.hpp"
 
 namespace vam::device {
 
@@ -53,91 +52,28 @@ std::string decimal(double value, const char* format = "%.5f") {
   return text.data();
 }
 
-class SimGcs final : public SimDevice {
+class SimGcs final : public SimController {
  public:
-  SimGcs(const SimGcsSettings& settings, double now_s, SimLog log)
-      : settings_(settings),
-        log_(std::move(log)),
-        motor_(settings.motor, now_s),
-        now_s_(now_s),
-        random_(settings.seed) {
-    motor_.set_angle(settings.home_deg);
-    motor_.set_speed(speed_deg_s_);
-  }
+  using SimController::SimController;
 
   void receive(std::string_view bytes, double now_s) override {
     advance(now_s);
-    if (dead_ || unplugged_) return;
-    // The controller's interpreter gets to a command some time after its last byte.
     for (const char c : bytes) {
+      if (silent()) return;
       if (c == 5 || c == 7 || c == 24) {
         handle(std::string("#") + std::to_string(static_cast<int>(c)));
       } else if (c == '\n') {
-        std::string line;
-        std::swap(line, line_);
-        handle(line);
+        handle(std::exchange(line_, ""));
       } else {
         line_ += c;
       }
     }
   }
 
-  void advance(double now_s) override {
-    const bool moved = motor_.moving();
-    while (motor_.moving() && next_log_s_ <= now_s) {
-      motor_.advance(std::max(next_log_s_, now_s_));
-      note("angle", {{"angle_deg", motor_.angle_deg()}, {"speed_deg_s", motor_.speed_deg_s()}}, next_log_s_);
-      next_log_s_ += settings_.log_period_s;
-    }
-    motor_.advance(now_s);
-    now_s_ = std::max(now_s_, now_s);
-    if (moved && !motor_.moving()) {
-      note("standing", {{"angle_deg", motor_.angle_deg()}}, now_s_);
-      if (homing_) {
-        homing_ = false;
-        referenced_ = motor_.target_deg() == 0;
-      }
-    }
-  }
-
-  std::optional<double> next_due_s() const override {
-    return answers_.empty() ? std::nullopt : std::optional(answers_.begin()->first);
-  }
-
-  std::string take(double now_s) override {
-    std::string bytes;
-    while (!answers_.empty() && answers_.begin()->first <= now_s) {
-      bytes += answers_.begin()->second;
-      answers_.erase(answers_.begin());
-    }
-    return bytes;
-  }
-
-  bool unplugged() const override { return unplugged_; }
-
  private:
-  void note(const std::string& event, Json facts, double t_s) {
-    if (!log_) return;
-    Json line{{"t_monotonic_s", t_s}, {"event", event}};
-    line.update(facts);
-    log_(line);
-  }
-
-  double jitter() { return settings_.jitter_s * std::uniform_real_distribution<double>(0, 1)(random_); }
-
-  // Finds the fault that this command has coming, and counts.
-  std::string fault_of(const std::string& command) {
-    const int now = ++seen_[command];
-    for (const auto& fault : settings_.faults) {
-      if (fault.command == command && fault.occurrence == now) return fault.kind;
-    }
-    return "";
-  }
-
-  void answer(const std::string& text, double extra_s = 0) {
-    const double due_s = std::max(now_s_ + settings_.latency_s / 2 + jitter() + extra_s,
-                                  answers_.empty() ? 0.0 : answers_.rbegin()->first);
-    answers_.emplace(due_s, text);
+  void on_standing() override {
+    if (homing_) referenced_ = motor_.target_deg() == 0;
+    homing_ = false;
   }
 
   // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us.
@@ -155,39 +91,15 @@ class SimGcs final : public SimDevice {
     }
     const std::string command = words.front();
     words.erase(words.begin());
-    // Half of the latency before the controller looks at its axis.
-    advance(now_s_ + settings_.latency_s / 2 + jitter());
-    note("command", {{"text", line}}, now_s_);
-    const std::string fault = fault_of(command);
-    if (!fault.empty()) note("fault", {{"kind", fault}, {"command", command}}, now_s_);
-    if (fault == "unplug" || fault == "power-loss") {
-      unplugged_ = true;
-      dead_ = fault == "power-loss";
-      if (dead_) motor_.cut_power();
-      return;
-    }
-    if (fault == "block") motor_.cut_power();
+    const std::string fault = arrive(line, command);
+    if (silent()) return;
     if (fault == "error") {
       error_ = 17;
       return;
     }
     const std::string text = reply(command, words);
-    if (text.empty() || fault == "silent") return;
-    spoil_and_answer(fault, text);
-  }
-
-  void spoil_and_answer(const std::string& fault, std::string text) {
-    const std::string sender = "0 " + std::to_string(settings_.address) + " ";
-    if (fault == "garbage") {
-      for (char& c : text) c = static_cast<char>(random_() & 0x1FU);
-      answer(text + "\n");
-    } else if (fault == "truncated") {
-      answer(text.substr(0, text.size() / 2));
-    } else if (fault == "wrong-sender") {
-      answer("0 7 " + text);
-    } else {
-      answer((addressed_ ? sender : "") + text, fault == "late" ? 3.0 : 0.0);
-    }
+    if (text.empty()) return;
+    answer_spoilt(fault, text, addressed_ ? "0 " + std::to_string(settings_.address) + " " : "");
   }
 
   // The whole answer with its LF; empty for an order.
@@ -259,7 +171,7 @@ class SimGcs final : public SimDevice {
       if (reference_mode_ || motor_.moving()) return refuse(27);
       motor_.set_angle(value);
       referenced_ = true;
-      note("zeroed", {{"angle_deg", value}}, now_s_);
+      note("zeroed", {{"angle_deg", value}});
     } else if (command == "VEL") {
       if (value < 0 || value > settings_.max_speed_deg_s) return refuse(8);
       speed_deg_s_ = value;
@@ -273,34 +185,18 @@ class SimGcs final : public SimDevice {
   std::string reference() {
     if (!servo_ || !reference_mode_) return refuse(5);
     homing_ = true;
-    motor_.set_speed(homing_speed_deg_s);
-    go(0);
+    go(0, homing_speed_deg_s);
     return "";
   }
 
   std::string travel(double target_deg) {
     if (!servo_ || !referenced_ || homing_) return refuse(5);
     if (target_deg < settings_.min_deg || target_deg > settings_.max_deg) return refuse(7);
-    motor_.set_speed(speed_deg_s_);
-    go(target_deg);
+    go(target_deg, speed_deg_s_);
     return "";
   }
 
-  void go(double target_deg) {
-    motor_.go_to(target_deg);
-    next_log_s_ = now_s_;
-    note("moving", {{"target_deg", target_deg}, {"speed_deg_s", speed_deg_s_}}, now_s_);
-  }
-
-  SimGcsSettings settings_;
-  SimLog log_;
-  SimMotor motor_;
-  double now_s_;
-  double next_log_s_ = 0;
-  std::mt19937_64 random_;
   std::string line_;
-  std::multimap<double, std::string> answers_;
-  std::map<std::string, int> seen_;
   int error_ = 0;
   double speed_deg_s_ = 10;
   bool addressed_ = false;
@@ -308,8 +204,6 @@ class SimGcs final : public SimDevice {
   bool referenced_ = false;
   bool reference_mode_ = true;
   bool homing_ = false;
-  bool unplugged_ = false;
-  bool dead_ = false;
 };
 
 }  // namespace

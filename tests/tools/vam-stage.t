@@ -78,6 +78,16 @@ LD_PRELOAD=$shim vam-stage identify --device "gcs:$PWD/stage?baud=115200" 2>erro
 is 'the wrong one is a wrong answer or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
 finish
 
+# A GRBL board instead.
+simulate --protocol grbl --acceleration 5000 --max-speed 720
+fails 64 'none of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
+LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 >samples
+holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+ok 'and stands' stood
+finish
+fails 64 'steps_per_deg' vam-stage identify --device tic:
+fails 69 'no such device|not available' vam-stage identify --device 'tic:?steps_per_deg=10'
+
 # Spoilt answers: the fault is named, and the table stands.
 spoilt() {  # spoilt STATUS REGEX FAULT
   simulate --acceleration 5000 --max-speed 720 --fault "$3"

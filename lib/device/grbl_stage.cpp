@@ -1,0 +1,270 @@
+#include "device/grbl_stage.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "device/guardian_actions.hpp"
+
+namespace vam::device {
+
+namespace {
+
+constexpr double timeout_s = 0.2;
+constexpr double wake_s = 2.0;  // opening the port resets most boards; their greeting takes a second
+const std::string jog_cancel = "\x85";
+const std::string soft_reset = "\x18";
+
+class GrblStage final : public Stage {
+ public:
+  GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian)
+      : port_(std::move(port)), clock_(clock), axis_(axis), guardian_(guardian) {
+    greet();
+  }
+
+  ~GrblStage() override {
+    if (!watched_) return;
+    try {
+      port_->write(jog_cancel);
+    } catch (...) {
+      // The line is dead for us; the guardian keeps its order.
+    }
+  }
+
+  Json identify() override { return {{"maker", "GRBL"}, {"model", greeting_}, {"axis", letter()}}; }
+
+  StageCaps caps() override {
+    read_settings();
+    StageCaps caps;
+    const bool limited = settings_["$20"] != 0;
+    const double travel_deg = limited ? settings_["$" + std::to_string(130 + axis_)] : 1e7;
+    // GRBL's machine space lies below zero when limits are on.
+    caps.min_deg = -travel_deg + offset_deg_;
+    caps.max_deg = (limited ? 0 : travel_deg) + offset_deg_;
+    caps.max_speed_deg_s = settings_["$" + std::to_string(110 + axis_)] / 60;
+    caps.acceleration_deg_s2 = settings_["$" + std::to_string(120 + axis_)];
+    return caps;
+  }
+
+  void enable() override { order("$X"); }
+
+  void start_homing() override {
+    watch();
+    send("$H");
+    homing_ = true;
+  }
+
+  // "$H" answers ok only when it is done, and status reports pause meanwhile.
+  bool homed() override {
+    if (!homing_) return true;
+    beat();
+    const std::string line = next_line(0.05, false);
+    if (line.empty()) return false;
+    homing_ = false;
+    require_ok("$H", line);
+    offset_deg_ = -sample().angle_deg;
+    forget();
+    return true;
+  }
+
+  void set_speed(double deg_s) override { speed_deg_s_ = deg_s; }
+
+  void set_angle(double angle_deg) override { offset_deg_ += angle_deg - sample().angle_deg; }
+
+  void start_move(double angle_deg) override {
+    watch();
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "$J=G53 G90 %s%.4f F%.3f", letter().c_str(), angle_deg - offset_deg_,
+                  60 * speed_deg_s_);
+    order(text.data());
+  }
+
+  StageSample sample() override {
+    StageSample now;
+    drain();
+    now.t0_s = clock_.now_s();
+    const std::string report = status();
+    now.t1_s = clock_.now_s();
+    now.angle_deg = position(report) + offset_deg_;
+    return now;
+  }
+
+  bool moving() override {
+    drain();
+    const std::string report = status();
+    const std::string state = report.substr(1, report.find_first_of("|>:") - 1);
+    if (state == "Alarm") throw Error{Fault::protocol, port_->name() + ": is in alarm; home it, or unlock it with $X"};
+    const bool moves = state != "Idle";
+    if (!moves) forget();
+    return moves;
+  }
+
+  // Both stops are the cancelling of the jog, at the axis' acceleration: a reset would stop harder, but lose the
+  // position.
+  void stop(Stop) override {
+    beat();
+    port_->write(jog_cancel);
+  }
+
+  std::optional<std::string> fault() override { return std::nullopt; }  // every order answers for itself
+
+ private:
+  std::string letter() const { return std::string(1, static_cast<char>('X' + axis_)); }
+
+  void greet() {
+    port_->write("\n");
+    const double deadline_s = clock_.now_s() + wake_s;
+    while (clock_.now_s() < deadline_s) {
+      const std::string line = next_line(0.2, false);
+      if (line.rfind("Grbl ", 0) == 0) {
+        greeting_ = line.substr(0, line.find(" ["));
+        break;
+      }
+      if (line == "ok") break;  // it was awake
+    }
+    drain();
+    send("$I");
+    for (;;) {
+      const std::string line = next_line(timeout_s, true);
+      if (line == "ok") break;
+      if (line.rfind("[VER:", 0) == 0) greeting_ = "Grbl " + line.substr(5, line.find(':', 5) - 5);
+      if (line.rfind("[", 0) != 0) {
+        throw Error{Fault::protocol,
+                    port_->name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
+      }
+    }
+  }
+
+  void read_settings() {
+    send("$$");
+    for (;;) {
+      const std::string line = next_line(timeout_s, true);
+      if (line == "ok") return;
+      const std::size_t equals = line.find('=');
+      const auto value =
+          equals == std::string::npos ? std::nullopt : parse_number(split(line.substr(equals + 1), ' ').front());
+      if (line.front() != '$' || !value) throw nonsense("$$", line);
+      settings_[line.substr(0, equals)] = *value;
+    }
+  }
+
+  Error nonsense(const std::string& question, const std::string& line) const {
+    return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + line.substr(0, 40) + "'"};
+  }
+
+  void drain() {
+    buffer_.clear();
+    while (!port_->read(1e-9).empty()) continue;
+  }
+
+  void send(const std::string& line) {
+    drain();
+    port_->write(line + "\n");
+  }
+
+  std::string next_line(double wait_s, bool needed) {
+    for (;;) {
+      const std::size_t end = buffer_.find('\n');
+      if (end != std::string::npos) {
+        std::string line = buffer_.substr(0, end);
+        buffer_.erase(0, end + 1);
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (!line.empty()) return line;
+        continue;
+      }
+      const std::string bytes = port_->read(wait_s);
+      if (bytes.empty() && needed) {
+        throw Error{Fault::busy, port_->name() + ": no answer within " + format_number(wait_s) +
+                                     " s; check power, cable and baud rate"};
+      }
+      if (bytes.empty()) return "";
+      if (buffer_.size() + bytes.size() > 65536) throw nonsense("?", buffer_);
+      buffer_ += bytes;
+    }
+  }
+
+  void require_ok(const std::string& question, const std::string& line) const {
+    if (line == "ok") return;
+    if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
+      throw Error{Fault::protocol, port_->name() + ": '" + question + "' was refused with " + line};
+    }
+    throw nonsense(question, line);
+  }
+
+  void order(const std::string& line) {
+    send(line);
+    std::string answer = next_line(timeout_s, true);
+    while (answer.front() == '[') answer = next_line(timeout_s, true);  // "[MSG:Caution: Unlocked]"
+    require_ok(line, answer);
+    beat();
+  }
+
+  // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
+  std::string status() {
+    port_->write("?");
+    std::string line = next_line(timeout_s, true);
+    while (line == "ok") line = next_line(timeout_s, true);
+    if (line.front() != '<' || line.back() != '>') throw nonsense("?", line);
+    beat();
+    return line;
+  }
+
+  double position(const std::string& report) const {
+    const std::size_t begin = report.find("MPos:");
+    const auto parts = begin == std::string::npos
+                           ? std::vector<std::string>{}
+                           : split(report.substr(begin + 5, report.find_first_of("|>", begin) - begin - 5), ',');
+    const auto value = parts.size() == 3 ? parse_number(parts[static_cast<std::size_t>(axis_)]) : std::nullopt;
+    if (!value || !std::isfinite(*value)) {
+      throw Error{Fault::protocol,
+                  port_->name() + ": its status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
+    }
+    return *value;
+  }
+
+  void watch() {
+    watched_ = true;
+    if (guardian_ == nullptr || action_ || port_->handle() < 0) return;
+    // Cancels the jog; the LF ends half a line of the dead tool, and the second cancel what that may have started. The
+    // reset stops whatever is left.
+    const std::string bytes = jog_cancel + "\n" + jog_cancel + "!" + soft_reset;
+    action_ =
+        guardian_->add({{"do", "write"}, {"order", 1}, {"name", "stage"}, {"hex", to_hex(bytes)}}, port_->handle());
+  }
+
+  void forget() {
+    watched_ = false;
+    if (action_) guardian_->forget(*action_);
+    action_.reset();
+  }
+
+  void beat() {
+    if (guardian_ != nullptr) guardian_->beat();
+  }
+
+  std::unique_ptr<Port> port_;
+  Clock& clock_;
+  int axis_;
+  Guardian* guardian_;
+  std::string greeting_ = "Grbl";
+  std::string buffer_;
+  std::map<std::string, double> settings_;
+  double offset_deg_ = 0;
+  double speed_deg_s_ = 10;
+  bool homing_ = false;
+  bool watched_ = false;
+  std::optional<int> action_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_grbl_stage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian) {
+  return std::make_unique<GrblStage>(std::move(port), clock, axis, guardian);
+}
+
+}  // namespace vam::device

@@ -1,0 +1,22 @@
+// A simulated Pololu Tic with a table on its motor.
+#pragma once
+
+#include <memory>
+
+#include "device/clock.hpp"
+#include "device/sim_device.hpp"
+#include "device/sim_motor.hpp"
+#include "device/usb_link.hpp"
+
+namespace vam::device {
+
+struct SimTicSettings {
+  MotorSettings motor;
+  double steps_per_deg = 100;
+  double command_timeout_s = 1;  // without a word for so long it decelerates to a stop
+  int error_bits = 0;            // of the error status; 8 is the kill switch
+};
+
+[[nodiscard]] std::unique_ptr<UsbLink> make_sim_tic(const SimTicSettings& settings, Clock& clock, SimLog log);
+
+}  // namespace vam::device

@@ -1,0 +1,102 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "base/error.hpp"
+#include "device/grbl_stage.hpp"
+#include "device/sim_grbl.hpp"
+#include "device/spin.hpp"
+#include "fault_of.hpp"
+#include "virtual_stage.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+struct GrblLab {
+  explicit GrblLab(const SimGcsSettings& sim = {})
+      : device(make_sim_grbl(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })) {}
+  void open() {
+    stage = make_grbl_stage(make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, 0, nullptr);
+  }
+  bool truly_moves() {
+    device->advance(clock.now_s());
+    bool moves = false;
+    for (const auto& line : log) {
+      if (line["event"] == "moving") moves = true;
+      if (line["event"] == "standing") moves = false;
+    }
+    return moves;
+  }
+  VirtualClock clock;
+  std::vector<Json> log;
+  std::shared_ptr<SimDevice> device;
+  std::unique_ptr<Stage> stage;
+};
+
+}  // namespace
+
+TEST_CASE("A GRBL board homes, moves and prints like any other stage") {
+  GrblLab lab;
+  lab.open();
+  CHECK(describe(*lab.stage)["model"] == "Grbl 1.1h.20190830");
+  CHECK(lab.stage->caps().max_speed_deg_s == 90);
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.stage->sample().angle_deg == 0);
+  move(*lab.stage, lab.clock, 30, false, 30, 60);
+  CHECK(lab.stage->sample().angle_deg == 30);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  std::vector<AngleSample> samples;
+  spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
+  CHECK_FALSE(lab.truly_moves());
+  CHECK(std::abs(std::remainder(samples.front().angle_deg - 30, 360.0)) < 0.1);
+  CHECK(samples.back().angle_deg >= 360);
+}
+
+TEST_CASE("Something else than GRBL is not taken for it") {
+  VirtualClock clock;
+  auto pi = make_sim_gcs({}, clock.now_s(), {});
+  CHECK(fault_of([&] { (void)make_grbl_stage(make_sim_port(std::move(pi), clock), clock, 0, nullptr); }) ==
+        Fault::busy);
+}
+
+TEST_CASE("Each answer of a GRBL board wrong in turn: the right fault, in time, and the table stands") {
+  struct Case {
+    const char* kind;
+    Fault fault;
+  };
+  const std::vector<Case> cases{{"garbage", Fault::protocol}, {"truncated", Fault::busy}, {"late", Fault::busy},
+                                {"silent", Fault::busy},      {"error", Fault::protocol}, {"unplug", Fault::absent},
+                                {"power-loss", Fault::absent}};
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  plan.period_s = 0.05;
+  plan.run_up_turns = 0.5;
+  for (const char* command : {"$I", "$$", "$X", "$J", "?"}) {
+    for (const auto& [kind, fault] : cases) {
+      for (const int occurrence : {1, 20}) {
+        if (occurrence > 1 && std::string(command) != "?") continue;
+        CAPTURE(command);
+        CAPTURE(kind);
+        SimGcsSettings sim;
+        sim.motor.acceleration_deg_s2 = 600;
+        sim.faults.push_back({kind, command, occurrence});
+        GrblLab lab(sim);
+        CHECK(fault_of([&] {
+                lab.open();
+                spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {});
+              }) == fault);
+        const double noticed_s = lab.clock.now_s();
+        for (const auto& line : lab.log) {
+          if (line["event"] == "fault") CHECK(noticed_s - line["t_monotonic_s"].get<double>() < 0.7);
+        }
+        lab.stage.reset();
+        lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+        if (std::string(kind) != "unplug") CHECK_FALSE(lab.truly_moves());
+      }
+    }
+  }
+}

@@ -1,0 +1,65 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/error.hpp"
+#include "device/sim_tic.hpp"
+#include "device/spin.hpp"
+#include "device/tic_stage.hpp"
+#include "fault_of.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+struct TicLab {
+  explicit TicLab(const SimTicSettings& sim = {}, double steps_per_deg = 100)
+      : stage(make_tic_stage(make_sim_tic(sim, clock, [this](const Json& line) { log.push_back(line); }), clock,
+                             steps_per_deg, nullptr)) {}
+  VirtualClock clock;
+  std::vector<Json> log;
+  std::unique_ptr<Stage> stage;
+};
+
+}  // namespace
+
+TEST_CASE("A Tic homes, moves and prints like any other stage") {
+  TicLab lab;
+  CHECK(describe(*lab.stage)["serial"] == "00312345");
+  CHECK(lab.stage->caps().acceleration_deg_s2 == 60);
+  home(*lab.stage, lab.clock, 60);
+  move(*lab.stage, lab.clock, 30, false, 30, 60);
+  CHECK(lab.stage->sample().angle_deg == 30);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  std::vector<AngleSample> samples;
+  spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
+  CHECK(samples.back().angle_deg >= 360);
+  CHECK(std::abs(std::remainder(samples.front().angle_deg - 30, 360.0)) < 0.1);
+  CHECK(lab.log.back()["event"] == "standing");
+}
+
+TEST_CASE("A Tic that hears nothing for a second stops by itself") {
+  TicLab lab;
+  lab.stage->enable();
+  lab.stage->set_speed(30);
+  lab.stage->start_move(1000);
+  lab.clock.sleep_until(lab.clock.now_s() + 3);
+  CHECK(lab.stage->sample().angle_deg < 40);
+  CHECK(lab.log.back()["event"] == "standing");
+}
+
+TEST_CASE("The Tic's errors are named and stop the start") {
+  SimTicSettings sim;
+  sim.error_bits = 8;
+  TicLab lab(sim);
+  CHECK(message_of([&] { lab.stage->enable(); }).find("kill switch") != std::string::npos);
+  CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
+}
+
+TEST_CASE("More steps a second than a Tic can do are refused") {
+  TicLab lab({}, 1e4);
+  CHECK(fault_of([&] { lab.stage->set_speed(6); }) == Fault::data);
+}
