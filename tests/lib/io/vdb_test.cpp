@@ -19,6 +19,12 @@ using scratch::slurp;
 using scratch::spill;
 using scratch::status;
 
+#ifdef __SANITIZE_ADDRESS__
+// OpenVDB does not free the nodes of a tree whose stream ends within it; the tools end there too.
+extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology"; }  // NOLINT
+#endif
+
 namespace {
 
 // A ball of ones with a soft rim, a hollow in it, and zeros around: leaves, full tiles and empty space.
@@ -358,6 +364,12 @@ TEST_CASE("a cut archive is 65 wherever it is cut, and a flipped bit never crash
       CHECK(read(whole.substr(0, length)) == 65);
     }
     CHECK(read(whole.substr(0, whole.size() - 1)) == 65);
+#ifdef __SANITIZE_ADDRESS__
+    if (!piped) {
+      MESSAGE("skipped: flipped bits in a Blosc archive; the sanitizer ends the process where std::bad_alloc is due");
+      continue;
+    }
+#endif
     unsigned state = 7;
     for (int trial = 0; trial < 300; ++trial) {
       CAPTURE(trial);
