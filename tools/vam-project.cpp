@@ -98,7 +98,7 @@ cli::Manual manual() {
        "rises.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017; Orth et al., Correcting ray distortion in tomographic "
        "additive manufacturing, Opt. Express 2021."},
-      {"vam-resample", "vam-optimize", "vam-stage", "vam-view"}};
+      {"vam-optimize", "vam-resample", "vam-stage", "vam-view"}};
 }
 
 void declare(cli::App& app, Options& options) {

@@ -66,7 +66,7 @@ cli::Manual manual() {
            "Sources: the histogram is that of Orth et al., On-the-fly 3D metrology of volumetric additive "
            "manufacturing, 2022, "
            "fig S6."},
-          {"vam-slice", "vam-sinogram", "vam-dose", "vam-score", "vam-project"}};
+          {"vam-dose", "vam-project", "vam-score", "vam-sinogram", "vam-slice"}};
 }
 
 void declare(cli::App& app, Options& options) {
