@@ -78,7 +78,7 @@ cli::Manual manual() {
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "8; "
        "Kelly et al., Volumetric additive manufacturing via tomographic reconstruction, Science 2019, eq 1."},
-      {"vam-resample", "vam-optimize", "vam-score", "vam-view"}};
+      {"vam-optimize", "vam-resample", "vam-score", "vam-view"}};
 }
 
 void declare(cli::App& app, Options& options) {

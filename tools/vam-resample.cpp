@@ -71,7 +71,7 @@ cli::Manual manual() {
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "3-7 and fig 4; Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, eq 5-9, with "
        "the exact angles."},
-      {"vam-sinogram", "vam-optimize", "vam-dose", "vam-project", "vam-ost"}};
+      {"vam-dose", "vam-optimize", "vam-ost", "vam-project", "vam-sinogram"}};
 }
 
 void declare(cli::App& app, Options& options) {
