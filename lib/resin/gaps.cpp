@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "base/parallel.hpp"
 
 namespace vam::resin {
 
@@ -41,6 +44,51 @@ double speed_limit_mm_h(const Process& process) {
   at_one.speed_mm_h = 1;
   const Limits limits = limits_of(at_one);  // Phi falls as 1 / speed
   return limits.settled(limits.phi_max);
+}
+
+GapReport judge_gaps(const PartColumns& part, const Limits& limits, double clear) {
+  const int slices = part.slices();
+  std::vector<double> least(static_cast<std::size_t>(slices) + 1, 1.0);  // by the length of the gap
+  for (int gap = 1; gap <= slices; ++gap) {
+    // Wider gaps reach ever less; beyond the first that reaches the limit of the light nothing changes.
+    least[static_cast<std::size_t>(gap)] =
+        gap > 2 && least[static_cast<std::size_t>(gap - 1)] == 0 ? 0 : lowest_gap_dose(limits, gap);
+  }
+  GapReport report;
+  report.mask = Image(part.width(), part.height());
+  std::vector<GapReport> rows(static_cast<std::size_t>(part.height()));
+  parallel_for(part.height(), [&](int y) {
+    GapReport& row = rows[static_cast<std::size_t>(y)];
+    for (int x = 0; x < part.width(); ++x) {
+      const std::size_t column = report.mask.index(x, y);
+      float verdict = 0;
+      int end = part.next_slice(column, part.next_slice(column, 0, true), false);
+      for (int begin = part.next_slice(column, end, true); begin < slices; begin = part.next_slice(column, end, true)) {
+        const double dose = least[static_cast<std::size_t>(begin - end)];
+        const bool tight = dose > clear || dose >= 1;
+        row.infeasible_gaps += dose >= 1;
+        row.tight_gaps += tight;
+        row.worst_dose = std::max(row.worst_dose, dose);
+        row.narrowest = row.narrowest == 0 ? begin - end : std::min(row.narrowest, begin - end);
+        verdict = std::max(verdict, dose >= 1 ? 2.0F : (tight ? 1.0F : 0.0F));
+        end = part.next_slice(column, begin, false);
+      }
+      report.mask(x, y) = verdict;
+      row.infeasible_columns += verdict == 2;
+      row.tight_columns += verdict > 0;
+    }
+  });
+  for (const GapReport& row : rows) {
+    report.infeasible_columns += row.infeasible_columns;
+    report.infeasible_gaps += row.infeasible_gaps;
+    report.tight_columns += row.tight_columns;
+    report.tight_gaps += row.tight_gaps;
+    report.worst_dose = std::max(report.worst_dose, row.worst_dose);
+    if (row.narrowest > 0) {
+      report.narrowest = report.narrowest == 0 ? row.narrowest : std::min(report.narrowest, row.narrowest);
+    }
+  }
+  return report;
 }
 
 }  // namespace vam::resin

@@ -1,7 +1,11 @@
 // How narrow a gap a resin can keep open at a speed: what a catalogue of resins is compared by.
 #pragma once
 
+#include <cstddef>
+
+#include "base/image.hpp"
 #include "resin/curethrough.hpp"
+#include "resin/part_columns.hpp"
 
 namespace vam::resin {
 
@@ -17,5 +21,20 @@ namespace vam::resin {
 /// The speed at which the maximum intensity only just keeps the critical dose: I_max / D_c when continuous. Below it
 /// everything can be cured, the more slowly the narrower the gaps.
 [[nodiscard]] double speed_limit_mm_h(const Process& process);
+
+/// The gaps of a part that a print cannot keep open.
+struct GapReport {
+  std::size_t infeasible_columns = 0;  // columns for which no Phi satisfies all constraints: a gap of a single slice
+  std::size_t infeasible_gaps = 0;
+  std::size_t tight_columns =
+      0;  // columns with a gap whose dose nowhere falls to `clear`, the infeasible ones included
+  std::size_t tight_gaps = 0;
+  double worst_dose = 0;  // largest of the least doses of all gaps; 1 where a gap is infeasible
+  int narrowest = 0;      // slices of the narrowest gap in the part; 0 without gaps
+  Image mask;             // per column: 0 fine, 1 tight, 2 infeasible
+};
+
+/// `clear` in (0, 1]. Gaps are between two features of a column.
+[[nodiscard]] GapReport judge_gaps(const PartColumns& part, const Limits& limits, double clear);
 
 }  // namespace vam::resin

@@ -45,8 +45,8 @@ void ColumnCursor::place_column(std::size_t column, int node) {
   first_[column] = run.first;
   last_[column] = run.last;
   if (run.inside) {
-    below_[column] = dose_.below_inside(run.last);
-    above_[column] = run.first == 0 ? dose_.above_on_platform() : dose_.above_inside(run.first);
+    below_[column] = dose_.below_inside(run.first, run.last);
+    above_[column] = dose_.above_inside(run.first);
   } else {
     below_[column] = run.last == dose_.slices() ? dose_.below_dark() : dose_.below_outside(run.last + 1);
     above_[column] = run.first == 0 ? dose_.above_none() : dose_.above_outside(run.first - 1);
@@ -85,8 +85,8 @@ void require_printable(const Limits& limits) {
   }
 }
 
-SliceCorrection::SliceCorrection(const PartColumns& part, const Limits& limits, double omega_max, int slices)
-    : part_(part), limits_(limits), dose_(limits, omega_max, slices), cursor_(part, dose_), omega_(part.columns()) {
+SliceCorrection::SliceCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices)
+    : part_(part), limits_(limits), dose_(limits, limit, slices), cursor_(part, dose_), omega_(part.columns()) {
   parallel_for(part_.height(), [&](int y) {
     cursor_.place(y, 0);
     const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(part_.width());
@@ -111,11 +111,11 @@ void SliceCorrection::next(Image& slice) {
   });
 }
 
-LevelCorrection::LevelCorrection(const PartColumns& part, const Limits& limits, double omega_max, int slices,
+LevelCorrection::LevelCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices,
                                  std::span<const float> levels)
     : part_(part),
       limits_(limits),
-      dose_(limits, omega_max, slices),
+      dose_(limits, limit, slices),
       cursor_(part, dose_),
       first_guess_(guess_bins + 1),
       omega_(part.columns()),

@@ -44,7 +44,7 @@ void require_printable(const Limits& limits);
 class SliceCorrection {
  public:
   /// `part` must outlive this. slices = the part's own and the extra ones.
-  SliceCorrection(const PartColumns& part, const Limits& limits, double omega_max, int slices);
+  SliceCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices);
   [[nodiscard]] int slices() const { return dose_.slices(); }
   /// Intensity / maximum intensity of the next slice, in [phi_min / phi_max, 1].
   void next(Image& slice);
@@ -66,7 +66,7 @@ class LevelCorrection {
  public:
   /// levels[v] = intensity of grey level v as a fraction of the maximum, rising; the first is phi_min / phi_max, the
   /// last 1. Throws Fault::data when they fall anywhere or there are more than 65536.
-  LevelCorrection(const PartColumns& part, const Limits& limits, double omega_max, int slices,
+  LevelCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices,
                   std::span<const float> levels);
   [[nodiscard]] int slices() const { return dose_.slices(); }
   /// Grey levels of the slice before the one given last, row-major; begins with slice slices() - 1.

@@ -33,7 +33,7 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
   point.printable = burst_slices(limits) > 0 && limits.settled(limits.phi_min) < 1;
   if (!point.printable) return point;
   point.extra_slices = extra_slices(part, limits);
-  Column column = correct_column(part, limits, omega_max, point.extra_slices);
+  Column column = correct_column(part, limits, {omega_max}, point.extra_slices);
   // The same light in units of the dose that really cures.
   const double scale = assumed.critical_dose_mj_cm3 / study.process.critical_dose_mj_cm3;
   for (double& phi : column.phi) phi *= scale;

@@ -37,8 +37,8 @@ std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose
     int below = 0;
     int above = 0;
     if (run.inside) {
-      below = dose.below_inside(run.last);
-      above = run.first == 0 ? dose.above_on_platform() : dose.above_inside(run.first);
+      below = dose.below_inside(run.first, run.last);
+      above = dose.above_inside(run.first);
     } else {
       below = r + 1 < runs.size() ? dose.below_outside(runs[r + 1].first) : dose.below_dark();
       above = r > 0 ? dose.above_outside(runs[r - 1].last) : dose.above_none();
@@ -51,9 +51,11 @@ std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose
 }
 
 // The largest violation of constraints i-iii by the doses really reached.
-double excess(const std::vector<Run>& runs, const std::vector<double>& omega, double omega_max) {
+double excess(const std::vector<Run>& runs, const std::vector<double>& omega, const DoseLimit& limit) {
   double worst = 0;
   for (const Run& run : runs) {
+    const bool unlimited = limit.strong_base && run.first == 0;
+    const double omega_max = unlimited ? unreachable : limit.omega_max;
     for (int n = run.first; n <= run.last; ++n) {
       const double dose = omega[static_cast<std::size_t>(n)];
       worst = std::max(worst, run.inside ? std::max(1 - dose, dose - omega_max) : dose - 1);
@@ -73,7 +75,9 @@ int single_slice_gaps(std::span<const std::uint8_t> part) {
 
 }  // namespace
 
-TargetDose::TargetDose(const Limits& limits, double omega_max, int slices) : slices_(slices) {
+TargetDose::TargetDose(const Limits& limits, const DoseLimit& limit, int slices)
+    : slices_(slices), strong_base_(limit.strong_base) {
+  const double omega_max = limit.omega_max;
   if (!(omega_max >= 1)) {
     throw Error{Fault::usage, "omega-max: " + format_number(omega_max) +
                                   " is below 1, the dose that cures; give 1, more than 1, or inf"};
@@ -85,7 +89,9 @@ TargetDose::TargetDose(const Limits& limits, double omega_max, int slices) : sli
     const double power = std::pow(limits.q, d);
     const auto put = [&](Section s, double value) { values_[static_cast<std::size_t>(section(s) + d)] = value; };
     const double drained = (1 - lowest * (1 - power)) / power;  // may overflow to inf: no limit
-    put(fill, std::clamp(highest * (1 - power) + power, 1.0, omega_max));
+    const double filled = std::max(1.0, highest * (1 - power) + power);
+    put(fill, std::min(filled, omega_max));
+    put(strong, filled);
     put(drain, std::clamp(drained, 1.0, unreachable));
     put(open, unreachable);
     put(fall, -std::min(lowest + (1 - lowest) * power, 1.0));
@@ -95,9 +101,10 @@ TargetDose::TargetDose(const Limits& limits, double omega_max, int slices) : sli
   }
 }
 
-Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, double omega_max, int extra_slices) {
+Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
+                      int extra_slices) {
   const int slices = static_cast<int>(part.size()) + extra_slices;
-  const TargetDose dose(limits, omega_max, slices);
+  const TargetDose dose(limits, limit, slices);
   std::vector<std::uint8_t> nodes = nodes_of(part, limits.exposure);
   nodes.resize(static_cast<std::size_t>(slices) + 1, 0);
   if (limits.exposure == Exposure::continuous && extra_slices == 0 && !part.empty()) nodes.back() = part.back();
@@ -112,7 +119,7 @@ Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, 
     column.phi[n] = std::clamp((target[n] - carried) / limits.gain, limits.phi_min, limits.phi_max);
     column.omega[n] = limits.gain * column.phi[n] + carried;  // [CURE19 eq 5]
   }
-  column.worst_excess = excess(runs, column.omega, omega_max);
+  column.worst_excess = excess(runs, column.omega, limit);
   column.fused_gaps = limits.exposure == Exposure::continuous ? single_slice_gaps(part) : 0;
   return column;
 }

@@ -19,22 +19,30 @@
 
 namespace vam::resin {
 
+/// How much dose features may get.
+struct DoseLimit {
+  double omega_max = 1;  // at least 1, or infinite
+  /// Features that stand on the platform have no resin behind them that could cure: they get the maximum intensity
+  /// from their bottom edge on, whatever omega_max says, as the rails of [CURE19 fig 4] do.
+  bool strong_base = false;
+};
+
 /// Every curve is tabulated by its distance from an edge, so that a node costs two look-ups:
 /// Omega = |min(table[below - node], table[above + node])|. Values outside features are stored negative, which turns
 /// the maximum into a minimum. `below` and `above` change only where the column passes an edge.
 class TargetDose {
  public:
-  /// For columns of up to `slices` slices, the extra ones included. omega_max >= 1 or infinity; Fault::usage otherwise.
-  TargetDose(const Limits& limits, double omega_max, int slices);
+  /// For columns of up to `slices` slices, the extra ones included. Throws Fault::usage when omega_max is below 1.
+  TargetDose(const Limits& limits, const DoseLimit& limit, int slices);
 
   [[nodiscard]] const double* table() const { return values_.data(); }
   [[nodiscard]] int slices() const { return slices_; }
 
-  // Offsets for a node inside a feature whose last node (window side) is `last` and first node `first`.
-  [[nodiscard]] int below_inside(int last) const { return section(fill) + last; }
-  [[nodiscard]] int above_inside(int first) const { return section(drain) - first; }
-  /// A feature that begins at node 0 stands on the platform: there is nothing behind it to cure through.
-  [[nodiscard]] int above_on_platform() const { return section(open); }
+  // Offsets for a node inside a feature of the nodes first..last; one that begins at node 0 stands on the platform.
+  [[nodiscard]] int below_inside(int first, int last) const {
+    return section(first == 0 && strong_base_ ? strong : fill) + last;
+  }
+  [[nodiscard]] int above_inside(int first) const { return first == 0 ? section(open) : section(drain) - first; }
   // Offsets for a node outside, before the feature whose first node is `next`, after the one whose last node is `last`.
   [[nodiscard]] int below_outside(int next) const { return section(fall) + next; }
   [[nodiscard]] int above_outside(int last) const { return section(rise) - last; }
@@ -42,9 +50,10 @@ class TargetDose {
   [[nodiscard]] int above_none() const { return section(none); }            ///< no feature further up
 
  private:
-  enum Section { fill, drain, open, fall, rise, dark, none, sections };
+  enum Section { fill, strong, drain, open, fall, rise, dark, none, sections };
   [[nodiscard]] int section(Section s) const { return static_cast<int>(s) * (slices_ + 1); }
   int slices_;
+  bool strong_base_;
   std::vector<double> values_;
 };
 
@@ -59,7 +68,7 @@ struct Column {
 
 /// The exact solution for part[n] = "slice n is in the part", followed by extra_slices empty slices. When no Phi
 /// satisfies every constraint the column says so and carries the nearest attempt; nothing is clipped in silence.
-[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, double omega_max,
+[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
                                     int extra_slices);
 
 /// Slices after the part's own that the burst below its last feature needs; 0 for an empty column or without a burst.

@@ -35,7 +35,7 @@ void corrected_slice(benchmark::State& state) {
   vam::Image slice(width, height);
   for (auto _ : state) {
     state.PauseTiming();
-    vam::resin::SliceCorrection correction(part(), limits, 1, slices + 3);
+    vam::resin::SliceCorrection correction(part(), limits, {1}, slices + 3);
     state.ResumeTiming();
     for (int k = 0; k < slices; ++k) correction.next(slice);
   }

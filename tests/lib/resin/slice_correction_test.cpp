@@ -128,7 +128,7 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
       std::vector<std::vector<float>> runs;
       for (const int threads : {1, 3}) {
         set_threads(threads);
-        resin::SliceCorrection correction(part, limits, omega_max, slices + extra);
+        resin::SliceCorrection correction(part, limits, {omega_max}, slices + extra);
         std::vector<float>& all = runs.emplace_back();
         Image slice;
         for (int k = 0; k < slices + extra; ++k) {
@@ -139,7 +139,7 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
       set_threads(0);
       CHECK(runs[0] == runs[1]);
       for (int p = 0; p < width * height; ++p) {
-        const resin::Column column = resin::correct_column(column_of(values, slices, p), limits, omega_max, extra);
+        const resin::Column column = resin::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
         for (int k = 0; k < slices + extra; ++k) {
           const double phi = runs[0][static_cast<std::size_t>(k * width * height + p)] * limits.phi_max;
           // float storage of a value up to phi_max: half a unit in the last place
@@ -163,12 +163,12 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     double widest = 0;
     for (std::size_t v = 1; v < 256; ++v) widest = std::max(widest, static_cast<double>(levels[v] - levels[v - 1]));
     const double bound = limits.gain * widest * limits.phi_max;
-    resin::LevelCorrection correction(part, limits, 1, slices + extra, levels);
+    resin::LevelCorrection correction(part, limits, {1}, slices + extra, levels);
     std::vector<std::vector<std::uint16_t>> stack(static_cast<std::size_t>(slices + extra));
     for (int k = slices + extra; k-- > 0;) correction.previous(stack[static_cast<std::size_t>(k)]);
     for (int p = 0; p < width * height; ++p) {
       const auto bits = column_of(values, slices, p);
-      const resin::Column column = resin::correct_column(bits, limits, 1, extra);
+      const resin::Column column = resin::correct_column(bits, limits, {1}, extra);
       std::vector<double> phi;
       for (const auto& slice : stack) phi.push_back(levels[slice[static_cast<std::size_t>(p)]] * limits.phi_max);
       const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
@@ -195,5 +195,5 @@ TEST_CASE("light that cannot print is refused with a remedy") {
   limits.phi_min = 1.5;
   CHECK_THROWS_AS(resin::require_printable(limits), Error);
   const std::vector<float> falling{0.1F, 0.5F, 0.4F, 1.0F};
-  CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(Exposure::continuous), 1, 50, falling), Error);
+  CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(Exposure::continuous), {1}, 50, falling), Error);
 }

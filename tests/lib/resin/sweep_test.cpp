@@ -60,7 +60,7 @@ TEST_CASE("the least dose in a gap is the one that a correction reaches") {
     for (int gap = 2; gap < 60; gap += 3) {
       std::vector<std::uint8_t> part(static_cast<std::size_t>(gap + 20), 0);
       for (std::size_t n = 0; n < 10; ++n) part[n] = part[part.size() - 1 - n] = 1;
-      const auto column = resin::correct_column(part, limits, 1, 8);
+      const auto column = resin::correct_column(part, limits, {1}, 8);
       REQUIRE(column.feasible());
       double least = 1;
       for (std::size_t n = 0; n < part.size(); ++n) least = std::min(least, column.omega[n]);

@@ -1,0 +1,108 @@
+# vam-curethrough from end to end: the paper's ladder, an egg shell, measured data, and input that cannot be used.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+light="--max-intensity 110 --min-intensity 0.2"  # what gives the paper's figures 2 and 4
+
+quiet "slice the ladder" vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb
+
+# ---- ordinary slices: one fused feature, undercured at the bottom [CURE19 fig 2]
+ok "model ordinary slices" vam-curethrough model ladder.vdb $light --plane ordinary.png --report ordinary.json
+is "both gaps, 10 slices of 6000 columns each, are cured" "$(json ordinary.json cure_through.voxels)" 120000
+holds "the bottom edge is undercured" "$(json ordinary.json undercured.voxels) > 0"
+quiet "model a part from a pipe" sh -c "cat ladder.vdb | vam-curethrough model $light --report piped.json -o dose.vdb"
+is "the pipe gives the same" "$(json piped.json cure_through.voxels)" 120000
+ok "the dose is a volume" test -s dose.vdb
+
+# ---- corrected [CURE19 fig 4]
+quiet "correct" vam-curethrough correct ladder.vdb $light -o slices.exr --png slices --mask mask.png --report correct.json
+is "three extra slices, as in the paper" "$(json correct.json extra_slices)" 3
+is "no column is infeasible" "$(json correct.json infeasible.columns)" 0
+is "slice and index files" "$(ls slices | wc -l)" 54
+is "the last slice is shown at 52 x 0.18 s" "$(tail -n 1 slices/frames.csv)" "00052.png,9.36,0"
+ok "model corrected slices" vam-curethrough model slices.exr --part ladder.vdb $light --plane corrected.png --report exact.json
+is "no cure-through" "$(json exact.json cure_through.voxels)" 0
+is "no undercure" "$(json exact.json undercured.voxels)" 0
+ok "model the 8-bit pictures" vam-curethrough model slices --part ladder.vdb $light --report grey.json
+is "8 bits: no undercure" "$(json grey.json undercured.voxels)" 0
+is "8 bits: no cure-through" "$(json grey.json cure_through.voxels)" 0
+holds "8 bits: height errors fall by more than 99 %" \
+  "$(json grey.json height_error.mean_error_um) < 0.01 * $(json ordinary.json height_error.mean_error_um)"
+
+# ---- an egg shell at the paper's h_a = 2000 um and 750 mm/h: at least 85 %
+quiet "slice an egg" vam-slice --shape egg-shell:length=7,diameter=5,wall=0.6,opening=1.5 --voxel 0.05 --stretch-z 1 -o egg.vdb
+ok "ordinary egg" vam-curethrough model egg.vdb $light --speed 750 --report egg0.json
+ok "corrected egg" vam-curethrough correct egg.vdb $light --speed 750 --png egg --report egg.json
+ok "its dose" vam-curethrough model egg --part egg.vdb $light --speed 750 --report egg1.json
+holds "height errors fall by 85 % and more" \
+  "$(json egg1.json height_error.mean_error_um) <= 0.15 * $(json egg0.json height_error.mean_error_um)"
+
+# ---- the forms of the output
+quiet "the response on the way out and in again" sh -c "printf 'grey,intensity\n0,0.2\n60,4\n128,25\n255,110\n' > response.csv &&
+  vam-curethrough correct ladder.vdb --max-intensity 110 --response response.csv --values grey -o grey.exr &&
+  vam-curethrough model grey.exr --part ladder.vdb --max-intensity 110 --response response.csv --report response.json >/dev/null"
+is "no cure-through after the round trip" "$(json response.json cure_through.voxels)" 0
+is "no undercure after the round trip" "$(json response.json undercured.voxels)" 0
+quiet "a stack of levels" vam-curethrough correct ladder.vdb $light --quantise -o levels.exr
+ok "is what the pictures show" vam-curethrough model levels.exr --part ladder.vdb $light --report levels.json
+is "same errors" "$(json levels.json height_error.mean_error_um)" "$(json grey.json height_error.mean_error_um)"
+quiet "platform at the top" vam-curethrough correct ladder.vdb $light --platform top -o top.exr
+ok "and back" vam-curethrough model top.exr --part ladder.vdb --platform top $light --report top.json
+is "no cure-through either" "$(json top.json cure_through.voxels)" 0
+quiet "omega-max" vam-curethrough correct ladder.vdb $light --omega-max inf -o inf.exr
+ok "a higher dose inside" vam-curethrough model inf.exr --part ladder.vdb $light --report inf.json
+is "and still no cure-through" "$(json inf.json cure_through.voxels)" 0
+quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure layered --speed 100 -o layered.exr
+ok "its dose" vam-curethrough model layered.exr --part ladder.vdb $light --report layered.json
+is "no undercure layer by layer" "$(json layered.json undercured.voxels)" 0
+is "no cure-through layer by layer" "$(json layered.json cure_through.voxels)" 0
+quiet "one thread" vam-curethrough correct ladder.vdb $light --threads 1 -o same.exr
+quiet "three threads" sh -c "mkdir three && cp ladder.vdb three && cd three && vam-curethrough correct ladder.vdb $light --threads 3 -o same.exr"
+sed 's/--threads 3/--threads 1/' <three/same.exr >three.exr
+same "the threads do not matter" same.exr three.exr
+quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame --set projector.pixel_mm=0.05 -o full.exr
+
+# ---- a catalogue
+printf 'name,absorbance_height_um,critical_dose_mj_cm3\nclear,2000,576\ndark,300,576\n' >resins.csv
+ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --speeds 1000,8000 --report catalogue.json
+holds "the darker resin keeps narrower gaps open" \
+  "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
+is "beyond the limit nothing prints" "$(json catalogue.json catalogue.1.prints)" false
+
+# ---- working curve, response, sweep
+printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n50,1175\n130,2004\n130,1996\n' >curve.csv
+ok "working curve" vam-curethrough working-curve curve.csv --plot curve.png --report curve.json
+holds "h_a" "$(json curve.json absorbance_height_um) > 1900 && $(json curve.json absorbance_height_um) < 2100"
+is "the logarithm is stated" "$(json curve.json logarithm_base)" 10
+printf 'grey,reading\n0,1.2\n64,6.3\n128,25\n192,58\n255,111\n' >diode.csv
+ok "response" vam-curethrough response diode.csv --dark 1 -o table.csv --plot response.png --report diode.json
+is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
+quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-intensity 110 --response table.csv -o x.exr
+ok "sweep" vam-curethrough sweep dc=4..6,omega_max=1/inf $light --plot sweep.png --report sweep.json
+holds "least error where the assumed dose is the real one" "$(json sweep.json points.2.ratio) < 0.001"
+holds "more below" "$(json sweep.json points.0.ratio) > 0.1"
+holds "more above" "$(json sweep.json points.4.ratio) > 0.1"
+
+# ---- what cannot be used
+fails 64 'no subcommand' vam-curethrough
+fails 65 'the minimum, 120 mW/cm2, must be at least 0 and below the maximum' \
+  vam-curethrough correct ladder.vdb --min-intensity 120 --max-intensity 110 -o no.exr
+fails 65 'slice height: 50 um is more than ten absorbance heights' \
+  vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr
+fails 65 'nothing cures; give more light or print slower' vam-curethrough correct ladder.vdb --max-intensity 10 -o no.exr
+printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
+fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
+printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
+fails 65 'the reading falls from 5 at grey 100 to 4 at grey 200' vam-curethrough response falling.csv -o no.csv
+printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n' >few.csv
+fails 65 '2 different exposures do not judge a line; measure at least 3' vam-curethrough working-curve few.csv --plot no.png
+printf 'exposure,thickness_um\n20,370\n' >names.csv
+fails 65 "no column 'exposure_mj_cm2'" vam-curethrough working-curve names.csv
+fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr
+fails 65 'do not belong to' vam-curethrough model full.exr --part ladder.vdb $light
+fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
+fails 73 'exists and is not an empty folder' vam-curethrough correct ladder.vdb $light --png slices
+fails 64 'the table goes to standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
+fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
+quiet "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
+fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --threshold 1 -o no.exr
+done_testing

@@ -1,0 +1,11 @@
+// Several resins for one part: how fast, and how narrow a gap stays open.
+#pragma once
+
+#include "vam-curethrough/subcommands.hpp"
+
+namespace vam::curethrough {
+
+/// Prints the table on standard output and returns it for the report.
+[[nodiscard]] Json compare(const Correct& options, const Print& print, const resin::PartColumns& part);
+
+}  // namespace vam::curethrough

@@ -1,0 +1,230 @@
+// Slices that cure the part and nothing else.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "io/picture.hpp"
+#include "io/report.hpp"
+#include "io/stream.hpp"
+#include "resin/gaps.hpp"
+#include "resin/slice_correction.hpp"
+#include "vam-curethrough/catalogue.hpp"
+#include "vam-curethrough/folder.hpp"
+#include "vam-curethrough/frame.hpp"
+#include "vam-curethrough/subcommands.hpp"
+
+namespace vam::curethrough {
+
+namespace {
+
+struct Job {
+  Print print;
+  resin::PartColumns columns;
+  resin::PartSurvey survey;
+  resin::GapReport gaps;
+  model::StackInfo info;
+  int slices = 0;  // the extra ones included
+};
+
+Json figures(const Correct& options, const Job& job) {
+  const double seconds = job.slices / frames_per_s(job.print.process);
+  Json report{{"process", to_json(job.print.process)}};
+  // JSON has no infinity.
+  report["omega_max"] = std::isfinite(options.limit.omega_max) ? Json(options.limit.omega_max) : Json("inf");
+  report["strong_base"] = options.limit.strong_base;
+  report["slices"] = job.columns.slices();
+  report["extra_slices"] = job.slices - job.columns.slices();
+  report["duration_s"] = seconds;
+  report["columns"] = job.survey.columns;
+  report["features"] = job.survey.features;
+  report["narrowest_gap_slices"] = job.gaps.narrowest;
+  report["infeasible"] = {{"columns", job.gaps.infeasible_columns},
+                          {"gaps", job.gaps.infeasible_gaps},
+                          {"worst_excess", job.gaps.infeasible_gaps > 0 ? job.gaps.worst_dose - 1 : 0}};
+  report["tight"] = {{"clear", options.clear},
+                     {"columns", job.gaps.tight_columns},
+                     {"gaps", job.gaps.tight_gaps},
+                     {"worst_dose", job.gaps.worst_dose}};
+  return report;
+}
+
+void write_mask(const std::string& path, const Image& mask) {
+  GreyImage picture(mask.width, mask.height, 8);
+  for (std::size_t p = 0; p < mask.size(); ++p) {
+    picture.values[p] = static_cast<std::uint16_t>(std::min(255, static_cast<int>(mask.values[p]) * 128));
+  }
+  io::write_png(path, picture);
+}
+
+std::vector<model::ImageInfo> time_stamps(const Job& job) {
+  std::vector<model::ImageInfo> about(static_cast<std::size_t>(job.slices));
+  for (std::size_t n = 0; n < about.size(); ++n) {
+    about[n].time_s = static_cast<double>(n) / frames_per_s(job.print.process);
+    about[n].has_time = true;
+  }
+  return about;
+}
+
+// Exact intensities, in printing order.
+void write_exact(const Correct& options, const Job& job, const Frame& frame, io::StackWriter& out) {
+  resin::SliceCorrection correction(job.columns, job.print.limits, options.limit, job.slices);
+  Progress progress("correcting", job.slices);
+  Image slice;
+  Image placed;
+  for (int n = 0; n < job.slices; ++n) {
+    correction.next(slice);
+    if (options.values == "grey") to_grey(slice, job.print.response);
+    out.write(frame.place(slice, placed));
+    progress.tick();
+  }
+}
+
+// Grey levels, chosen from the last slice up; all are kept until the stack can be written from the first down.
+std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
+                                  const FolderWriter* folder, const Frame& frame) {
+  std::vector<float> steps;
+  for (int v = 0; v < levels.count(); ++v) steps.push_back(levels.intensity(v));
+  resin::LevelCorrection correction(job.columns, job.print.limits, options.limit, job.slices, steps);
+  std::vector<GreyImage> kept(options.quantise ? static_cast<std::size_t>(job.slices) : 0);
+  GreyImage slice(job.columns.width(), job.columns.height(), job.print.printer.projector.bits);
+  Progress progress("correcting", job.slices);
+  const auto times = time_stamps(job);
+  for (int n = job.slices; n-- > 0;) {
+    correction.previous(slice.values);
+    GreyImage placed = frame.place(slice);
+    if (folder != nullptr) {
+      folder->write(n, placed,
+                    {{"vam:time_s", format_number(times[static_cast<std::size_t>(n)].time_s, 9)},
+                     {"vam:fps", format_number(frames_per_s(job.print.process), 9)},
+                     {"vam:history", job.info.history.back()}});
+    }
+    if (options.quantise) kept[static_cast<std::size_t>(n)] = std::move(placed);
+    progress.tick();
+  }
+  return kept;
+}
+
+void write_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
+                  const std::vector<GreyImage>& stack, io::StackWriter& out) {
+  Image image(job.info.width, job.info.height);
+  for (const GreyImage& slice : stack) {
+    for (std::size_t p = 0; p < image.size(); ++p) {
+      image.values[p] = options.values == "grey"
+                            ? static_cast<float>(slice.values[p]) / static_cast<float>(levels.count() - 1)
+                            : levels.intensity(slice.values[p]);
+    }
+    out.write(image);
+  }
+}
+
+void warn_of_gaps(const std::string& name, const Job& job) {
+  if (job.gaps.infeasible_columns == 0) return;
+  warn(name + ": " + std::to_string(job.gaps.infeasible_columns) + " of " + std::to_string(job.survey.columns) +
+       " columns have gaps of a single slice, in which no light keeps the dose below the critical one; they will fuse "
+       "(--mask shows them)");
+}
+
+Job prepare(const cli::App& root, const Correct& options, bool writes) {
+  const PartSource part(options.part);
+  const Print print = resolve(options.print, part.slice_um());
+  Job job{print, pack(part, print.process.exposure), {}, {}, {}, 0};
+  job.survey = resin::survey(job.columns);
+  if (job.survey.columns == 0) {
+    throw Error{Fault::data, part.name() + ": no voxel reaches a coverage of " + format_number(part.threshold()) +
+                                 "; there is nothing to print"};
+  }
+  if (writes) resin::require_printable(print.limits);
+  job.gaps = resin::judge_gaps(job.columns, print.limits, options.clear);
+  if (writes) warn_of_gaps(part.name(), job);
+  job.slices = job.columns.slices() + resin::extra_slices(job.survey.last_slice, job.columns.slices(), print.limits);
+  const model::Grid& grid = part.grid();
+  job.info.kind = model::Kind::frames;
+  job.info.space = model::Space::projector;
+  job.info.width = grid.nx;
+  job.info.height = grid.ny;
+  job.info.count = job.slices;
+  job.info.pixel_mm = job.info.row_mm = grid.voxel_mm;
+  job.info.z_start_mm = grid.y_mm(0);
+  job.info.units = options.values == "grey" ? "grey" : "fraction of full intensity";
+  job.info.extra = attributes(print.process);
+  job.info.history = part.history();
+  job.info.history.push_back(root.history());
+  return job;
+}
+
+}  // namespace
+
+void declare(cli::App& app, Correct& options) {
+  app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.");
+  cli::add_output(app, options.output);
+  app.option(
+      "--png", "FOLDER", options.png,
+      "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); then -o is off unless given.");
+  app.choice("--values", options.values, {"intensity", "grey"},
+             "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the "
+             "response.");
+  app.flag("--quantise", options.quantise,
+           "The stack holds the levels of the PNGs instead of exact values; all slices are then in memory (2 bytes a "
+           "pixel).");
+  app.flag("--full-frame", options.full_frame,
+           "Place the part in a picture of projector.columns x rows, the axis at axis_column, axis_row.");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  app.group("Correction");
+  app.option("--omega-max", "DOSE", options.limit.omega_max, {1, std::numeric_limits<double>::infinity()},
+             "Largest dose inside features, in critical doses; inf for no limit.");
+  app.flag(
+      "--strong-base", options.limit.strong_base,
+      "Features that stand on the platform get full light whatever --omega-max says: there is no resin behind them "
+      "to cure.");
+  app.option("--clear", "DOSE", options.clear, {0, 1, true},
+             "A gap whose dose nowhere falls to so many critical doses is reported as tight.");
+  add_part(app, options.part);
+  app.option("--mask", "FILE", options.mask,
+             "PNG of the columns: 0 fine or empty, 128 with a tight gap, 255 with a gap that must fuse.");
+  app.group("Catalogue");
+  app.option("--catalogue", "FILE", options.catalogue,
+             "CSV name,absorbance_height_um,critical_dose_mj_cm3: print a table that compares these resins for this "
+             "part; slices are then written only where -o or --png is given.");
+  app.option("--speeds", "MM_H,...", options.speeds_mm_h, 0,
+             "Speeds of the table; without them 20, 40, 60 and 80 % of each resin's limit.");
+  add_print(app, options.print);
+  app.group("Report and machine");
+  cli::add_report(app, options.report);
+  cli::add_threads(app);
+}
+
+void run(const cli::App& root, const cli::App& app, const Correct& options) {
+  const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
+  const bool pictures = !options.png.empty();
+  if (stack) io::refuse_same_file(options.part.path, options.output);
+  if (stack && !options.catalogue.empty() && options.output == "-") {
+    throw Error{Fault::usage, "--catalogue: the table goes to standard output; give -o a file name"};
+  }
+  if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: has a meaning only for a stack; give -o"};
+  Job job = prepare(root, options, stack || pictures);
+  Json report = figures(options, job);
+  if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.columns);
+
+  const double darkest = job.print.limits.phi_min / job.print.limits.phi_max;
+  const Frame frame(options.full_frame ? &job.print.printer.projector : nullptr, job.info,
+                    options.values == "grey" ? 0.0F : static_cast<float>(darkest));
+  frame.apply(job.info);
+  std::optional<io::StackWriter> out;
+  if (stack) out.emplace(options.output, job.info, time_stamps(job), options.stack);
+  std::optional<FolderWriter> folder;
+  if (pictures) folder.emplace(options.png);
+  if (pictures || options.quantise) {
+    const resin::GreyLevels levels(job.print.response, job.print.printer.projector.bits);
+    const auto kept = all_levels(options, job, levels, folder ? &*folder : nullptr, frame);
+    if (options.quantise) write_levels(options, job, levels, kept, *out);
+  }
+  if (stack && !options.quantise) write_exact(options, job, frame, *out);
+  if (folder) folder->commit(time_stamps(job));
+  if (out) out->commit();
+  if (!options.mask.empty()) write_mask(options.mask, job.gaps.mask);
+  io::write_report(options.report, "vam-curethrough-correct/1", report);
+}
+
+}  // namespace vam::curethrough

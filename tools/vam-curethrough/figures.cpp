@@ -1,0 +1,71 @@
+// Tables and JSON of the cure map.
+#include "vam-curethrough/figures.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "base/log.hpp"
+#include "io/stream.hpp"
+
+namespace vam::curethrough {
+
+void print_text(const std::string& text) {
+  io::OutputFile out("-", io::Content::text);
+  out.write(text);
+  out.commit();
+}
+
+Json to_json(const resin::CureTotals& totals, const resin::Process& process) {
+  const double voxel_mm3 = std::pow(process.slice_um * 1e-3, 3);
+  const auto entry = [&](std::int64_t voxels) {
+    return Json{{"voxels", voxels}, {"volume_mm3", static_cast<double>(voxels) * voxel_mm3}};
+  };
+  const auto errors = [&](const resin::FeatureErrors& e) {
+    const double per = e.features > 0 ? process.slice_um / static_cast<double>(e.features) : 0;
+    return Json{{"features", e.features},
+                {"mean_error_um", e.mean() * process.slice_um},
+                {"mean_cure_through_um", e.through * per},
+                {"mean_undercured_um", e.under * per},
+                {"worst_error_um", e.worst * process.slice_um}};
+  };
+  Json report{{"correctly_cured", entry(totals.correct)},
+              {"cure_through", entry(totals.through)},
+              {"undercured", entry(totals.under)},
+              {"height_error", errors(totals.all())}};
+  Json sizes = Json::array();
+  for (std::size_t h = 0; h < totals.by_height.size(); ++h) {
+    if (totals.by_height[h].features == 0) continue;
+    Json size{{"height_um", static_cast<double>(h) * process.slice_um}};
+    size.update(errors(totals.by_height[h]));
+    sizes.push_back(size);
+  }
+  report["height_error_by_size"] = sizes;
+  return report;
+}
+
+std::string table_of(const resin::CureTotals& totals, const resin::Process& process) {
+  const double voxel_mm3 = std::pow(process.slice_um * 1e-3, 3);
+  std::string text;
+  char line[160];
+  const auto count = [&](const char* what, std::int64_t voxels) {
+    std::snprintf(line, sizeof line, "%-16s %12lld voxels %12.4f mm3\n", what, static_cast<long long>(voxels),
+                  static_cast<double>(voxels) * voxel_mm3);
+    text += line;
+  };
+  count("correctly cured", totals.correct);
+  count("cure-through", totals.through);
+  count("undercured", totals.under);
+  text += "feature height   features   mean error  cure-through   undercured        worst  (um)\n";
+  for (std::size_t h = 0; h < totals.by_height.size(); ++h) {
+    const resin::FeatureErrors& e = totals.by_height[h];
+    if (e.features == 0) continue;
+    const double per = process.slice_um / static_cast<double>(e.features);
+    std::snprintf(line, sizeof line, "%14.6g %10lld %12.4g %13.4g %12.4g %12.4g\n",
+                  static_cast<double>(h) * process.slice_um, static_cast<long long>(e.features),
+                  e.mean() * process.slice_um, e.through * per, e.under * per, e.worst * process.slice_um);
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace vam::curethrough

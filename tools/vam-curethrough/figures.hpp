@@ -1,0 +1,37 @@
+// Tables and pictures of what was found.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "resin/cure_map.hpp"
+#include "resin/sweep.hpp"
+#include "resin/working_curve.hpp"
+#include "vam-curethrough/print.hpp"
+
+namespace vam::curethrough {
+
+/// An x-z plane, first slice at the top as in [CURE19 fig 2]: row n is slice n.
+struct Plane {
+  int row = 0;                // y of the plane
+  int column = 0;             // x of the curves
+  Image light;                // fractions of the maximum intensity
+  Image cure;                 // resin::Cure
+  Image solid;                // 1 in the part
+  std::vector<double> omega;  // at the slices' centres, in that column
+};
+
+void print_text(const std::string& text);
+[[nodiscard]] Json to_json(const resin::CureTotals& totals, const resin::Process& process);
+[[nodiscard]] std::string table_of(const resin::CureTotals& totals, const resin::Process& process);
+
+/// As [CURE19 fig 2b-d and 4a-c]: the slices, the cure map, grey and dose along the column.
+void draw_plane(const std::string& path, const Plane& plane, const Print& print);
+void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
+                        const resin::WorkingCurve& curve);
+void draw_response(const std::string& path, const model::ResponseTable& table);
+/// As [CURE19 fig 5c]: the ratio of height errors against the assumed critical dose.
+void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um);
+
+}  // namespace vam::curethrough

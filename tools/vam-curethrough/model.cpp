@@ -1,0 +1,252 @@
+// What a stack of slices, or a part sliced in the ordinary way, really cures.
+#include <algorithm>
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "io/report.hpp"
+#include "io/stream.hpp"
+#include "resin/cure_map.hpp"
+#include "resin/stack_dose.hpp"
+#include "vam-curethrough/figures.hpp"
+#include "vam-curethrough/slices.hpp"
+#include "vam-curethrough/subcommands.hpp"
+
+namespace vam::curethrough {
+
+namespace {
+
+constexpr int block = resin::StackDose::block_slices;
+
+bool is_volume(const std::string& path) { return path == "-" || (path.size() > 4 && path.ends_with(".vdb")); }
+
+// The ordinary slices of a part: full light in it, the least outside.
+Slices plain_slices(const std::shared_ptr<PartSource>& part, float dark) {
+  const model::Grid& grid = part->grid();
+  Slices slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
+  auto slab = std::make_shared<std::vector<float>>();
+  slices.read = [part, slab, dark](int n, Image& slice) {
+    const model::Grid& shape = part->grid();
+    if (n % block == 0) {
+      slab->resize(shape.slice_size() * block);
+      part->read(n, std::min(block, shape.nz - n), slab->data());
+    }
+    if (slice.width != shape.nx || slice.height != shape.ny) slice = Image(shape.nx, shape.ny);
+    const float* from = slab->data() + static_cast<std::size_t>(n % block) * shape.slice_size();
+    const auto threshold = static_cast<float>(part->threshold());
+    for (std::size_t p = 0; p < slice.size(); ++p) slice.values[p] = from[p] >= threshold ? 1.0F : dark;
+  };
+  return slices;
+}
+
+struct Inputs {
+  std::shared_ptr<PartSource> part;  // the design, null without one
+  Slices slices;
+  Print print;
+};
+
+// What the stack says of its print stands where the command line is silent.
+PrintOptions with_facts(const cli::App& app, PrintOptions options, const Slices& slices) {
+  const auto fact = [&](const char* name) {
+    const auto found = slices.facts.find(name);
+    return found == slices.facts.end() ? std::string() : found->second;
+  };
+  if (const auto speed = parse_number(fact("vam:speed_mm_h")); speed && *speed > 0 && !app.given("--speed")) {
+    options.speed_mm_h = *speed;
+  }
+  if (fact("vam:exposure") == "layered" && !app.given("--exposure")) options.exposure = "layered";
+  return options;
+}
+
+double slice_height_um(const Model& options, const Inputs& in) {
+  if (in.part) return in.part->slice_um();
+  if (options.slice_um) return *options.slice_um;
+  const auto fact = in.slices.facts.find("vam:slice_mm");
+  const auto height = fact == in.slices.facts.end() ? std::nullopt : parse_number(fact->second);
+  if (height && *height > 0) return *height * 1e3;
+  throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice or --part"};
+}
+
+Inputs open_inputs(const cli::App& app, const Model& options) {
+  Inputs in{nullptr, {}, resolve(options.print, 50)};
+  PartOptions design = options.part;
+  if (is_volume(options.input)) design.path = options.input;
+  if (!design.path.empty()) in.part = std::make_shared<PartSource>(design);
+  const bool plain = is_volume(options.input);
+  if (!plain) in.slices = open_slices(options.input, in.print.response);
+  const PrintOptions print = with_facts(app, options.print, in.slices);
+  in.print = resolve(print, slice_height_um(options, in));
+  if (plain) {
+    in.slices = plain_slices(in.part, static_cast<float>(in.print.limits.phi_min / in.print.limits.phi_max));
+    return in;
+  }
+  if (!in.part) return in;
+  const model::Grid& grid = in.part->grid();
+  if (grid.nx != in.slices.width || grid.ny != in.slices.height || grid.nz > in.slices.count) {
+    throw Error{Fault::data, in.slices.name + ": " + std::to_string(in.slices.count) + " slices of " +
+                                 std::to_string(in.slices.width) + " x " + std::to_string(in.slices.height) +
+                                 " pixels do not belong to " + in.part->name() + " of " + std::to_string(grid.nx) +
+                                 " x " + std::to_string(grid.ny) + " x " + std::to_string(grid.nz) + " voxels"};
+  }
+  return in;
+}
+
+// The second reading: everything that is worth knowing of a block of slices.
+class Judge {
+ public:
+  Judge(const Model& options, const Inputs& in) : in_(in), grid_(grid_of(in)), solid_(grid_.nx, grid_.ny) {
+    if (in.part) map_.emplace(grid_.nx, grid_.ny, in.slices.count, in.print.limits);
+    if (!options.output.empty()) dose_.emplace("dose", grid_);
+    plane_.row = options.row.value_or(grid_.ny / 2);
+    plane_.column = options.column.value_or(grid_.nx / 2);
+    if (plane_.row >= grid_.ny || plane_.column >= grid_.nx) {
+      throw Error{Fault::usage, "--row, --column: " + std::to_string(plane_.row) + ", " +
+                                    std::to_string(plane_.column) + " lies outside the slices of " +
+                                    std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny) + " pixels"};
+    }
+    plane_.light = plane_.cure = plane_.solid = Image(grid_.nx, in.slices.count);
+    plane_.omega.assign(static_cast<std::size_t>(in.slices.count), 0);
+  }
+
+  void add(int first, const std::vector<Image>& light, const std::vector<Image>& below) {
+    const std::size_t size = grid_.slice_size();
+    read_design(first, static_cast<int>(light.size()));
+    std::vector<float> centres(dose_ ? size * light.size() : 0);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const int n = first + static_cast<int>(i);
+      if (map_) {
+        std::copy_n(design_.begin() + static_cast<std::ptrdiff_t>(i * size), size, solid_.values.begin());
+        map_->add(light[i], in_.print.limits.phi_max, below[i], solid_);
+      }
+      keep_plane(n, light[i], below[i]);
+      if (dose_) fill_centres(light[i], below[i], centres.data() + i * size);
+    }
+    if (!dose_) return;
+    const int count = static_cast<int>(light.size());
+    if (in_.part) return in_.part->write(*dose_, first, count, centres);
+    dose_->write_slices(first, count, centres.data());
+  }
+
+  std::optional<resin::CureMap> map_;
+  std::optional<io::SparseVolume> dose_;
+  Plane plane_;
+
+ private:
+  static model::Grid grid_of(const Inputs& in) {
+    if (in.part) return in.part->extended(in.slices.count);
+    return model::centred_grid(in.slices.width, in.slices.height, in.slices.count, in.print.process.slice_um * 1e-3);
+  }
+
+  // Coverage as 0 or 1; slices beyond the part are empty.
+  void read_design(int first, int count) {
+    if (!in_.part) return;
+    const std::size_t size = grid_.slice_size();
+    design_.assign(size * static_cast<std::size_t>(count), 0.0F);
+    const int inside = std::clamp(in_.part->grid().nz - first, 0, count);
+    if (inside > 0) in_.part->read(first, inside, design_.data());
+    const auto threshold = static_cast<float>(in_.part->threshold());
+    parallel_for(count, [&](int i) {
+      float* slice = design_.data() + static_cast<std::size_t>(i) * size;
+      for (std::size_t p = 0; p < size; ++p) slice[p] = slice[p] >= threshold ? 1.0F : 0.0F;
+    });
+  }
+
+  void keep_plane(int n, const Image& light, const Image& below) {
+    const double full = in_.print.limits.phi_max;
+    for (int x = 0; x < grid_.nx; ++x) {
+      const double phi = full * static_cast<double>(light(x, plane_.row));
+      const double omega = resin::dose_at_centre(phi, static_cast<double>(below(x, plane_.row)), in_.print.limits);
+      const bool solid = map_ && solid_(x, plane_.row) >= 0.5F;
+      plane_.light(x, n) = light(x, plane_.row);
+      plane_.solid(x, n) = solid ? 1.0F : 0.0F;
+      const resin::Cure cure = resin::cure_of(omega, solid);
+      plane_.cure(x, n) = static_cast<float>(map_ || cure == resin::Cure::empty ? cure : resin::Cure::correct);
+      if (x == plane_.column) plane_.omega[static_cast<std::size_t>(n)] = omega;
+    }
+  }
+
+  void fill_centres(const Image& light, const Image& below, float* out) const {
+    parallel_for(light.height, [&](int y) {
+      for (std::size_t p = light.index(0, y); p < light.index(0, y) + static_cast<std::size_t>(light.width); ++p) {
+        const double phi = in_.print.limits.phi_max * static_cast<double>(light.values[p]);
+        out[p] = static_cast<float>(resin::dose_at_centre(phi, static_cast<double>(below.values[p]), in_.print.limits));
+      }
+    });
+  }
+
+  const Inputs& in_;
+  model::Grid grid_;
+  std::vector<float> design_;
+  Image solid_;
+};
+
+void read_twice(const Inputs& in, Judge& judge) {
+  resin::StackDose dose(in.print.limits, in.print.limits.phi_max);
+  Progress progress("reading twice", 2L * in.slices.count);
+  Image slice;
+  for (int n = 0; n < in.slices.count; ++n, progress.tick()) {
+    in.slices.read(n, slice);
+    dose.add(slice);
+  }
+  dose.turn();
+  std::vector<Image> light;
+  std::vector<Image> below;
+  for (int n = 0; n < in.slices.count; n += block) {
+    light.resize(static_cast<std::size_t>(std::min(block, in.slices.count - n)));
+    for (std::size_t i = 0; i < light.size(); ++i, progress.tick()) {
+      in.slices.read(n + static_cast<int>(i), light[i]);
+    }
+    dose.replay(light, below);
+    judge.add(n, light, below);
+  }
+}
+
+}  // namespace
+
+void declare(cli::App& app, Model& options) {
+  options.part.path.clear();
+  app.positional("SLICES", options.input,
+                 "EXR frame stack, folder of numbered pictures, or a target volume (.vdb, or standard input): full "
+                 "light in the part, the least outside.");
+  app.option("-o,--output", "FILE", options.output,
+             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the voxels' centres).");
+  app.option("--part", "FILE", options.part.path, "The part that the slices are meant to give, for the cure map.");
+  add_part(app, options.part);
+  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of pictures without --part.");
+  app.group("Picture");
+  app.option("--plane", "FILE", options.plane,
+             "PNG of an x-z plane: slices, cure map, and light and dose along one column.");
+  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the plane; without it the middle one.");
+  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves; without it the middle one.");
+  add_print(app, options.print);
+  app.group("Report and machine");
+  cli::add_report(app, options.report);
+  cli::add_threads(app);
+}
+
+void run(const cli::App& root, const cli::App& app, const Model& options) {
+  if (!options.output.empty()) io::refuse_same_file(options.input, options.output);
+  const Inputs in = open_inputs(app, options);
+  Judge judge(options, in);
+  read_twice(in, judge);
+  if (judge.dose_) {
+    judge.dose_->units = "critical doses";
+    judge.dose_->history = in.slices.history;
+    judge.dose_->history.push_back(root.history());
+    judge.dose_->metadata = attributes(in.print.process);
+    judge.dose_->metadata["vam:critical_dose_mj_cm3"] = format_number(in.print.process.critical_dose_mj_cm3, 9);
+    io::write_volume(options.output, *judge.dose_);
+  }
+  Json report{{"process", to_json(in.print.process)}, {"slices", in.slices.count}};
+  if (judge.map_) {
+    const resin::CureTotals totals = judge.map_->finish();
+    report.update(to_json(totals, in.print.process));
+    if (options.output.empty() && options.report != "-") print_text(table_of(totals, in.print.process));
+  }
+  if (!options.plane.empty()) draw_plane(options.plane, judge.plane_, in.print);
+  io::write_report(options.report, "vam-curethrough-model/1", report);
+}
+
+}  // namespace vam::curethrough

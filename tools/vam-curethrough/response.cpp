@@ -1,0 +1,49 @@
+// The projector's grey response from photodiode readings.
+#include <cmath>
+
+#include "base/log.hpp"
+#include "io/csv_table.hpp"
+#include "io/report.hpp"
+#include "io/stream.hpp"
+#include "resin/response_fit.hpp"
+#include "vam-curethrough/figures.hpp"
+#include "vam-curethrough/subcommands.hpp"
+
+namespace vam::curethrough {
+
+void declare(cli::App& app, GreyResponse& options) {
+  app.positional("DATA", options.input, "CSV with the columns grey,reading; a line for each repeat.");
+  cli::add_output(app, options.output);
+  app.option("--dark", "READING", options.dark, cli::any, "What the diode reads without light; subtracted.");
+  app.option("--scale", "MW_CM2", options.scale, cli::positive, "Intensity of one unit of reading.");
+  app.option("--plot", "FILE", options.plot, "PNG of the readings' means and the curve through them.");
+  cli::add_report(app, options.report);
+}
+
+void run(const cli::App& root, const cli::App&, const GreyResponse& options) {
+  const io::CsvTable csv = io::read_csv(options.input, {"grey", "reading"});
+  std::vector<resin::PhotodiodeReading> readings;
+  for (std::size_t row = 0; row < csv.rows.size(); ++row) readings.push_back({csv.number(row, 0), csv.number(row, 1)});
+  resin::ResponseFit fit = resin::fit_response(readings, options.dark, csv.source);
+  std::string text = "# " + root.history() + "\ngrey,intensity\n";
+  for (std::size_t i = 0; i < fit.table.grey.size(); ++i) {
+    fit.table.intensity[i] *= options.scale;
+    text += format_number(fit.table.grey[i], 9) + "," + format_number(fit.table.intensity[i], 9) + "\n";
+  }
+  io::OutputFile out(options.output, io::Content::text);
+  out.write(text);
+  out.commit();
+  if (!options.plot.empty()) draw_response(options.plot, fit.table);
+  Json report{{"levels", fit.table.grey.size()},
+              {"readings", readings.size()},
+              {"contrast", nullptr},
+              {"gamma", fit.gamma},
+              {"noise", fit.noise},
+              {"pooled_levels", fit.pooled},
+              {"min_intensity", fit.table.intensity.front()},
+              {"max_intensity", fit.table.intensity.back()}};
+  if (std::isfinite(fit.contrast)) report["contrast"] = fit.contrast;
+  io::write_report(options.report, "vam-curethrough-response/1", report);
+}
+
+}  // namespace vam::curethrough

@@ -1,0 +1,70 @@
+#include "vam-curethrough/slices.hpp"
+
+#include <filesystem>
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "io/exr_stack.hpp"
+#include "io/picture.hpp"
+
+namespace vam::curethrough {
+
+namespace {
+
+Slices from_folder(const std::string& path, const resin::Response& response) {
+  auto folder = std::make_shared<io::PictureFolder>(path);
+  const GreyImage first = folder->read(0);
+  std::vector<float> light;
+  for (int v = 0; v <= first.full(); ++v) {
+    light.push_back(static_cast<float>(response.intensity(static_cast<double>(v) / first.full())));
+  }
+  Slices slices{path, first.width, first.height, folder->count(), {}, {}, {}};
+  slices.read = [folder, light, path](int n, Image& slice) {
+    const GreyImage grey = folder->read(n);
+    slice = Image(grey.width, grey.height);
+    for (std::size_t p = 0; p < slice.size(); ++p) {
+      if (grey.values[p] >= light.size()) {
+        throw Error{Fault::data, folder->path(n) + ": has more grey levels than the first picture"};
+      }
+      slice.values[p] = light[grey.values[p]];
+    }
+  };
+  return slices;
+}
+
+void to_intensity(Image& slice, const resin::Response& response) {
+  parallel_for(slice.height, [&](int y) {
+    float grey = -1;
+    float intensity = 0;
+    for (float* pixel = slice.row(y); pixel != slice.row(y) + slice.width; ++pixel) {
+      if (*pixel != grey) {
+        grey = *pixel;
+        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
+      }
+      *pixel = intensity;
+    }
+  });
+}
+
+Slices from_stack(const std::string& path, const resin::Response& response) {
+  auto reader = std::make_shared<std::unique_ptr<io::StackReader>>(std::make_unique<io::StackReader>(path));
+  const model::StackInfo info = (*reader)->info();
+  io::require(path, info, model::Kind::frames, model::Space::projector);
+  Slices slices{path, info.width, info.height, info.count, info.extra, info.history, {}};
+  slices.read = [reader, path, response, grey = info.units == "grey"](int n, Image& slice) {
+    if (n == 0) *reader = std::make_unique<io::StackReader>(path);
+    model::ImageInfo about;
+    if (!(*reader)->next(slice, about)) throw Error{Fault::bug, path + ": fewer slices than announced"};
+    if (grey) to_intensity(slice, response);
+  };
+  return slices;
+}
+
+}  // namespace
+
+Slices open_slices(const std::string& path, const resin::Response& response) {
+  return std::filesystem::is_directory(path) ? from_folder(path, response) : from_stack(path, response);
+}
+
+}  // namespace vam::curethrough

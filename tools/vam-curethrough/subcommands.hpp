@@ -1,0 +1,80 @@
+// vam-curethrough's subcommands: each declares its options and runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/exr_stack.hpp"
+#include "resin/target_dose.hpp"
+#include "vam-curethrough/print.hpp"
+
+namespace vam::curethrough {
+
+struct Correct {
+  PartOptions part;
+  PrintOptions print;
+  std::string output = "-";
+  std::string png;
+  std::string mask;
+  std::string values = "intensity";
+  resin::DoseLimit limit;
+  double clear = 0.5;
+  bool quantise = false;
+  bool full_frame = false;
+  std::string catalogue;
+  std::vector<double> speeds_mm_h;
+  std::string report;
+  // Rows are runs of few values, on which ZIP is small and fast; RLE does not see the period of a float's four bytes.
+  io::StackOptions stack{false, "zip"};
+};
+void declare(cli::App& app, Correct& options);
+void run(const cli::App& root, const cli::App& app, const Correct& options);
+
+struct Model {
+  std::string input = "-";
+  PartOptions part;
+  PrintOptions print;
+  std::string output;
+  std::string plane;
+  std::optional<int> row;
+  std::optional<int> column;
+  std::optional<double> slice_um;
+  std::string report;
+};
+void declare(cli::App& app, Model& options);
+void run(const cli::App& root, const cli::App& app, const Model& options);
+
+struct WorkingCurve {
+  std::string input = "-";
+  double confidence = 0.95;
+  std::string plot;
+  std::string report;
+};
+void declare(cli::App& app, WorkingCurve& options);
+void run(const cli::App& root, const cli::App& app, const WorkingCurve& options);
+
+struct GreyResponse {
+  std::string input = "-";
+  std::string output = "-";
+  double dark = 0;
+  double scale = 1;
+  std::string plot;
+  std::string report;
+};
+void declare(cli::App& app, GreyResponse& options);
+void run(const cli::App& root, const cli::App& app, const GreyResponse& options);
+
+struct Sweep {
+  PrintOptions print;
+  std::string ranges = "dc=1..8,omega_max=1..5";
+  std::vector<double> heights{4, 6, 8, 10, 14, 20, 40};
+  double slice_um = 50;
+  std::optional<double> gel_dose_mj_cm3;
+  std::string plot;
+  std::string report;
+};
+void declare(cli::App& app, Sweep& options);
+void run(const cli::App& root, const cli::App& app, const Sweep& options);
+
+}  // namespace vam::curethrough
