@@ -51,7 +51,7 @@ TEST_CASE("a table of numbers alone needs no header") {
 }
 
 TEST_CASE("damaged tables say where") {
-  CHECK(message("remark,note\n1,2\n") == ":1: no column 'b'; the header must name a,b");
+  CHECK(message("remark,note\n1,2\n") == ":1: no column 'a'; the header must name a,b");
   CHECK(message("a,b\n1\n") == ":2: 1 cells; give a,b");
   CHECK(message("a,b\n1,two\n") == ":2: b 'two' is not a number");
   CHECK(message("a,b\n1,inf\n") == ":2: b 'inf' is not a number");
