@@ -62,7 +62,7 @@ cli::Manual manual() {
        "a cavity where the inner shell faces inwards in the file. What was done is said in a warning. When holes "
        "remain, inside is decided by a vote: along x, y and z each, windings are counted from both ends of every row "
        "of voxels, and the median decides. A surface that encloses nothing is an error.",
-       "The light of a projector that is not telecentric is magnified vertically by the vial, M_vp < 1 (Orth et al. "
+       "The vial shrinks the picture of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. "
        "2022). The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the "
        "print comes out in its true height. --stretch-z 1 switches this off. The factor is recorded as vam:stretch_z."},
       {{"The gyroid of Orth et al. 2022, cell 7 mm, sheet 1 mm, in a cylinder of 14 mm x 10 mm:",
@@ -73,7 +73,7 @@ cli::Manual manual() {
        {"A handle to be printed around the shaft of a screwdriver:",
         "vam-slice --shape handle --insert-shape screwdriver --voxel 0.13 -o handle.vdb"}},
       {},
-      {"vam-sinogram", "vam-optimize", "vam-view", "vam-sdf"}};
+      {"vam-optimize", "vam-sdf", "vam-sinogram", "vam-view"}};
   manual.notes = {
       "Accuracy: coverage by a closed mesh is exact (divergence theorem on triangles cut to voxels; 1e-6). Where the "
       "surfaces of two overlapping solids cross within a voxel its coverage is their sum, at most 1. With holes of 8 % "
@@ -207,35 +207,6 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
   return volume;
 }
 
-Json figures(const solid::Part& part, const solid::Content& content, const model::Grid& grid, double stretch_z,
-             const solid::Writable& room) {
-  const solid::Point size = part.extent.box.size();
-  Json report{{"volume_mm3", content.volume_mm3 / stretch_z},  // of the print, not of the stretched target
-              {"size_mm", {size[0], size[1], size[2] / stretch_z}},
-              {"radius_mm", part.extent.radius_mm},
-              {"writable_radius_mm", room.radius_mm},
-              {"stretch_z", stretch_z},
-              {"voxel_mm", grid.voxel_mm},
-              {"voxels", {grid.nx, grid.ny, grid.nz}},
-              {"interior_voxels", content.solid_voxels},
-              {"surface_voxels", content.surface_voxels}};
-  if (part.repair) {
-    const solid::Repair& done = *part.repair;
-    report["repair"] = {{"closed", done.closed()},
-                        {"points_welded", done.points_welded},
-                        {"weld_distance_mm", done.weld_distance},
-                        {"degenerate_dropped", done.degenerate_dropped},
-                        {"duplicates_dropped", done.duplicates_dropped},
-                        {"triangles_flipped", done.flipped},
-                        {"components", done.components},
-                        {"cavities", done.cavities},
-                        {"open_edges", done.open_edges},
-                        {"crowded_edges", done.crowded_edges},
-                        {"undecided_voxels", content.vote.undecided}};
-  }
-  return report;
-}
-
 void run(const cli::App& app, Options& options) {
   check(app, options);
   const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
@@ -268,7 +239,7 @@ void run(const cli::App& app, Options& options) {
   solid::Content content;
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", part, grid, content));
-  const Json report = figures(part, content, grid, placement.stretch_z, room);
+  const Json report = solid::figures(part, content, grid, placement.stretch_z, room);
   if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
   for (io::SparseVolume& volume : volumes) {
     volume.history.push_back(app.history());

@@ -87,4 +87,33 @@ Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   return content;
 }
 
+Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
+             const Writable& room) {
+  const Point size = part.extent.box.size();
+  Json report{{"volume_mm3", content.volume_mm3 / stretch_z},  // of the print, not of the stretched target
+              {"size_mm", {size[0], size[1], size[2] / stretch_z}},
+              {"radius_mm", part.extent.radius_mm},
+              {"writable_radius_mm", room.radius_mm},
+              {"stretch_z", stretch_z},
+              {"voxel_mm", grid.voxel_mm},
+              {"voxels", {grid.nx, grid.ny, grid.nz}},
+              {"interior_voxels", content.solid_voxels},
+              {"surface_voxels", content.surface_voxels}};
+  if (part.repair) {
+    const Repair& done = *part.repair;
+    report["repair"] = {{"closed", done.closed()},
+                        {"points_welded", done.points_welded},
+                        {"weld_distance_mm", done.weld_distance},
+                        {"degenerate_dropped", done.degenerate_dropped},
+                        {"duplicates_dropped", done.duplicates_dropped},
+                        {"triangles_flipped", done.flipped},
+                        {"components", done.components},
+                        {"cavities", done.cavities},
+                        {"open_edges", done.open_edges},
+                        {"crowded_edges", done.crowded_edges},
+                        {"undecided_voxels", content.vote.undecided}};
+  }
+  return report;
+}
+
 }  // namespace vam::solid

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/image.hpp"
+#include "base/json.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "solid/placement.hpp"
@@ -58,5 +59,9 @@ struct Content {
 
 /// Fills the grid and hands each slab on. Throws Fault::data when nothing is covered.
 Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink);
+
+/// What --report says: volume and size of the print (not of the stretched target), the grid, repairs.
+[[nodiscard]] Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
+                           const Writable& room);
 
 }  // namespace vam::solid

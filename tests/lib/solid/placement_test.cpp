@@ -1,0 +1,122 @@
+// Where parts land, and which grid holds them.
+#include "solid/placement.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "oracle/meshes.hpp"
+#include "solid/shapes.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+
+namespace {
+
+const Writable room{8, -20, 20};
+
+Extent placed(model::TriangleSoup mesh, const Placement& placement) {
+  transform(mesh, place(mesh, placement, room, "test"));
+  return extent(mesh);
+}
+
+std::string data_error(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    CHECK(error.fault == Fault::data);
+    return error.what();
+  }
+  FAIL("no error");
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("rotations are right-handed, about x, then y, then z; quarter turns are exact") {
+  CHECK(rotation({90, 0, 0})({0, 1, 0}) == Point{0, 0, 1});
+  CHECK(rotation({0, 90, 0})({0, 0, 1}) == Point{1, 0, 0});
+  CHECK(rotation({0, 0, 90})({1, 0, 0}) == Point{0, 1, 0});
+  CHECK(rotation({90, 0, 90})({0, 1, 0}) == Point{0, 0, 1});  // y to z, which z leaves alone
+  const Affine turn = rotation({10, 20, 30});
+  const Point there{1, 2, 3};
+  const Point back = inverse(turn)(turn(there));
+  for (std::size_t a = 0; a < 3; ++a) CHECK(back[a] == doctest::Approx(there[a]));
+}
+
+TEST_CASE("scale, rotate, fit, centre, stretch, in this order") {
+  const model::TriangleSoup brick = oracle::box({10, 10, 10}, {12, 14, 11});
+  Placement placement;
+  placement.centre = false;
+  CHECK(placed(brick, placement).box.high == Point{12, 14, 11});
+  placement.scale = 2;
+  CHECK(placed(brick, placement).box.high == Point{24, 28, 22});
+  placement.centre = true;
+  CHECK(placed(brick, placement).box.high == Point{2, 4, 1});
+  placement.rotate_deg = {90, 0, 0};  // its length stands up
+  CHECK(placed(brick, placement).box.high == Point{2, 1, 4});
+  placement.fit_mm = 4;
+  CHECK(placed(brick, placement).box.high == Point{1, 0.5, 2});
+  placement.stretch_z = 1.25;
+  CHECK(placed(brick, placement).box.high == Point{1, 0.5, 2.5});
+}
+
+TEST_CASE("to fit the writable cylinder") {
+  Placement placement;
+  placement.fit_writable = true;
+  placement.stretch_z = 1.1;
+  const Extent flat = placed(oracle::box({0, 0, 0}, {6, 8, 1}), placement);
+  CHECK(flat.radius_mm == doctest::Approx(8));  // bound by the circle
+  const Extent tall = placed(oracle::box({0, 0, 0}, {1, 1, 30}), placement);
+  CHECK(tall.box.high[2] == doctest::Approx(20));  // bound by the rows, after stretching
+  const Field shape = make_shape("hollow-cylinder");
+  CHECK(transformed(shape, place(shape, placement, room, "test")).radius_mm == doctest::Approx(8).epsilon(1e-4));
+}
+
+TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
+  Extent part;
+  part.box.add({-1.23, -2.01, -0.77});
+  part.box.add({1.23, 2.01, 3.14});
+  part.radius_mm = 2.36;
+  const model::Grid grid = grid_around(part, 0.1, 0, {}, "test");
+  CHECK(grid.nx == grid.ny);
+  CHECK(grid.nx == 2 * 25);
+  CHECK(grid.x_mm(0) == doctest::Approx(-grid.x_mm(grid.nx - 1)));
+  CHECK(grid.z_mm(-0.5) == doctest::Approx(-0.8));
+  CHECK(grid.z_mm(grid.nz - 0.5) == doctest::Approx(3.2));
+  CHECK(grid_around(part, 0.1, 8.3, {}, "test").nx == 2 * 84);
+  const model::Grid odd = grid_around(part, 0.1, 0, {true, 0.5}, "test");
+  CHECK(odd.nx % 2 == 1);
+  CHECK(odd.x_mm(odd.nx / 2) == doctest::Approx(0));
+  CHECK(odd.x_mm(odd.nx - 0.5) >= part.radius_mm);
+  CHECK(odd.z_mm(-0.5) == doctest::Approx(-0.85));
+  CHECK(data_error([&] { (void)grid_around(part, 1e-3, 0, {}, "test"); }).find("4096") != std::string::npos);
+}
+
+TEST_CASE("a part that leaves the writable cylinder is refused with both numbers") {
+  const model::Printer printer;
+  const Writable real = writable(printer);
+  CHECK(real.radius_mm == doctest::Approx(12.7 / 1.53));
+  CHECK(real.high_mm - real.low_mm == doctest::Approx(768 * 0.065));
+  CHECK(real.high_mm == doctest::Approx(-real.low_mm));
+  Extent part;
+  part.box.add({-9, -1, -1});
+  part.box.add({9, 1, 1});
+  part.radius_mm = 9.055;
+  CHECK(data_error([&] {
+          require_writable(part, real, "part");
+        }).find("9.055 mm from the axis, beyond the writable radius of 8.301 mm") != std::string::npos);
+  part.radius_mm = 8;
+  part.box.high[2] = 26;
+  CHECK(data_error([&] {
+          require_writable(part, real, "part");
+        }).find("26 mm, but the projector's rows cover -24.96 ... 24.96 mm") != std::string::npos);
+}
+
+TEST_CASE("a mirror turns triangles over, so that outside stays outside") {
+  model::TriangleSoup mesh = oracle::box({-1, -1, -1}, {1, 1, 1});
+  transform(mesh, scaling({-1, 1, 1}));
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+}

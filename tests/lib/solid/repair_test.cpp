@@ -1,0 +1,165 @@
+// What repair finds and does, counted on meshes with known damage.
+#include "solid/repair.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "oracle/meshes.hpp"
+
+using namespace vam;
+using namespace vam::solid;
+using model::TriangleSoup;
+
+namespace {
+
+const TriangleSoup cube = oracle::box({-1, -1, -1}, {1, 1, 1});
+
+Repair repaired(TriangleSoup& mesh) { return repair(mesh, "test"); }
+Repair repaired_copy(TriangleSoup mesh) { return repair(mesh, "test"); }
+
+}  // namespace
+
+TEST_CASE("a sound mesh is left as it is") {
+  TriangleSoup mesh = cube;
+  const Repair done = repaired(mesh);
+  CHECK(done.closed());
+  CHECK_FALSE(done.changed());
+  CHECK(done.summary().empty());
+  CHECK(done.components == 1);
+  CHECK(mesh.triangles.size() == 12);
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+}
+
+TEST_CASE("equal points are welded, 0 and -0 too, and unused ones dropped") {
+  TriangleSoup mesh = oracle::unwelded(oracle::box({0, 0, 0}, {1, 1, 1}));
+  for (std::size_t i = 0; i < mesh.points.size(); i += 2) {
+    for (double& c : mesh.points[i]) {
+      if (c == 0) c = -0.0;
+    }
+  }
+  mesh.points.push_back({7, 7, 7});
+  const Repair done = repaired(mesh);
+  CHECK(mesh.points.size() == 8);
+  CHECK(done.points_welded == 36 - 8);
+  CHECK(done.closed());
+  CHECK_FALSE(done.changed());  // every STL file needs this; it is no repair to talk about
+}
+
+TEST_CASE("cracks are welded, features are not") {
+  TriangleSoup mesh = oracle::cracked(oracle::sphere(10, 20), 1e-4, 1);
+  const Repair done = repaired(mesh);
+  CHECK(done.closed());
+  CHECK(done.weld_distance > 2e-4);
+  CHECK(done.weld_distance < 0.0035);  // 1e-4 of the diagonal
+  CHECK(mesh.points.size() == oracle::sphere(10, 20).points.size());
+  // Two sheets a hair apart keep their points: nothing but borders is joined, at a fifth of their edges at most.
+  TriangleSoup wall = oracle::box({0, 0, 0}, {10, 10, 1e-4});
+  CHECK(repaired(wall).weld_distance == 0);
+  CHECK(wall.points.size() == 8);
+}
+
+TEST_CASE("degenerate and duplicate triangles go") {
+  TriangleSoup mesh = cube;
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.triangles.push_back({mesh.triangles[3][1], mesh.triangles[3][2], mesh.triangles[3][0]});  // a copy
+  mesh.triangles.push_back({mesh.triangles[5][0], mesh.triangles[5][2], mesh.triangles[5][1]});  // a copy turned over
+  const Repair done = repaired(mesh);
+  CHECK(done.degenerate_dropped == 1);
+  CHECK(done.duplicates_dropped == 2);
+  CHECK(mesh.triangles.size() == 12);
+  CHECK(done.closed());
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+}
+
+TEST_CASE("a wall of no thickness between closed surfaces goes, both sides of it") {
+  // Two cubes side by side, each with its own face where they touch: the two copies cancel.
+  TriangleSoup mesh = oracle::join(cube, cube, {2, 0, 0});
+  const Repair done = repaired(mesh);
+  CHECK(done.closed());
+  CHECK(done.duplicates_dropped == 4);
+  CHECK(done.components == 1);
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(16));
+}
+
+TEST_CASE("a surface in both orientations at once is kept once") {
+  TriangleSoup mesh = oracle::join(cube, oracle::flipped(cube, 1, 1));
+  const Repair done = repaired(mesh);
+  CHECK(done.duplicates_dropped == 12);
+  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+}
+
+TEST_CASE("orientation: one triangle, all of them, and one of two solids") {
+  for (const double share : {0.1, 1.0}) {
+    TriangleSoup mesh = oracle::flipped(oracle::sphere(3, 20), share, 4);
+    CHECK(repaired(mesh).closed());
+    CHECK(oracle::signed_volume(mesh) == doctest::Approx(oracle::signed_volume(oracle::sphere(3, 20))));
+  }
+  TriangleSoup two = oracle::join(cube, oracle::flipped(cube, 1, 1), {5, 0, 0});
+  const Repair done = repaired(two);
+  CHECK(done.flipped == 12);
+  CHECK(done.components == 2);
+  CHECK(done.cavities == 0);
+  CHECK(oracle::signed_volume(two) == doctest::Approx(16));
+}
+
+TEST_CASE("cavities and islands keep their sense, in files that are inside out too") {
+  const TriangleSoup large = oracle::box({-3, -3, -3}, {3, 3, 3});
+  const TriangleSoup island = oracle::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+  const TriangleSoup nest = oracle::join(oracle::join(large, oracle::flipped(cube, 1, 1)), island);
+  for (const double share : {0.0, 1.0}) {
+    TriangleSoup mesh = oracle::flipped(nest, share, 1);
+    const Repair done = repaired(mesh);
+    CHECK(done.cavities == 1);
+    CHECK(oracle::signed_volume(mesh) == doctest::Approx(216 - 8 + 1));
+  }
+  // The box of one holds that of the other, but not its body: a ring's middle is outside.
+  TriangleSoup frame =
+      oracle::join(oracle::join(oracle::box({-3, 2, -3}, {3, 3, 3}), oracle::box({-3, -3, -3}, {3, -2, 3})),
+                   oracle::flipped(cube, 1, 1));
+  CHECK(repaired(frame).cavities == 0);
+}
+
+TEST_CASE("open, crowded and unorientable edges are counted") {
+  TriangleSoup lidless = cube;
+  lidless.triangles.pop_back();
+  const Repair open = repaired(lidless);
+  CHECK(open.open_edges == 3);
+  CHECK_FALSE(open.closed());
+  CHECK(open.summary() == "3 open edges remain");
+
+  // Two cubes that share one edge only: closed, though four triangles meet there.
+  const Repair edge = repaired_copy(oracle::join(cube, cube, {2, 2, 0}));
+  CHECK(edge.crowded_edges == 1);
+  CHECK(edge.closed());
+
+  // A Moebius strip of five quadrilaterals.
+  TriangleSoup strip;
+  for (int i = 0; i < 5; ++i) {
+    const double a = 1.2566370614359172 * i;
+    for (const double side : {-0.4, 0.4}) {
+      strip.points.push_back({(2 + side * std::cos(a / 2)) * std::cos(a), (2 + side * std::cos(a / 2)) * std::sin(a),
+                              side * std::sin(a / 2)});
+    }
+  }
+  for (int i = 0; i < 5; ++i) {
+    const int p = 2 * i;
+    const int q = i < 4 ? 2 * i + 2 : 1;  // the last joins the first upside down
+    const int r = i < 4 ? 2 * i + 3 : 0;
+    strip.triangles.push_back({p, q, p + 1});
+    strip.triangles.push_back({p + 1, q, r});
+  }
+  CHECK(repaired(strip).unorientable == 1);
+}
+
+TEST_CASE("a mesh without surface is an error") {
+  TriangleSoup mesh{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}};
+  try {
+    (void)repaired(mesh);
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.fault == Fault::data);
+  }
+}
