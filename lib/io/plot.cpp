@@ -125,16 +125,22 @@ void draw_legend(Canvas& canvas, const Frame& frame, const Plot& plot) {
   }
 }
 
+// All lines come before all words, so that no line runs through a word.
 void draw_markers(Canvas& canvas, const Frame& frame, const std::vector<Marker>& markers) {
-  double y = frame.top + 20;
   for (const auto& marker : markers) {
     const double x = frame.spot_x(marker.x);
     if (x < frame.left || x > frame.right) continue;
     canvas.dashed({x, frame.top}, {x, frame.bottom}, marker.colour, 1.5);
-    const bool to_the_left =
-        x + Canvas::text_width(marker.words, label_size) + 12 > frame.left + 0.6 * (frame.right - frame.left);
-    canvas.text({to_the_left ? x - 6 : x + 6, y}, marker.words, label_size, marker.colour,
-                to_the_left ? Align::end : Align::begin);
+  }
+  double y = frame.top + 20;
+  for (const auto& marker : markers) {
+    const double x = frame.spot_x(marker.x);
+    if (x < frame.left || x > frame.right) continue;
+    const double width = Canvas::text_width(marker.words, label_size);
+    const bool to_the_left = x + width + 12 > frame.left + 0.6 * (frame.right - frame.left);
+    const double left = to_the_left ? x - 8 - width : x + 8;
+    canvas.fill({left - 3, y - 10}, {left + width + 3, y + 10}, paint::white, 0.85);
+    canvas.text({left, y}, marker.words, label_size, marker.colour);
     y += 22;
   }
 }

@@ -24,6 +24,7 @@ is "the index" "$(sed -n '1p;3p' frames/frames.csv | tr '\n' ' ')" "file,time_s,
 is "history in the picture" "$($png text frames/00000.png Comment | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
 ok "an EXR stack" vam-project part.exr -o frames.exr --compression none
 is "frames of the projector" "$($exr attr frames.exr vam:kind) $($exr attr frames.exr vam:space)" "frames projector"
+is "row 0 is at the top: z = 5 rows of 0.26 mm" "$($exr attr frames.exr vam:z_mm) $($exr attr frames.exr vam:row_mm)" "1.3 -0.26"
 vam-project <part.exr >pipe.exr
 is "stdin and stdout give the same pixels" "$($exr sum pipe.exr)" "$($exr sum frames.exr)"
 ok "a lossless video" vam-project part.exr -o print.mkv
