@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "base/log.hpp"
-#include "io/chart.hpp"
+#include "io/canvas.hpp"
 #include "io/picture.hpp"
+#include "io/plot.hpp"
 #include "resin/student.hpp"
 #include "vam-curethrough/figures.hpp"
 
@@ -13,16 +14,14 @@ namespace vam::curethrough {
 
 namespace {
 
-constexpr Rgb white{255, 255, 255};
-constexpr Rgb black{0, 0, 0};
-constexpr Rgb grey{150, 150, 150};
+namespace paint = io::paint;
+
+constexpr Rgb cured{150, 150, 150};
 constexpr Rgb red{214, 39, 40};
-constexpr Rgb blue{31, 90, 180};
-constexpr Rgb pale{235, 235, 235};
-constexpr Rgb pale_blue{212, 226, 245};
+constexpr Rgb shade{235, 235, 235};
 
 // Empty, correctly cured, cure-through (red), undercured (blue), as in [CURE19 fig 2c].
-constexpr std::array<Rgb, 4> cure_colours{white, grey, red, blue};
+constexpr std::array<Rgb, 4> cure_colours{paint::white, cured, red, paint::blue};
 
 std::vector<double> sequence(double from, double to, int count) {
   std::vector<double> values;
@@ -48,55 +47,76 @@ RgbImage cure_picture(const Plane& plane) {
   return picture;
 }
 
+RgbImage enlarged(const RgbImage& from, int width, int height) {
+  RgbImage to(width, height);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) to(x, y) = from(x * from.width / width, y * from.height / height);
+  }
+  return to;
+}
+
+void draw_picture(io::Canvas& canvas, const io::Frame& frame, const RgbImage& picture, const std::string& title) {
+  const int left = static_cast<int>(frame.left);
+  const int top = static_cast<int>(frame.top);
+  canvas.paste(enlarged(picture, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left,
+               top);
+  io::draw_axes(canvas, frame, false);
+  canvas.text({frame.left, frame.top - 14}, title, io::label_size);
+}
+
 // Grey and dose along the column over a shade where the part is, slice number down.
-void draw_column(RgbImage& canvas, const io::ChartBox& box, const Plane& plane, const Print& print) {
+void draw_column(io::Canvas& canvas, io::Frame frame, const Plane& plane, const Print& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
-  const double right = std::max(1.5, std::ceil(1.1 * peak * 2) / 2);
-  std::vector<double> depth;
-  std::vector<double> level;
-  std::vector<double> stairs;
-  RgbImage shade(1, slices, white);
+  frame.x = {"dose / critical dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
+  std::vector<io::Spot> dose;
+  std::vector<io::Spot> stairs;
   for (int n = 0; n < slices; ++n) {
-    depth.push_back(n + 0.5);
-    const double value = print.response.grey(static_cast<double>(plane.light(plane.column, n))) * right;
-    level.insert(level.end(), {value, value});
-    stairs.insert(stairs.end(), {static_cast<double>(n), n + 1.0});
-    if (plane.solid(plane.column, n) > 0) shade(0, n) = pale;
+    if (plane.solid(plane.column, n) > 0) {
+      canvas.fill(frame.spot(0, n), frame.spot(frame.x.high, n + 1.0), shade);
+    }
+    dose.push_back(frame.spot(plane.omega[static_cast<std::size_t>(n)], n + 0.5));
+    const double grey = print.response.grey(static_cast<double>(plane.light(plane.column, n)));
+    const double at = frame.left + 0.98 * grey * (frame.right - frame.left);
+    stairs.push_back({at, frame.spot_y(n)});
+    stairs.push_back({at, frame.spot_y(n + 1.0)});
   }
-  const io::ChartAxis x{"dose / critical dose", 0, right};
-  const io::ChartAxis y{"slice n", static_cast<double>(slices), 0};
-  io::Chart(canvas, box, x, y, "").picture(shade);
-  io::Chart chart(canvas, box, x, y, "column " + std::to_string(plane.column));
-  chart.line(level, stairs, blue, 1);
-  const std::vector<double> one{1, 1};
-  const std::vector<double> ends{0, static_cast<double>(slices)};
-  chart.line(one, ends, grey, 1);
-  chart.line(plane.omega, depth, red, 2);
-  chart.legend("grey, 0 to 1", blue);
-  chart.legend("dose", red);
+  io::draw_axes(canvas, frame, false);
+  canvas.dashed(frame.spot(1, 0), frame.spot(1, slices), paint::grey);
+  canvas.polyline(stairs, paint::blue, 1.5);
+  canvas.polyline(dose, red, 2);
+  canvas.text({frame.left, frame.top - 14}, "column " + std::to_string(plane.column), io::label_size);
+  canvas.text({frame.right - 85, frame.top - 14}, "dose", io::label_size, red, io::Align::end);
+  canvas.text({frame.right, frame.top - 14}, "grey 0..1", io::label_size, paint::blue, io::Align::end);
 }
 
 }  // namespace
 
 void draw_plane(const std::string& path, const Plane& plane, const Print& print) {
-  const int height = std::clamp(plane.light.height * 4, 240, 900);
+  const int height = std::clamp(plane.light.height * 4, 280, 900);
   const double aspect = static_cast<double>(plane.light.width) / plane.light.height;  // voxels are cubes
-  const int width = std::clamp(static_cast<int>(std::lround(height * aspect)), 120, 700);
-  RgbImage canvas(width * 2 + 3 * 75 + 260 + 20, height + 90, white);
-  const io::ChartAxis x{"x, pixels", 0, static_cast<double>(plane.light.width)};
-  const io::ChartAxis y{"slice n (platform above, window below)", static_cast<double>(plane.light.height), 0};
-  io::Chart slices(canvas, {70, 35, width, height}, x, y, "slices, row " + std::to_string(plane.row));
-  slices.picture(slices_picture(plane, print.response));
-  io::Chart cure(canvas, {70 + width + 75, 35, width, height}, x, {"", y.low, 0}, "cured");
-  cure.picture(cure_picture(plane));
-  draw_column(canvas, {70 + 2 * (width + 75), 35, 260, height}, plane, print);
-  const int below = height + 85;
-  const int left = 70 + width + 75;
-  io::draw_text(canvas, left, below, "correct", {110, 110, 110});
-  io::draw_text(canvas, left + 60, below, "cure-through", red);
-  io::draw_text(canvas, left + 160, below, "undercured", blue);
-  io::write_png(path, canvas);
+  const int width = std::clamp(static_cast<int>(std::lround(height * aspect)), 200, 700);
+  constexpr int left = 80;
+  constexpr int top = 40;
+  constexpr int curve = 300;
+  io::Canvas canvas(3 * left + 2 * width + curve + 20, top + height + 90);
+  const io::Axis x{"x / pixels", 0, static_cast<double>(plane.light.width)};
+  const io::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
+  const auto frame = [&](int number, int across, const io::Axis& up) {
+    const double start = left + number * (width + left);
+    return io::Frame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
+  };
+  draw_picture(canvas, frame(0, width, y), slices_picture(plane, print.response),
+               "slices, row " + std::to_string(plane.row));
+  draw_picture(canvas, frame(1, width, {"", y.low, y.high}), cure_picture(plane), "cured");
+  draw_column(canvas, frame(2, curve, {"", y.low, y.high}), plane, print);
+  double at = 2.0 * left + width;
+  for (const auto& [words, colour] :
+       {std::pair{"correct", paint::grey}, {"cure-through", red}, {"undercured", paint::blue}}) {
+    canvas.text({at, top + height + 74.0}, words, io::label_size, colour);
+    at += io::Canvas::text_width(words, io::label_size) + 20;
+  }
+  io::write_png(path, canvas.picture());
 }
 
 void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
@@ -129,18 +149,18 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
     low.push_back(value - error);
     high.push_back(value + error);
   }
-  RgbImage canvas(640, 460, white);
-  const io::ChartAxis across{"exposure E, mJ/cm2 (log10)", at.front(), at.back(), true};
-  const io::ChartAxis up{"cured thickness, um", 0, 1.12 * highest};
-  const std::string title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
-                            " um per decade,  D_gel = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
-  io::Chart chart(canvas, {80, 40, 530, 360}, across, up, title);
-  chart.band(at, low, high, pale_blue);
-  chart.line(at, line, blue);
-  chart.dots(x[0], y[0], black);
-  chart.dots(x[1], y[1], red);
-  if (!x[1].empty()) chart.legend("outliers, kept in the fit", red);
-  io::write_png(path, canvas);
+  io::Plot plot;
+  plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
+               " um per decade (log10), D_gel = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
+  plot.x = {"exposure E / mJ cm-2", at.front(), at.back(), true};
+  plot.y = {"cured thickness / um", 0, 1.12 * highest};
+  plot.series = {
+      {"least squares", at, line, paint::blue, io::SeriesStyle::line},
+      {format_number(100 * curve.confidence) + " % of the line", at, low, paint::grey, io::SeriesStyle::line},
+      {"", at, high, paint::grey, io::SeriesStyle::line},
+      {"samples", x[0], y[0], paint::black, io::SeriesStyle::points}};
+  if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, io::SeriesStyle::points});
+  io::write_png(path, io::draw(plot));
 }
 
 void draw_response(const std::string& path, const model::ResponseTable& table) {
@@ -150,22 +170,18 @@ void draw_response(const std::string& path, const model::ResponseTable& table) {
   const std::vector<double> at = sequence(0, full, 300);
   std::vector<double> curve;
   for (const double g : at) curve.push_back(response.intensity(g / full) * light);
-  RgbImage canvas(560, 460, white);
-  io::Chart chart(canvas, {80, 40, 450, 360}, {"grey", 0, full}, {"intensity", 0, 1.05 * light}, "grey response");
-  chart.line(at, curve, blue);
-  chart.dots(table.grey, table.intensity, black);
-  io::write_png(path, canvas);
+  io::Plot plot;
+  plot.title = "grey response";
+  plot.x = {"grey", 0, full};
+  plot.y = {"intensity", 0, 1.05 * light};
+  plot.series = {{"monotone cubic", at, curve, paint::blue, io::SeriesStyle::line},
+                 {"mean readings", table.grey, table.intensity, paint::black, io::SeriesStyle::points}};
+  io::write_png(path, io::draw(plot));
 }
 
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um) {
-  constexpr std::array<Rgb, 8> colours{{{0, 0, 0},
-                                        {31, 90, 180},
-                                        {214, 39, 40},
-                                        {44, 160, 44},
-                                        {230, 130, 20},
-                                        {130, 80, 180},
-                                        {0, 150, 160},
-                                        {140, 90, 60}}};
+  constexpr std::array<Rgb, 8> colours{paint::black,     paint::blue, paint::orange,      paint::green,
+                                       paint::vermilion, paint::grey, Rgb{204, 121, 167}, Rgb{86, 180, 233}};
   // The first omega_max of the study, a curve for each size of feature.
   const double first = points.front().omega_max;
   std::vector<double> factors;
@@ -184,18 +200,17 @@ void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& p
     }
   }
   if (factors.empty()) factors = {0, 1};
-  RgbImage canvas(660, 460, white);
   const double margin = std::max(0.5, 0.05 * (factors.back() - factors.front()));
-  io::Chart chart(canvas, {80, 40, 550, 360},
-                  {"assumed critical dose / gelation dose", factors.front() - margin, factors.back() + margin},
-                  {"height error, corrected / uncorrected", 0, 1.1 * most}, "omega_max = " + format_number(first));
+  io::Plot plot;
+  plot.title = "omega_max = " + format_number(first);
+  plot.x = {"assumed critical dose / gelation dose", factors.front() - margin, factors.back() + margin};
+  plot.y = {"height error, corrected / uncorrected", 0, 1.1 * most};
   for (std::size_t s = 0; s < ratios.size(); ++s) {
     const Rgb colour = colours[s % colours.size()];
-    chart.line(factors, ratios[s], colour);
-    chart.dots(factors, ratios[s], colour, 3);
-    chart.legend(format_number(heights[s] * slice_um) + " um", colour);
+    plot.series.push_back({format_number(heights[s] * slice_um) + " um", factors, ratios[s], colour, {}});
+    plot.series.push_back({"", factors, ratios[s], colour, io::SeriesStyle::points});
   }
-  io::write_png(path, canvas);
+  io::write_png(path, io::draw(plot));
 }
 
 }  // namespace vam::curethrough
