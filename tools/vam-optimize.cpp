@@ -56,7 +56,9 @@ cli::Manual manual() {
        "slice; vam-resample takes it to a real projector.",
        "Methods: fbp is filtered back-projection with negative light set to 0. dose-norm raises the void to a "
        "background and divides the target once by the dose that it gets: quick and good. cal descends the gradient of "
-       "the print's error with the resin's threshold inside the loop.",
+       "the print's error with the resin's threshold inside the loop. apg, the best of them, asks the void to stay "
+       "below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; it has no "
+       "step to choose.",
        "The dose that the projections give is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "
@@ -95,7 +97,7 @@ void declare(cli::App& app, Options& options) {
              "Columns, each a voxel wide; without it as many as see the writable circle.");
   app.group("When to stop");
   app.option("--iterations", "N", options.iterations, {0, 1000000},
-             "At most so many. Without it fbp 0, dose-norm 1, cal 30.");
+             "At most so many. Without it fbp 0, dose-norm 1, cal 30, apg 60.");
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all hold, e.g. 'ver=0,pw>=0.1'; figures: ver, pw, ipdr, cv, iou.");
   app.option("--patience", "N", options.patience, {0, 1000000},

@@ -25,6 +25,7 @@ struct MethodOptions {
   bool thresholding = true;  // cal: the sigmoid inside the loop
   double softness = 0.05;    // cal: gamma of the sigmoid, in units of the largest dose
   double step = 0.5;         // cal: lambda
+  double peak = 0;           // largest fluence, 0 = any: apg, pm, bclp
 };
 
 class Method {

@@ -7,6 +7,7 @@ namespace vam::optimize {
 std::unique_ptr<Method> make_fbp(const MethodOptions& options);
 std::unique_ptr<Method> make_dose_norm(const MethodOptions& options);
 std::unique_ptr<Method> make_cal(const MethodOptions& options);
+std::unique_ptr<Method> make_apg(const MethodOptions& options);
 
 namespace {
 
@@ -16,7 +17,8 @@ struct Entry {
 };
 
 const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{{"fbp", make_fbp}, {"dose-norm", make_dose_norm}, {"cal", make_cal}};
+  static const std::vector<Entry> all{
+      {"fbp", make_fbp}, {"dose-norm", make_dose_norm}, {"cal", make_cal}, {"apg", make_apg}};
   return all;
 }
 

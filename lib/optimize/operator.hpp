@@ -10,8 +10,6 @@ namespace vam::optimize {
 
 using tomo::Slab;
 
-inline constexpr double ramp_floor = 0.05;  // of the ramp's gain at the highest frequency
-
 struct Shape {
   int width = 0;
   int height = 0;
@@ -41,8 +39,8 @@ class Operator {
   virtual void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const = 0;
   /// Multiplies by the approximate inverse of A A* (ramp), in place: adjoint(filter(forward(f))) is about f.
   virtual void filter(std::span<Slab> sinograms) const = 0;
-  /// The same with the gain at low frequencies kept above a twentieth of that at the highest, so that it can serve as a
-  /// preconditioner: symmetric and positive definite.
+  /// Multiplies by an approximate inverse of A A* that is symmetric and positive definite, in place: the ramp, kept
+  /// from vanishing at low frequencies and from growing where the angles are too few.
   virtual void precondition(std::span<Slab> sinograms) const = 0;
 
   /// Unknowns to fluence: dose(r) = angle step * sum over stage angles of the image along the rays.

@@ -1,6 +1,7 @@
 #include "optimize/parallel_operator.hpp"
 
 #include <algorithm>
+#include <numbers>
 
 #include "base/parallel.hpp"
 #include "optimize/pass.hpp"
@@ -16,6 +17,15 @@ tomo::ParallelGeometry first_half(tomo::ParallelGeometry turn) {
   return turn;
 }
 
+/// A A* falls off like 1/|k| from the lowest frequency that the circle holds, about 0.64 / columns cycles per column,
+/// up to where neighbouring angles see different things, rows / (pi columns); beyond, it is flat. Both as fractions of
+/// the gain at the highest frequency, 1/2.
+double least_gain(int columns) { return 1.28 / columns; }
+double most_gain(const tomo::ParallelGeometry& rows) {
+  const double turns = rows.angles * rows.angle_step_rad / std::numbers::pi;  // rows over half a turn
+  return std::min(1.0, 2 * rows.angles / (turns * std::numbers::pi * rows.columns));
+}
+
 double row_angle(const tomo::ParallelGeometry& turn) { return turn.angle_step_rad * (may_halve(turn) ? 2 : 1); }
 
 }  // namespace
@@ -25,7 +35,7 @@ ParallelOperator::ParallelOperator(const tomo::ParallelGeometry& turn)
       rows_(first_half(turn)),
       row_angle_rad_(row_angle(turn)),
       ramp_(turn.columns, {}),
-      floored_ramp_(turn.columns, {.floor = ramp_floor}) {}
+      preconditioner_(turn.columns, {.floor = least_gain(turn.columns), .ceiling = most_gain(rows_)}) {}
 
 /// Filtered back-projection over a full turn is f = (1/2) integral of ramp * p over theta [KS88 eq 36]; a row's value
 /// is its fluence times the angle it stands for.
@@ -39,7 +49,7 @@ void ParallelOperator::apply(const tomo::Filter& filter, std::span<Slab> sinogra
 
 void ParallelOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
 
-void ParallelOperator::precondition(std::span<Slab> sinograms) const { apply(floored_ramp_, sinograms); }
+void ParallelOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
 
 void ParallelOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   tomo::forward(rows_, objects, sinograms);

@@ -33,7 +33,7 @@ class ParallelOperator final : public Operator {
   tomo::ParallelGeometry rows_;  // the rows that are unknowns: half a turn when halved
   double row_angle_rad_;         // the angle a row stands for
   tomo::Filter ramp_;
-  tomo::Filter floored_ramp_;
+  tomo::Filter preconditioner_;
 };
 
 }  // namespace vam::optimize

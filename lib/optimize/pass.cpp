@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "optimize/loss.hpp"
+
 namespace vam::optimize {
 
 namespace {
@@ -116,6 +118,16 @@ PerSlice sums(std::span<const Slab> images, const Problem& problem) {
       images, 0.0F,
       [&](float& a, std::size_t s, std::size_t i) {
         a += problem.labels[s][i] == Label::outside ? 0.0F : images[s].values[i];
+      },
+      plus);
+}
+
+PerSlice loss(std::span<const Slab> dose, const Problem& problem) {
+  return reduce(
+      dose, 0.0F,
+      [&](float& a, std::size_t s, std::size_t i) {
+        const float d = slope(dose[s].values[i], problem.labels[s][i], problem.window);
+        a += 0.5F * d * d;
       },
       plus);
 }

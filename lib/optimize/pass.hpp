@@ -25,8 +25,8 @@ using model::Circle;
 /// The doses between which the print's threshold may lie: void below low, part above high. The printing threshold is
 /// in the middle, the same number for every slice.
 struct Window {
-  double low = 0.7;
-  double high = 0.9;
+  double low = 0.75;
+  double high = 0.85;
   [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
 };
 

@@ -64,7 +64,8 @@ std::vector<double> make_gains(int length, const FilterSpec& spec) {
     const double x = static_cast<double>(m) / (half * spec.cutoff);
     // Without a floor the small negative gains below alpha stay: they keep the sampled kernel exact.
     const double gain = sum * window_gain(spec.window, x);
-    gains[static_cast<std::size_t>(m)] = spec.floor > 0 ? std::max(gain, spec.floor * nyquist) : gain;
+    const double kept = spec.floor > 0 ? std::max(gain, spec.floor * nyquist) : gain;
+    gains[static_cast<std::size_t>(m)] = spec.ceiling < 1 ? std::min(kept, spec.ceiling * nyquist) : kept;
   });
   return gains;
 }
@@ -107,6 +108,10 @@ Filter::Filter(int columns, const FilterSpec& spec) {
   if (!(spec.floor >= 0 && spec.floor <= 1)) {
     throw Error{Fault::usage,
                 "filter floor " + format_number(spec.floor) + " must lie in 0..1 (of the gain at Nyquist)"};
+  }
+  if (!(spec.ceiling > spec.floor)) {
+    throw Error{Fault::usage, "filter ceiling " + format_number(spec.ceiling) + " must be above its floor " +
+                                  format_number(spec.floor)};
   }
   const int length = fft_length(std::max(2 * columns, 4));
   state_ = std::make_unique<State>(columns, length);

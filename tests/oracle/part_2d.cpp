@@ -83,7 +83,8 @@ std::vector<float> resolution_target(int size) {
   std::vector<Box> boxes;
   const double least = 2.0 * 512 / size;  // two pixels
   const auto width = [&](double w) { return std::max(w, least); };
-  bars(boxes, -190, -40, width(40) * 0.8, true);
+  boxes.push_back({-195, -60, -155, 130});  // 40 wide, 40 apart
+  boxes.push_back({-115, -60, -75, 130});
   bars(boxes, 40, -215, width(20), true);
   bars(boxes, -80, -200, width(20), false);
   bars(boxes, 40, 20, width(12), true);

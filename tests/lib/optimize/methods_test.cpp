@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "optimize/loss.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 
@@ -45,6 +46,43 @@ TEST_CASE("CAL19 fig S7: the resin's threshold in the loop") {
   }
 }
 
+TEST_CASE("apg: a binary resolution target prints exactly within 120 projections, with room to spare") {
+  const auto target = oracle::resolution_target(size);
+  // 2 projections for the start, 12 for the step length, 2 an iteration.
+  const auto m = parts::run({target}, size, 360, "apg", {}, 53)[0];
+  CHECK(m.ver == 0.0);
+  CHECK(m.pw >= 0.05);
+}
+
+TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps within its bounds") {
+  const auto parts = some_parts();
+  const auto all = parts::stacked(parts);
+  const ParallelOperator light(parts::turn(size, 360));
+  const auto problem = make_problem(all.data(), 4, size, size, parts::circle(size), {});
+  MethodOptions options;
+  options.peak = 3;
+  const auto method = make_method("apg", options);
+  Iterate state;
+  method->start(problem, light, state);
+  PerSlice before = loss(state.dose, problem);
+  for (int i = 0; i < 20; ++i) {
+    method->step(problem, light, state);
+    const PerSlice now = loss(state.dose, problem);
+    for (std::size_t s = 0; s < 4; ++s) CHECK(now[0][s] <= before[0][s]);
+    before = now;
+  }
+  const float largest = *std::max_element(state.g[0].values.begin(), state.g[0].values.end());
+  CHECK(largest <= static_cast<float>(3 * light.row_angle_rad()));
+  const auto apg = metrics(state.dose, problem);
+  const auto fbp = parts::run(parts, size, 360, "fbp", {}, 0);
+  const auto normalised = parts::run(parts, size, 360, "dose-norm", {}, 1);
+  for (std::size_t s = 0; s < 4; ++s) {
+    CAPTURE(s);
+    CHECK(apg[s].ver <= std::min(fbp[s].ver, normalised[s].ver));
+    CHECK(apg[s].iou >= std::max(fbp[s].iou, normalised[s].iou));
+  }
+}
+
 TEST_CASE("projections are never negative") {
   for (const auto& name : method_names()) {
     CAPTURE(name);
@@ -69,5 +107,5 @@ TEST_CASE("contradictory thresholds and unknown methods are refused") {
   MethodOptions options;
   options.window = {0.9, 0.7};
   CHECK_THROWS_WITH_AS(make_method("cal", options), doctest::Contains("0.9 is not below --dose-high 0.7"), vam::Error);
-  CHECK_THROWS_WITH_AS(make_method("magic", {}), doctest::Contains("there are fbp, dose-norm, cal"), vam::Error);
+  CHECK_THROWS_WITH_AS(make_method("magic", {}), doctest::Contains("there are fbp, dose-norm, cal, apg"), vam::Error);
 }
