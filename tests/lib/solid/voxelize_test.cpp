@@ -251,6 +251,29 @@ TEST_CASE("faces on voxel borders, and thin walls") {
   CHECK(wall.sum() == doctest::Approx(1.0).epsilon(1e-5));
 }
 
+TEST_CASE("what lies below or above the grid is cut off") {
+  const TriangleSoup ball = oracle::sphere(18.3, 40);
+  const model::Grid whole = cube_grid(40);
+  model::Grid middle = whole;
+  middle.nz = 9;
+  middle.origin_mm[2] += 17;  // 17 slices of one voxel up
+  for (const Fill fill : {Fill::exact, Fill::vote}) {
+    std::vector<float> want;
+    std::vector<float> got;
+    (void)voxelize(ball, whole, fill, [&](int, int count, const float* slices) {
+      want.insert(want.end(), slices, slices + static_cast<std::size_t>(count) * whole.slice_size());
+    });
+    (void)voxelize(ball, middle, fill, [&](int, int count, const float* slices) {
+      got.insert(got.end(), slices, slices + static_cast<std::size_t>(count) * middle.slice_size());
+    });
+    double worst = 0;
+    for (std::size_t i = 0; i < got.size(); ++i) {
+      worst = std::max(worst, static_cast<double>(std::abs(got[i] - want[i + 17 * whole.slice_size()])));
+    }
+    CHECK(worst < 2e-6);  // float and the snapping to 0 and 1
+  }
+}
+
 TEST_CASE("a cup without its lid is full, an open sheet is nothing") {
   const model::Grid grid = cube_grid(20);
   TriangleSoup cup = oracle::box({-5, -5, -5}, {5, 5, 5});
