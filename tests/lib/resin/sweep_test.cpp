@@ -72,6 +72,36 @@ TEST_CASE("the least dose in a gap is the one that a correction reaches") {
   }
 }
 
+TEST_CASE("gaps of a part: what must fuse, what is tight, what is fine") {
+  // Columns side by side with a gap of 1, 3, 40 slices, two gaps (1 and 3), no gap, nothing.
+  const std::vector<std::vector<int>> gaps{{1}, {3}, {40}, {1, 3}, {}, {}};
+  const int width = static_cast<int>(gaps.size());
+  const int slices = 70;
+  std::vector<float> values(static_cast<std::size_t>(width * slices), 0.0F);
+  for (int x = 0; x + 1 < width; ++x) {
+    int n = 4;
+    const auto put = [&](int count) {
+      for (const int end = n + count; n < end; ++n) values[static_cast<std::size_t>(n * width + x)] = 1;
+    };
+    put(5);
+    for (const int gap : gaps[static_cast<std::size_t>(x)]) {
+      n += gap;
+      put(5);
+    }
+  }
+  resin::PartColumns part(width, 1, slices, resin::Exposure::continuous);
+  part.append(slices, values.data(), 0.5F);
+  const resin::Limits limits = resin::limits_of({});
+  const resin::GapReport report = resin::judge_gaps(part, limits, 0.5);
+  CHECK(report.mask.values == std::vector<float>{2, 1, 0, 2, 0, 0});
+  CHECK(report.infeasible_columns == 2);
+  CHECK(report.infeasible_gaps == 2);
+  CHECK(report.tight_columns == 3);
+  CHECK(report.tight_gaps == 4);
+  CHECK(report.narrowest == 1);
+  CHECK(report.worst_dose == 1);
+}
+
 TEST_CASE("faster means wider gaps, up to the speed limit") {
   resin::Process process;
   CHECK(resin::speed_limit_mm_h(process) == doctest::Approx(110 / 576.0 * 36000));  // I_max / D_c, cm/s to mm/h
