@@ -109,8 +109,8 @@ Filter::Filter(int columns, const FilterSpec& spec) {
     throw Error{Fault::usage,
                 "filter floor " + format_number(spec.floor) + " must lie in 0..1 (of the gain at Nyquist)"};
   }
-  if (!(spec.ceiling > spec.floor)) {
-    throw Error{Fault::usage, "filter ceiling " + format_number(spec.ceiling) + " must be above its floor " +
+  if (!(spec.ceiling >= spec.floor && spec.ceiling > 0)) {
+    throw Error{Fault::usage, "filter ceiling " + format_number(spec.ceiling) + " must not be below its floor " +
                                   format_number(spec.floor)};
   }
   const int length = fft_length(std::max(2 * columns, 4));

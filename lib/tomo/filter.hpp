@@ -24,8 +24,8 @@ struct FilterSpec {
   Window window = Window::ram_lak;
   double cutoff = 1;        // of the window, as a fraction of the Nyquist frequency, > 0
   double floor = 0;         // least gain, as a fraction of the ramp's at the Nyquist frequency, 0..1 (preconditioner)
-  double ceiling = 1;       // largest gain, likewise: where too few angles see a frequency, the ramp asks too much
   double alpha_per_px = 0;  // |k| < |alpha| is blocked: the inverse of the exponential Radon transform [TM80]
+  double ceiling = 1;       // largest gain, as a fraction of the ramp's at the Nyquist frequency, above the floor
 };
 
 /// Multiplies the spectrum of every row by |f| (f in cycles per column, 1/2 at Nyquist) times the window. The ramp is

@@ -114,3 +114,15 @@ TEST_CASE("names and limits") {
   Slab slab(11, 1);
   CHECK_THROWS_AS(Filter(10, {}).apply(slab), vam::Error);
 }
+
+TEST_CASE("a ceiling caps the gain; members given by position keep their meaning") {
+  vam::tomo::FilterSpec spec{vam::tomo::Window::ram_lak, 1, 0, 0};
+  CHECK(spec.ceiling == 1);
+  spec.ceiling = 0.4;
+  const vam::tomo::Filter filter(64, spec);
+  const auto& gains = filter.gains();
+  CHECK(gains.back() == doctest::Approx(0.2));  // 0.4 of the 1/2 at the highest frequency
+  CHECK(gains[gains.size() / 4] == doctest::Approx(0.125).epsilon(0.02));  // below it the ramp
+  spec.floor = 0.5;
+  CHECK_THROWS_AS(vam::tomo::Filter(64, spec), vam::Error);
+}
