@@ -82,7 +82,7 @@ cli::Manual manual() {
        "Tomographic Imaging, 1988, chapter 3; Tretiak and Metz, The exponential Radon transform, 1980; Long and "
        "Fessler, 3D "
        "forward and back-projection using separable footprints, 2010."},
-      {"vam-slice", "vam-optimize", "vam-resample", "vam-dose", "vam-view"}};
+      {"vam-dose", "vam-optimize", "vam-resample", "vam-slice", "vam-view"}};
 }
 
 void declare(cli::App& app, Options& options) {

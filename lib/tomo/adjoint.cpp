@@ -11,15 +11,26 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr int tile = 32;     // pixels, both ways
-constexpr int segment = 16;  // pixels a call; their bins of eight angles fit in L1
-constexpr int window = 52;   // bins that a tile can see: 31 * sqrt(2) + 1.42 + 1, the taps, rounding up
+constexpr int tile = 64;    // pixels, both ways
+constexpr int window = 97;  // bins that a tile can see: 63 * sqrt(2) + 1.42 + 1, the taps, rounding up
 constexpr int taps = 3;
+constexpr auto rows = static_cast<std::size_t>(gather_rows);
 
-/// e^{-alpha (x - axis) sin} and e^{alpha (y - axis) cos}, for one block of eight angles: [pixel][angle].
+/// e^{-alpha (x - axis) sin} and e^{alpha (y - axis) cos} as [block of eight angles][pixel][angle].
 struct Factors {
-  std::vector<float> x;  // [block][nx + 1][8]; one more pixel, for an odd pair
-  std::vector<float> y;  // [block][ny][8]
+  std::vector<float> x;  // nx + 1 pixels: one more, for the kernel's pairs
+  std::vector<float> y;
+};
+
+std::size_t factor_at(std::size_t block, int pixel, int pixels) {
+  return (block * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(pixel)) * rows;
+}
+
+/// Eight angles as one tile sees them.
+struct Stretch {
+  Rows from{};
+  std::array<int, rows> origin{};  // the bin in element 0
+  std::array<int, rows> skip{};    // elements before the detector begins
 };
 
 class Adjoint {
@@ -31,7 +42,7 @@ class Adjoint {
         plan_(make_plan(geometry, images, sinograms)),
         groups_(make_groups(images.size())),
         kernels_(radon_kernels(level)),
-        blocks_((static_cast<int>(plan_.rays.size()) + gather_rows - 1) / gather_rows) {
+        footprints_((plan_.rays.size() + rows - 1) / rows) {
     make_footprints();
     if (geometry.alpha_per_px != 0) make_factors();
   }
@@ -41,126 +52,136 @@ class Adjoint {
     const int down = (geometry_.ny + tile - 1) / tile;
     parallel_for(static_cast<int>(groups_.size()) * across * down, [&](int item) {
       const Group& group = groups_[static_cast<std::size_t>(item / (across * down))];
-      const int x = item % across * tile;
-      const int y = item / across % down * tile;
-      work_out_tile(group, x, y);
+      work_out_tile(group, item % across * tile, item / across % down * tile);
     });
   }
 
  private:
   void make_footprints() {
-    footprints_.resize(static_cast<std::size_t>(blocks_));
-    for (int a = 0; a < blocks_ * gather_rows; ++a) {
-      Footprints& footprints = footprints_[static_cast<std::size_t>(a / gather_rows)];
-      const bool there = a < static_cast<int>(plan_.rays.size());
-      const Ray ray = there ? plan_.rays[static_cast<std::size_t>(a)] : Ray{1, 0, 0};
+    for (std::size_t a = 0; a < footprints_.size() * rows; ++a) {
+      const bool there = a < plan_.rays.size();  // the last block's other rows weigh nothing
+      const Ray ray = there ? plan_.rays[a] : Ray{1, 0, 0};
       const double c = std::abs(ray.cosine);
       const double s = std::abs(ray.sine);
-      set_footprint(footprints, a % gather_rows, std::max(c, s), std::min(c, s), there ? 1 : 0, ray.cosine);
+      set_footprint(footprints_[a / rows], a % rows, std::max(c, s), std::min(c, s), there ? 1 : 0, ray.cosine);
     }
   }
 
   void make_factors() {
     const double alpha = geometry_.alpha_per_px;
     const int width = geometry_.nx + 1;
-    factors_.x.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(width) * gather_rows, 1.0F);
-    factors_.y.assign(static_cast<std::size_t>(blocks_) * static_cast<std::size_t>(geometry_.ny) * gather_rows, 1.0F);
-    parallel_for(static_cast<int>(plan_.rays.size()), [&](int a) {
-      const Ray& ray = plan_.rays[static_cast<std::size_t>(a)];
-      float* x = factors_.x.data() + at(a / gather_rows, 0, width) + a % gather_rows;
+    factors_.x.assign(factor_at(footprints_.size(), 0, width), 1.0F);
+    factors_.y.assign(factor_at(footprints_.size(), 0, geometry_.ny), 1.0F);
+    parallel_for(static_cast<int>(plan_.rays.size()), [&](int angle) {
+      const auto a = static_cast<std::size_t>(angle);
+      const Ray& ray = plan_.rays[a];
       for (int i = 0; i < width; ++i) {
-        x[i * gather_rows] = static_cast<float>(std::exp(-alpha * (i - geometry_.axis_x) * ray.sine));
+        factors_.x[factor_at(a / rows, i, width) + a % rows] =
+            static_cast<float>(std::exp(-alpha * (i - geometry_.axis_x) * ray.sine));
       }
-      float* y = factors_.y.data() + at(a / gather_rows, 0, geometry_.ny) + a % gather_rows;
       for (int j = 0; j < geometry_.ny; ++j) {
-        y[j * gather_rows] = static_cast<float>(std::exp(alpha * (j - geometry_.axis_y) * ray.cosine));
+        factors_.y[factor_at(a / rows, j, geometry_.ny) + a % rows] =
+            static_cast<float>(std::exp(alpha * (j - geometry_.axis_y) * ray.cosine));
       }
     });
   }
 
-  static std::size_t at(int block, int pixel, int pixels) {
-    return (static_cast<std::size_t>(block) * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(pixel)) *
-           gather_rows;
-  }
-
   void work_out_tile(const Group& group, int x0, int y0) const {
-    const int pitch = group.pitch();
-    Buffer& bins = scratch(0, static_cast<std::size_t>(gather_rows) * window * group_lanes);
-    Buffer& pixels = scratch(1, static_cast<std::size_t>(tile) * tile * group_lanes);
-    std::fill_n(pixels.begin(), tile * tile * pitch, 0.0F);
+    const std::ptrdiff_t pitch = group.pitch();
+    float* bins = scratch(0, rows * window * group_lanes);
+    float* pixels = scratch(1, std::size_t{tile} * tile * group_lanes);
+    std::fill_n(pixels, std::ptrdiff_t{tile} * tile * pitch, 0.0F);
     const int x1 = std::min(x0 + tile, geometry_.nx);
     const int y1 = std::min(y0 + tile, geometry_.ny);
+    const int calls = (y1 - y0) * ((x1 - x0 + segment - 1) / segment);
     const auto attenuation = geometry_.alpha_per_px == 0 ? plain : by_output;
-    for (int block = 0; block < blocks_; ++block) {
-      int origin[gather_rows];
-      for (int r = 0; r < gather_rows; ++r) origin[r] = copy_bins(group, block * gather_rows + r, x0, y0, bins.data());
+
+    Stretch next = find(group, 0, x0, y0);
+    for (std::size_t block = 0; block < footprints_.size(); ++block) {
+      const Stretch now = next;
+      copy(now, bins, pitch);
+      next = find(group, std::min(block + 1, footprints_.size() - 1), x0, y0);
+      Ahead ahead(next.from, calls);
       Gather job;
-      job.footprints = &footprints_[static_cast<std::size_t>(block)];
-      job.input = bins.data();
+      job.footprints = &footprints_[block];
+      job.input = bins;
       job.last = window - taps;
       job.output_step = pitch;
-      for (int e = 0; e < pair_entries; ++e) job.row_offset[e] = e % gather_rows * window * pitch;
+      for (int e = 0; e < pair_entries; ++e) job.row_offset[e] = e % gather_rows * window * static_cast<int>(pitch);
       for (int y = y0; y < y1; ++y) {
         for (int x = x0; x < x1; x += segment) {
-          prepare(job, block, origin, x, y);
+          place(job, block, now, x, y);
           job.outputs = std::min(segment, x1 - x);
-          float* to = pixels.data() + ((y - y0) * tile + x - x0) * pitch;
-          for (int s = 0; s < group.slabs; ++s) job.output[s] = to + s * lanes;
+          float* to = pixels + (std::ptrdiff_t{y - y0} * tile + x - x0) * pitch;
+          for (std::size_t s = 0; s < group.slabs; ++s) job.output[s] = to + s * lanes;
           kernels_.gather[group.log2()][taps - 3][attenuation](job);
+          ahead.fetch_share();
         }
       }
     }
-    for (int y = y0; y < y1; ++y) {
-      for (int s = 0; s < group.slabs; ++s) {
-        float* to = images_[static_cast<std::size_t>(group.first + s)].at(x0, y);
-        const float* from = pixels.data() + (y - y0) * tile * pitch + s * lanes;
-        for (int i = 0; i < x1 - x0; ++i) std::copy_n(from + i * pitch, lanes, to + i * lanes);
+    for (int y = y0; y < y1; ++y) put(group, pixels + std::ptrdiff_t{y - y0} * tile * pitch, x0, x1, y);
+  }
+
+  /// Where the bins of a block's angles lie that the tile sees, opposite angles to be added when the plan is folded.
+  [[nodiscard]] Stretch find(const Group& group, std::size_t block, int x0, int y0) const {
+    Stretch stretch;
+    for (std::size_t r = 0; r < rows; ++r) {
+      Interleave& job = stretch.from[r];
+      job.slabs = static_cast<int>(group.slabs);
+      job.from_step = lanes;
+      job.plus_step = -lanes;
+      const std::size_t a = block * rows + r;
+      if (a >= plan_.rays.size()) continue;
+      const Ray& ray = plan_.rays[a];
+      const double left = std::min(0.0, ray.cosine * (tile - 1)) + std::min(0.0, ray.sine * (tile - 1));
+      const int origin = static_cast<int>(std::floor(x0 * ray.cosine + y0 * ray.sine + ray.offset + left)) - 2;
+      const int first = std::clamp(-origin, 0, window);
+      stretch.origin[r] = origin;
+      stretch.skip[r] = first;
+      job.count = std::clamp(geometry_.columns - origin, first, window) - first;
+      if (job.count == 0) continue;
+      const int angle = static_cast<int>(a);
+      for (std::size_t s = 0; s < group.slabs; ++s) {
+        const Slab& slab = sinograms_[group.first + s];
+        job.from[s] = slab.at(origin + first, angle);
+        if (plan_.folded) job.plus[s] = slab.at(geometry_.columns - 1 - origin - first, angle + geometry_.angles / 2);
       }
     }
+    return stretch;
   }
 
-  void prepare(Gather& job, int block, const int* origin, int x, int y) const {
-    const int rays = static_cast<int>(plan_.rays.size());
-    for (int r = 0; r < gather_rows; ++r) {
-      const int a = std::min(block * gather_rows + r, rays - 1);
-      const Ray& ray = plan_.rays[static_cast<std::size_t>(a)];
-      set_first(job, r, x * ray.cosine + y * ray.sine + ray.offset - origin[r]);
+  /// Copies them side by side, zero where there is no detector.
+  void copy(const Stretch& stretch, float* bins, std::ptrdiff_t pitch) const {
+    for (std::size_t r = 0; r < rows; ++r) {
+      Interleave job = stretch.from[r];
+      const std::ptrdiff_t first = stretch.skip[r];
+      const std::ptrdiff_t last = first + job.count;
+      std::fill_n(bins, first * pitch, 0.0F);
+      std::fill_n(bins + last * pitch, (window - last) * pitch, 0.0F);
+      job.to = bins + first * pitch;
+      if (job.count > 0) kernels_.interleave(job);
+      bins += window * pitch;
+    }
+  }
+
+  /// The job's first pixel is (x, y).
+  void place(Gather& job, std::size_t block, const Stretch& stretch, int x, int y) const {
+    for (std::size_t r = 0; r < rows; ++r) {
+      const Ray& ray = plan_.rays[std::min(block * rows + r, plan_.rays.size() - 1)];
+      set_first(job, r, x * ray.cosine + y * ray.sine + ray.offset - stretch.origin[r]);
     }
     if (geometry_.alpha_per_px == 0) return;
-    job.factor = factors_.x.data() + at(block, x, geometry_.nx + 1);
-    const float* row = factors_.y.data() + at(block, y, geometry_.ny);
-    for (int e = 0; e < pair_entries; ++e) job.row_factor[e] = row[e % gather_rows];
+    job.factor = factors_.x.data() + factor_at(block, x, geometry_.nx + 1);
+    const float* along_y = factors_.y.data() + factor_at(block, y, geometry_.ny);
+    for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = along_y[e % rows];
   }
 
-  /// Copies the bins of one angle that the tile sees, zero where there is no detector; returns the first bin's number.
-  int copy_bins(const Group& group, int a, int x0, int y0, float* bins) const {
-    const int pitch = group.pitch();
-    float* row = bins + (a % gather_rows) * window * pitch;
-    if (a >= static_cast<int>(plan_.rays.size())) {
-      std::fill_n(row, window * pitch, 0.0F);
-      return 0;
+  void put(const Group& group, const float* pixels, int x0, int x1, int y) const {
+    for (std::size_t s = 0; s < group.slabs; ++s) {
+      float* to = images_[group.first + s].at(x0, y);
+      const float* from = pixels + s * lanes;
+      for (int x = x0; x < x1; ++x, to += lanes, from += group.pitch()) std::copy_n(from, lanes, to);
     }
-    const Ray& ray = plan_.rays[static_cast<std::size_t>(a)];
-    const double left = std::min(0.0, ray.cosine * (tile - 1)) + std::min(0.0, ray.sine * (tile - 1));
-    const int origin = static_cast<int>(std::floor(x0 * ray.cosine + y0 * ray.sine + ray.offset + left)) - 2;
-    const int first = std::clamp(-origin, 0, window);
-    const int last = std::clamp(geometry_.columns - origin, first, window);
-    std::fill_n(row, first * pitch, 0.0F);
-    std::fill_n(row + last * pitch, (window - last) * pitch, 0.0F);
-    Interleave job{};
-    job.slabs = group.slabs;
-    job.count = last - first;
-    job.to = row + first * pitch;
-    job.from_step = lanes;
-    job.plus_step = -lanes;
-    if (job.count == 0) return origin;
-    for (int s = 0; s < group.slabs; ++s) {
-      const Slab& slab = sinograms_[static_cast<std::size_t>(group.first + s)];
-      job.from[s] = slab.at(origin + first, a);
-      if (plan_.folded) job.plus[s] = slab.at(geometry_.columns - 1 - origin - first, a + geometry_.angles / 2);
-    }
-    kernels_.interleave(job);
-    return origin;
   }
 
   const ParallelGeometry& geometry_;
@@ -169,8 +190,7 @@ class Adjoint {
   Plan plan_;
   std::vector<Group> groups_;
   const RadonKernels& kernels_;
-  int blocks_;
-  std::vector<Footprints> footprints_;
+  std::vector<Footprints> footprints_;  // per block of eight angles
   Factors factors_;
 };
 

@@ -133,15 +133,16 @@ const std::vector<double>& Filter::gains() const { return state_->gains; }
 /// Two lanes make one complex signal: the gain is real and even, so real and imaginary parts do not mix.
 void Filter::State::filter_row(float* row, Row& work) const {
   for (int lane = 0; lane < lanes; lane += 2) {
-    float* pair = row + lane;
-    for (int c = 0; c < columns; ++c) work[static_cast<std::size_t>(c)] = {pair[c * lanes], pair[c * lanes + 1]};
+    const float* from = row + lane;
+    for (int c = 0; c < columns; ++c, from += lanes) work[static_cast<std::size_t>(c)] = {from[0], from[1]};
     std::fill(work.begin() + columns, work.end(), std::complex<float>{});
     fft.forward(work.data());
     for (std::size_t m = 0; m < work.size(); ++m) work[m] *= row_factors[m];
     fft.backward(work.data());
-    for (int c = 0; c < columns; ++c) {
-      pair[c * lanes] = work[static_cast<std::size_t>(c)].real();
-      pair[c * lanes + 1] = work[static_cast<std::size_t>(c)].imag();
+    float* to = row + lane;
+    for (int c = 0; c < columns; ++c, to += lanes) {
+      to[0] = work[static_cast<std::size_t>(c)].real();
+      to[1] = work[static_cast<std::size_t>(c)].imag();
     }
   }
 }

@@ -12,20 +12,13 @@ namespace vam::tomo {
 
 namespace {
 
-constexpr int block_angles = 16;  // angles that pass over a band while it is in cache
-constexpr int band = 64;          // pixels along the rows; a band has eight rows
-constexpr int segment = 16;       // pixels whose bins make one call; eight rows of them fit in L1
-constexpr int pad = 4;            // zeros on both sides: bins see at most 4 pixels of a row
+constexpr std::size_t most_angles = 32;  // angles that pass over a band while it is in cache
+constexpr int band = 128;                // pixels along the rows; a band has eight rows
+constexpr int pad = 4;                   // zeros on both sides: bins see at most 4 pixels of a row
 constexpr int row_elements = band + 2 * pad;
+constexpr auto rows = static_cast<std::size_t>(gather_rows);
 
-/// Some angles with the same major axis: p runs along the rows, q across them.
-struct Block {
-  bool x_major;
-  int taps;
-  std::vector<int> angles;
-};
-
-/// t = p * cp + q * cq + offset; e^{alpha u} = major[p] * minor[q].
+/// One angle: t = p * cp + q * cq + offset, p along the rows, q across them; e^{alpha u} = major[p] * minor[q].
 struct View {
   int angle;
   double cp;
@@ -34,6 +27,13 @@ struct View {
   Footprints footprints;
   std::vector<float> major;  // [pad + p]
   std::vector<float> minor;
+};
+
+/// Some angles with the same major axis and number of taps.
+struct Block {
+  bool x_major;
+  std::size_t taps;
+  std::vector<int> angles;
 };
 
 class Forward {
@@ -49,30 +49,35 @@ class Forward {
   }
 
   void run() const {
-    const int blocks = static_cast<int>(blocks_.size());
-    parallel_for(static_cast<int>(groups_.size()) * blocks, [&](int item) {
-      work_out_block(groups_[static_cast<std::size_t>(item / blocks)],
-                     blocks_[static_cast<std::size_t>(item % blocks)]);
+    const std::size_t blocks = blocks_.size();
+    parallel_for(static_cast<int>(groups_.size() * blocks), [&](int item) {
+      const auto i = static_cast<std::size_t>(item);
+      work_out_block(groups_[i / blocks], blocks_[i % blocks]);
     });
   }
 
  private:
   void make_blocks() {
-    // A strip of width 1 covers (1 + narrow) / wide of a row, so up to 3 pixels while that is at most 2, else 4.
-    const auto taps_of = [](double wide, double narrow) { return 1 + narrow <= 2 * wide ? 3 : 4; };
-    for (int a = 0; a < static_cast<int>(plan_.rays.size()); ++a) {
-      const Ray& ray = plan_.rays[static_cast<std::size_t>(a)];
-      const double c = std::abs(ray.cosine);
-      const double s = std::abs(ray.sine);
+    // Four work items a thread at least, when there are enough angles; the result does not depend on it.
+    const std::size_t items = 4 * static_cast<std::size_t>(threads());
+    const std::size_t block_angles =
+        std::clamp<std::size_t>(plan_.rays.size() * groups_.size() / items, 8, most_angles);
+    for (std::size_t a = 0; a < plan_.rays.size(); ++a) {
+      const double c = std::abs(plan_.rays[a].cosine);
+      const double s = std::abs(plan_.rays[a].sine);
       const bool x_major = c >= s;
-      const int taps = taps_of(std::max(c, s), std::min(c, s));
+      // A strip of width 1 covers (1 + narrow) / wide of a row, so up to 3 pixels while that is at most 2, else 4.
+      const std::size_t taps = 1 + std::min(c, s) <= 2 * std::max(c, s) ? 3 : 4;
       if (blocks_.empty() || blocks_.back().x_major != x_major || blocks_.back().taps != taps ||
           blocks_.back().angles.size() == block_angles) {
         blocks_.push_back({x_major, taps, {}});
       }
-      blocks_.back().angles.push_back(a);
+      blocks_.back().angles.push_back(static_cast<int>(a));
     }
   }
+
+  [[nodiscard]] int major_size(const Block& block) const { return block.x_major ? geometry_.nx : geometry_.ny; }
+  [[nodiscard]] int minor_size(const Block& block) const { return block.x_major ? geometry_.ny : geometry_.nx; }
 
   [[nodiscard]] View make_view(const Block& block, int angle) const {
     const Ray& ray = plan_.rays[static_cast<std::size_t>(angle)];
@@ -82,120 +87,145 @@ class Forward {
     view.cq = block.x_major ? ray.sine : ray.cosine;
     view.offset = ray.offset;
     const double wide = 1 / std::abs(view.cp);
-    for (int r = 0; r < gather_rows; ++r) {
+    for (std::size_t r = 0; r < rows; ++r) {
       set_footprint(view.footprints, r, wide, std::abs(view.cq) * wide, wide, 1 / view.cp);
     }
-    if (geometry_.alpha_per_px != 0) set_factors(view, block.x_major, ray);
+    if (geometry_.alpha_per_px != 0) set_factors(view, block, ray);
     return view;
   }
 
-  void set_factors(View& view, bool x_major, const Ray& ray) const {
+  void set_factors(View& view, const Block& block, const Ray& ray) const {
     const double alpha = geometry_.alpha_per_px;
-    const int np = x_major ? geometry_.nx : geometry_.ny;
-    const int nq = x_major ? geometry_.ny : geometry_.nx;
-    const auto along_x = [&](int i) { return std::exp(-alpha * (i - geometry_.axis_x) * ray.sine); };
-    const auto along_y = [&](int j) { return std::exp(alpha * (j - geometry_.axis_y) * ray.cosine); };
-    view.major.assign(static_cast<std::size_t>(np + band + 2 * pad), 0.0F);
-    view.minor.assign(static_cast<std::size_t>(nq + gather_rows), 0.0F);
-    for (int p = 0; p < np; ++p) {
-      view.major[static_cast<std::size_t>(p + pad)] = static_cast<float>(x_major ? along_x(p) : along_y(p));
-    }
-    for (int q = 0; q < nq; ++q)
-      view.minor[static_cast<std::size_t>(q)] = static_cast<float>(x_major ? along_y(q) : along_x(q));
+    const auto along = [alpha](int pixels, double axis, double slope) {
+      std::vector<float> factors(static_cast<std::size_t>(pixels));
+      for (int i = 0; i < pixels; ++i) {
+        factors[static_cast<std::size_t>(i)] = static_cast<float>(std::exp(alpha * (i - axis) * slope));
+      }
+      return factors;
+    };
+    const std::vector<float> x = along(geometry_.nx, geometry_.axis_x, -ray.sine);
+    const std::vector<float> y = along(geometry_.ny, geometry_.axis_y, ray.cosine);
+    view.major = block.x_major ? x : y;
+    view.minor = block.x_major ? y : x;
+    view.major.insert(view.major.begin(), pad, 0.0F);
+    view.major.resize(view.major.size() + band + pad);
+    view.minor.resize(view.minor.size() + rows);
   }
 
   void work_out_block(const Group& group, const Block& block) const {
     std::vector<View> views;
-    for (const int angle : block.angles) views.push_back(make_view(block, angle));
     for (const int angle : block.angles) {
-      for (int s = 0; s < group.slabs; ++s) {
-        std::fill_n(sinograms_[static_cast<std::size_t>(group.first + s)].at(0, angle), geometry_.columns * lanes,
-                    0.0F);
+      views.push_back(make_view(block, angle));
+      for (Slab& sinogram : sinograms_.subspan(group.first, group.slabs)) {
+        std::fill_n(sinogram.at(0, angle), geometry_.columns * lanes, 0.0F);
       }
     }
-    const int np = block.x_major ? geometry_.nx : geometry_.ny;
-    const int nq = block.x_major ? geometry_.ny : geometry_.nx;
-    Buffer& pixels = scratch(0, static_cast<std::size_t>(gather_rows) * row_elements * group_lanes);
+    const int np = major_size(block);
+    const int nq = minor_size(block);
+    float* pixels = scratch(0, rows * row_elements * group_lanes);
+    Rows next = find(group, block, 0, 0);
     for (int q = 0; q < nq; q += gather_rows) {
       for (int p = 0; p < np; p += band) {
-        if (!copy_band(group, block, p, q, pixels.data())) continue;
+        const Rows now = next;
+        next = p + band < np ? find(group, block, p + band, q) : find(group, block, 0, q + gather_rows);
+        if (!copy(now, pixels, group.pitch())) continue;
+        Ahead ahead(next, band / segment * static_cast<int>(views.size()));
         for (int m = 0; m < band; m += segment) {
-          for (const View& view : views) project_segment(group, block, view, p, q, m, pixels.data());
+          for (const View& view : views) {
+            project(group, block, view, p, q, find_bins(view, p, q, m), pixels);
+            ahead.fetch_share();
+          }
         }
       }
     }
-    if (plan_.folded) {
-      for (const int angle : block.angles) mirror(group, angle);
-    }
+    if (!plan_.folded) return;
+    for (const int angle : block.angles) mirror(group, angle);
   }
 
-  /// Adds the bins whose strips cross the middle of the band in pixels [m, m + segment); the first and last segment
-  /// also take the bins that only touch the band.
-  void project_segment(const Group& group, const Block& block, const View& view, int p0, int q0, int m,
-                       const float* pixels) const {
-    const double t0 = p0 * view.cp + q0 * view.cq + view.offset;  // of the band's first pixel
-    const double middle = t0 + 0.5 * (gather_rows - 1) * view.cq;
+  struct Bins {
+    int first;
+    int last;  // one past
+  };
+
+  /// The bins whose strips cross the middle of the band in pixels [m, m + segment); the first and last segment also
+  /// take the bins that only touch the band.
+  [[nodiscard]] Bins find_bins(const View& view, int p0, int q0, int m) const {
+    const double middle = p0 * view.cp + (q0 + 0.5 * (gather_rows - 1)) * view.cq + view.offset;
     const double margin = 0.5 * (gather_rows * std::abs(view.cq) + std::abs(view.cp) + 1);
     const bool rising = view.cp > 0;
     double low = middle + (rising ? m : m + segment) * view.cp;
     double high = middle + (rising ? m + segment : m) * view.cp;
     if (m == (rising ? 0 : band - segment)) low -= margin;
     if (m == (rising ? band - segment : 0)) high += margin;
-    const int first = std::max(0, static_cast<int>(std::ceil(low)));
-    const int last = std::min(geometry_.columns, static_cast<int>(std::ceil(high)));
-    if (first >= last) return;
+    return {std::max(0, static_cast<int>(std::ceil(low))),
+            std::min(geometry_.columns, static_cast<int>(std::ceil(high)))};
+  }
+
+  /// Adds the band's pixels to these bins.
+  void project(const Group& group, const Block& block, const View& view, int p0, int q0, Bins bins,
+               const float* pixels) const {
+    if (bins.first >= bins.last) return;
+    const double t0 = p0 * view.cp + q0 * view.cq + view.offset;  // of the band's first pixel
     Gather job;
     job.footprints = &view.footprints;
     job.input = pixels;
-    job.last = static_cast<float>(row_elements - block.taps);
-    job.outputs = last - first;
+    job.last = static_cast<float>(row_elements - static_cast<int>(block.taps));
+    job.outputs = bins.last - bins.first;
     job.output_step = lanes;
-    for (int r = 0; r < gather_rows; ++r) set_first(job, r, (first - t0 - r * view.cq) / view.cp + pad);
-    for (int e = 0; e < pair_entries; ++e) job.row_offset[e] = e % gather_rows * row_elements * group.pitch();
-    for (int s = 0; s < group.slabs; ++s) {
-      job.output[s] = sinograms_[static_cast<std::size_t>(group.first + s)].at(first, view.angle);
+    const double per_bin = 1 / view.cp;
+    for (std::size_t r = 0; r < rows; ++r) {
+      set_first(job, r, (bins.first - t0 - static_cast<double>(r) * view.cq) * per_bin + pad);
     }
-    const auto attenuation = geometry_.alpha_per_px == 0 ? plain : by_element;
-    if (attenuation != plain) {
+    for (int e = 0; e < pair_entries; ++e) {
+      job.row_offset[e] = e % gather_rows * row_elements * static_cast<int>(group.pitch());
+    }
+    for (std::size_t s = 0; s < group.slabs; ++s)
+      job.output[s] = sinograms_[group.first + s].at(bins.first, view.angle);
+    const bool attenuated = geometry_.alpha_per_px != 0;
+    if (attenuated) {
       job.factor = view.major.data() + p0;
-      for (int e = 0; e < pair_entries; ++e)
-        job.row_factor[e] = view.minor[static_cast<std::size_t>(q0 + e % gather_rows)];
+      const float* across = view.minor.data() + q0;
+      for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = across[e % rows];
     }
-    kernels_.gather[group.log2()][block.taps - 3][attenuation](job);
+    kernels_.gather[group.log2()][block.taps - 3][attenuated ? by_element : plain](job);
   }
 
-  /// Copies eight rows of pixels side by side, zero outside the image; false when all of them are zero.
-  bool copy_band(const Group& group, const Block& block, int p0, int q0, float* pixels) const {
-    const int np = std::min(band, (block.x_major ? geometry_.nx : geometry_.ny) - p0);
-    const int nq = std::min(gather_rows, (block.x_major ? geometry_.ny : geometry_.nx) - q0);
-    const int pitch = group.pitch();
-    bool any = false;
+  /// Where eight rows of pixels lie; rows beyond the image have no pixels.
+  [[nodiscard]] Rows find(const Group& group, const Block& block, int p0, int q0) const {
+    const int np = std::min(band, major_size(block) - p0);
+    const int nq = std::min(gather_rows, minor_size(block) - q0);
+    Rows found{};
     for (int r = 0; r < gather_rows; ++r) {
-      float* row = pixels + r * row_elements * pitch;
-      const int count = r < nq ? np : 0;
-      std::fill_n(row, pad * pitch, 0.0F);
-      std::fill_n(row + (pad + count) * pitch, (row_elements - pad - count) * pitch, 0.0F);
-      if (count == 0) continue;
-      Interleave job{};
-      job.slabs = group.slabs;
-      job.count = count;
-      job.to = row + pad * pitch;
+      Interleave& job = found[static_cast<std::size_t>(r)];
+      job.slabs = static_cast<int>(group.slabs);
+      job.count = r < nq ? np : 0;
       job.from_step = block.x_major ? lanes : static_cast<long>(geometry_.nx) * lanes;
-      for (int s = 0; s < group.slabs; ++s) {
-        const Slab& slab = images_[static_cast<std::size_t>(group.first + s)];
+      for (std::size_t s = 0; s < group.slabs && r < nq; ++s) {
+        const Slab& slab = images_[group.first + s];
         job.from[s] = block.x_major ? slab.at(p0, q0 + r) : slab.at(q0 + r, p0);
       }
-      any = kernels_.interleave(job) || any;
+    }
+    return found;
+  }
+
+  /// Copies them side by side, zeros around them; false when all of them are zero.
+  [[nodiscard]] bool copy(const Rows& found, float* pixels, std::ptrdiff_t pitch) const {
+    bool any = false;
+    for (Interleave job : found) {
+      std::fill_n(pixels, pad * pitch, 0.0F);
+      std::fill_n(pixels + (pad + job.count) * pitch, (row_elements - pad - job.count) * pitch, 0.0F);
+      job.to = pixels + pad * pitch;
+      any = (job.count > 0 && kernels_.interleave(job)) || any;
+      pixels += row_elements * pitch;
     }
     return any;
   }
 
   void mirror(const Group& group, int angle) const {
-    for (int s = 0; s < group.slabs; ++s) {
-      Slab& slab = sinograms_[static_cast<std::size_t>(group.first + s)];
-      for (int c = 0; c < geometry_.columns; ++c) {
-        std::copy_n(slab.at(c, angle), lanes, slab.at(geometry_.columns - 1 - c, angle + geometry_.angles / 2));
-      }
+    for (Slab& slab : sinograms_.subspan(group.first, group.slabs)) {
+      const float* from = slab.at(0, angle);
+      float* to = slab.at(geometry_.columns - 1, angle + geometry_.angles / 2);
+      for (int c = 0; c < geometry_.columns; ++c, from += lanes, to -= lanes) std::copy_n(from, lanes, to);
     }
   }
 

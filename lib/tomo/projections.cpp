@@ -55,7 +55,8 @@ float lowest(const Slab& slab) {
   std::vector<float> rows(static_cast<std::size_t>(slab.height), 0.0F);
   parallel_for(slab.height, [&](int y) {
     const float* values = slab.at(0, y);
-    rows[static_cast<std::size_t>(y)] = *std::min_element(values, values + slab.width * lanes);
+    rows[static_cast<std::size_t>(y)] =
+        *std::min_element(values, values + static_cast<std::ptrdiff_t>(slab.width) * lanes);
   });
   return std::min(0.0F, *std::min_element(rows.begin(), rows.end()));
 }

@@ -55,9 +55,9 @@ Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, s
   return plan;
 }
 
-void set_footprint(Footprints& footprints, int r, double wide, double narrow, double total, double step) {
+void set_footprint(Footprints& footprints, std::size_t r, double wide, double narrow, double total, double step) {
   const double flank = std::max(narrow, least_flank);
-  for (int e = r; e < pair_entries; e += gather_rows) {
+  for (std::size_t e = r; e < pair_entries; e += gather_rows) {
     footprints.step[e] = static_cast<float>(step);
     footprints.half[e] = static_cast<float>((wide + flank) / 2);
     footprints.flat[e] = static_cast<float>((wide - flank) / 2);
@@ -70,14 +70,43 @@ void set_footprint(Footprints& footprints, int r, double wide, double narrow, do
 
 std::vector<Group> make_groups(std::size_t slabs) {
   std::vector<Group> groups;
-  int first = 0;
-  for (int left = static_cast<int>(slabs); left > 0;) {
-    const int take = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+  for (std::size_t first = 0; first < slabs;) {
+    const std::size_t left = slabs - first;
+    const std::size_t take = left >= 4 ? 4 : left >= 2 ? 2 : 1;
     groups.push_back({first, take});
     first += take;
-    left -= take;
   }
   return groups;
+}
+
+Ahead::Ahead(const Rows& rows, int calls) : rows_(rows) {
+  for (const Interleave& row : rows) share_ += static_cast<std::ptrdiff_t>(row.count) * row.slabs;
+  share_ = share_ / calls + 1;
+}
+
+bool Ahead::next_stream() {
+  const int slabs = rows_[0].slabs;
+  do {
+    if (++stream_ >= gather_rows * slabs) return false;
+    row_ = &rows_[static_cast<std::size_t>(stream_ / slabs)];
+  } while (row_->count == 0);
+  left_ = row_->count;
+  from_ = row_->from[stream_ % slabs];
+  plus_ = row_->plus[stream_ % slabs];
+  return true;
+}
+
+void Ahead::fetch_share() {
+  for (std::ptrdiff_t n = share_; n > 0; --n) {
+    if (left_ == 0 && !next_stream()) return;
+    __builtin_prefetch(from_, 0, 2);
+    if (plus_ != nullptr) {
+      __builtin_prefetch(plus_, 0, 2);
+      plus_ += row_->plus_step;
+    }
+    from_ += row_->from_step;
+    --left_;
+  }
 }
 
 const RadonKernels& radon_kernels(Simd level) {
@@ -90,11 +119,11 @@ const RadonKernels& radon_kernels(Simd level) {
   return baseline::radon_kernels;
 }
 
-Buffer& scratch(int which, std::size_t size) {
+float* scratch(std::size_t which, std::size_t size) {
   thread_local std::array<Buffer, 2> buffers;
-  Buffer& buffer = buffers.at(static_cast<std::size_t>(which));
+  Buffer& buffer = buffers.at(which);
   if (buffer.size() < size) buffer.resize(size);
-  return buffer;
+  return buffer.data();
 }
 
 }  // namespace vam::tomo

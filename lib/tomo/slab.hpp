@@ -3,24 +3,25 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <new>
 #include <vector>
 
 #include "tomo/slab_lanes.hpp"
 
 namespace vam::tomo {
 
-/// Memory on cache-line boundaries, so that one lane group is one aligned line.
+/// Memory on cache-line boundaries; from 4 MiB on in huge pages where the system has them, because a column of pixels
+/// touches a page a pixel.
+[[nodiscard]] void* allocate_aligned(std::size_t bytes);
+void free_aligned(void* memory, std::size_t bytes);
+
 template <class T>
 struct CacheAligned {
   using value_type = T;
-  static constexpr std::align_val_t alignment{64};
   CacheAligned() = default;
   template <class U>
   explicit CacheAligned(const CacheAligned<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), alignment)); }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, alignment); }
+  T* allocate(std::size_t n) { return static_cast<T*>(allocate_aligned(n * sizeof(T))); }
+  void deallocate(T* p, std::size_t n) { free_aligned(p, n * sizeof(T)); }
   bool operator==(const CacheAligned&) const = default;
 };
 

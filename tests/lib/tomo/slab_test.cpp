@@ -9,7 +9,7 @@ using namespace vam::tomo;
 
 TEST_CASE("pack puts image s into lane s and zeroes the rest; unpack undoes it") {
   const int count = 11;
-  std::vector<float> images(37 * 23 * count);
+  std::vector<float> images(std::size_t{37} * 23 * count);
   std::iota(images.begin(), images.end(), 1.0F);
   Slab slab(37, 23);
   std::fill(slab.values.begin(), slab.values.end(), -1.0F);
