@@ -1,0 +1,44 @@
+# Makefile.example: incremental, parallel, and its check fails when a part will not print.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+cp "$VAM_SOURCE/Makefile.example" Makefile
+cat >box.off <<'OFF'
+OFF
+8 12 0
+-2 -2 0
+2 -2 0
+2 2 0
+-2 2 0
+-2 -2 1
+2 -2 1
+2 2 1
+-2 2 1
+3 0 2 1
+3 0 3 2
+3 4 5 6
+3 4 6 7
+3 0 1 5
+3 0 5 4
+3 1 2 6
+3 1 6 5
+3 2 3 7
+3 2 7 6
+3 3 0 4
+3 3 4 7
+OFF
+cp box.off other.off
+ok 'builds all, two at once' make -j2 VOXEL=0.1
+for part in box other; do
+  [ -s $part.mkv ] && [ -s $part.dose.png ]; report $? "$part has video and picture"
+done
+is 'a second run does nothing' "$(make -s VOXEL=0.1 | wc -c)" 0
+touch other.off
+remade=$(make VOXEL=0.1 | grep -c 'vam-slice')
+is 'only the changed part is made again' "$remade" 1
+ok 'a printable part passes' make check VOXEL=0.1 LIMITS='iou>=0.5'
+rm -f ./*.score.json
+make check VOXEL=0.1 LIMITS='iou>=1.5' >.log/out 2>&1
+[ $? -ne 0 ]; report $? 'a part that will not print fails the check'
+[ ! -e box.score.json ] || [ ! -e other.score.json ]; report $? 'a failed verdict leaves no target behind'
+
+done_testing

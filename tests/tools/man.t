@@ -1,0 +1,29 @@
+# Each tool's manual page: the committed one is what the tool prints, it is clean, and its examples run.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+examples() {  # the commands of the EXAMPLES section of a page
+  awk '/^\.Sh /{inside = ($2 == "EXAMPLES")} inside && /^\.Ed/{code = 0} inside && code{print} inside && /^\.Bd/{code = 1}' "$1" |
+    sed -e 's/^\\&//' -e 's/\\e/\\/g'
+}
+
+for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
+  tool=$(basename "$source" .cpp)
+  page=$VAM_SOURCE/man/$tool.1
+  "$tool" --man >"$tool.1"
+  same "$tool: the committed page is the tool's (scripts/update-man)" "$page" "$tool.1"
+  complaints=$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')
+  is "$tool: mandoc -Tlint is silent" "$complaints" ""
+  ok "$tool: --help" "$tool" --help
+  ok "$tool: --version" "$tool" --version
+  grep -q "$tool" "$VAM_SOURCE/README.md"; report $? "$tool: in README"
+  for shell in bash zsh fish; do "$tool" --completion $shell >"$tool.$shell" || report 1 "$tool: --completion $shell"; done
+  ok "$tool: bash accepts its completion" bash -n "$tool.bash"
+  examples "$page" >"$tool.sh"
+  [ -s "$tool.sh" ]; report $? "$tool: the page has examples"
+  mkdir "examples-$tool"
+  (cd "examples-$tool" && sh -e "../$tool.sh") >.log/example 2>&1; status=$?
+  report $status "$tool: the examples run"
+  [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
+done
+
+done_testing
