@@ -2,7 +2,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 cp "$VAM_SOURCE/Makefile.example" Makefile
-cat >box.off <<'OFF'
+cat >box.off <<'MESH'
 OFF
 8 12 0
 -2 -2 0
@@ -25,7 +25,7 @@ OFF
 3 2 7 6
 3 3 0 4
 3 3 4 7
-OFF
+MESH
 cp box.off other.off
 ok 'builds all, two at once' make -j2 VOXEL=0.1
 for part in box other; do
