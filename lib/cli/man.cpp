@@ -1,4 +1,5 @@
 // The manual page in mdoc(7), clean under mandoc -Tlint: one sentence a line, ASCII, short lines.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -141,7 +142,7 @@ std::string manual_page(const Declaration& tool) {
   std::string upper = manual.name;
   for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   std::string out = ".\\\" Printed by " + manual.name + " --man; do not edit.\n";
-  out += std::string(".Dd ") + date + "\n.Dt " + upper + " 1\n.Os \"VAM tools " + VAM_VERSION + "\"\n";
+  out += std::string(".Dd ") + date + "\n.Dt " + upper + " 1\n.Os\n";
   out += ".Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
   out += ".Sh SYNOPSIS\n" + synopsis(tool);
   out += ".Sh DESCRIPTION\n";
@@ -187,10 +188,11 @@ std::string manual_page(const Declaration& tool) {
   for (const auto& status : exit_statuses()) out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
   out += ".El\n";
   out += examples(manual);
-  if (!manual.see_also.empty()) {
+  std::vector<std::string> others = manual.see_also;
+  std::sort(others.begin(), others.end());
+  if (!others.empty()) {
     out += ".Sh SEE ALSO\n";
-    for (const auto& name : manual.see_also)
-      out += ".Xr " + name + " 1" + (&name == &manual.see_also.back() ? "\n" : " ,\n");
+    for (const auto& name : others) out += ".Xr " + name + " 1" + (&name == &others.back() ? "\n" : " ,\n");
   }
   return out;
 }
