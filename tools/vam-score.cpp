@@ -53,7 +53,7 @@ cli::Manual manual() {
        "With --require the exit status is 1 when a condition does not hold, so that a Makefile can refuse a part "
        "that will not print."},
       {{"Score what simple projections would print:",
-        "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose --parallel "
+        "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose "
         "--like part.vdb -o dose.vdb && vam-score dose.vdb --target part.vdb"},
        {"Refuse a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
        {"Look at the print, as a mesh and as points coloured by dose:",

@@ -57,8 +57,8 @@ cli::Manual manual() {
        "A table goes to standard error when that is a terminal, the figures as JSON to --report, the print with "
        "distances and blue-white-red colours to -o. With --require the exit status is 1 unless every condition holds."},
       {{"Two boxes, one a little larger:",
-        "vam-slice --shape box:size=6 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:size=6.2 --stretch-z 1 -o print.vdb\n"
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --level 0.5 -o deviation.ply --report deviation.json"},
        {"A verdict for a script:",
         "vam-sdf print.vdb design.vdb --level 0.5 --require 'rms<=0.2' --histogram sdf.csv"}},

@@ -7,14 +7,14 @@ ok 'slice' vam-slice --shape ball-in-cage --voxel 0.2 -o part.vdb
 ok 'optimize' vam-optimize part.vdb --angles 120 -o sino.exr
 ok 'resample' vam-resample sino.exr -o frames.exr
 ok 'dose' vam-dose frames.exr --like part.vdb -o dose.vdb
-ok 'project' vam-project frames.exr -o frames
+ok 'project' vam-project frames.exr -o shown.exr
 
 vam-slice --shape ball-in-cage --voxel 0.2 | tee part2.vdb | vam-optimize --angles 120 | tee sino2.exr | vam-resample |
   tee frames2.exr | vam-dose --like part.vdb -o dose2.vdb; report $? 'one pipe'
 is 'the same part' "$(voxels part2.vdb)" "$(voxels part.vdb)"
 is 'the same dose' "$(voxels dose2.vdb)" "$(voxels dose.vdb)"
-ok 'project from the teed stack' vam-project frames2.exr -o frames2
-is 'the same frames' "$(cd frames && cat ./* | cksum)" "$(cd frames2 && cat ./* | cksum)"
+ok 'project from the teed stack' vam-project frames2.exr -o shown2.exr
+is 'the same frames' "$(voxels shown2.exr)" "$(voxels shown.exr)"
 ok 'tee leaves a valid EXR' exrheader sino2.exr
 
 for threads in 1 2; do
