@@ -56,7 +56,10 @@ cli::Manual manual() {
        "slice; vam-resample takes it to a real projector.",
        "Methods: fbp is filtered back-projection with negative light set to 0. dose-norm raises the void to a "
        "background and divides the target once by the dose that it gets: quick and good. cal descends the gradient of "
-       "the print's error with the resin's threshold inside the loop. apg, the best of them, asks the void to stay "
+       "the print's error with the resin's threshold inside the loop. osmo corrects a model of the part by the dose's "
+       "errors, void and part in turn. pm minimises how far doses are on the wrong side of LOW and HIGH, to the power "
+       "P; bclp how far the resin's response is outside a band around the target. apg, the best of them, asks the void "
+       "to stay "
        "below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; it has no "
        "step to choose.",
        "The dose that the projections give is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
@@ -84,7 +87,10 @@ cli::Manual manual() {
        "Sources: Kelly et al., Computed Axial Lithography, 2017, eq 3 and fig 2; Kelly et al., Science 2019, eq 4; "
        "Orth "
        "et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where the text "
-       "floors the projections at the background, but the figures show them non-negative: --floor 0 is right)."},
+       "floors the projections at the background, but the figures show them non-negative: --floor 0 is right); Rackson "
+       "et al., Object-space optimization of tomographic reconstructions, 2021 (osmo); Bhattacharya et al., High "
+       "fidelity volumetric additive manufacturing, 2021 (pm); Li et al., band-constraint Lp-norm, 2024 (bclp); Beck "
+       "and Teboulle, FISTA, 2009, and Bertsekas, two-metric projection, 1982 (apg)."},
       {"vam-slice", "vam-sinogram", "vam-resample", "vam-dose", "vam-score"}};
 }
 
@@ -97,7 +103,7 @@ void declare(cli::App& app, Options& options) {
              "Columns, each a voxel wide; without it as many as see the writable circle.");
   app.group("When to stop");
   app.option("--iterations", "N", options.iterations, {0, 1000000},
-             "At most so many. Without it fbp 0, dose-norm 1, cal 30, apg 60.");
+             "At most so many. Without it fbp 0, dose-norm 1, cal and osmo 30, pm, bclp and apg 60.");
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all hold, e.g. 'ver=0,pw>=0.1'; figures: ver, pw, ipdr, cv, iou.");
   app.option("--patience", "N", options.patience, {0, 1000000},
@@ -113,7 +119,11 @@ void declare(cli::App& app, Options& options) {
   app.choice("--negative", options.negative, {"clip", "offset"},
              "fbp: set negative light to the floor, or raise all of a slice by its lowest.");
   app.option("--softness", "GAMMA", options.how.softness, cli::positive,
-             "cal: width of the resin's threshold, in largest doses.");
+             "cal, bclp: width of the resin's threshold, in doses.");
+  app.option("--power", "P", options.how.power, {1, 20}, "pm, bclp: the norm's exponent.");
+  app.option("--band", "EPSILON", options.how.band, {0, 0.5},
+             "bclp: how far the resin's response (0...1) may be from the target.");
+  app.option("--max-light", "LIGHT", options.how.peak, cli::non_negative, "apg, pm, bclp: largest light; 0 = any.");
   app.option("--step", "LAMBDA", options.how.step, cli::positive, "cal: length of a step.");
   app.flag("--no-threshold", options.no_threshold, "cal: a resin without threshold (for comparison).");
   app.group("Projector's grey levels");

@@ -139,14 +139,6 @@ class Apg final : public Method {
     restore(iterate.dose, before_.dose, back);
   }
 
-  static void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerSlice& back) {
-    for_values(now, [&](std::size_t s, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        if (back[s][i % lanes] != 0.0F) now[s].values[i] = before[s].values[i];
-      }
-    });
-  }
-
   Iterate before_;
   std::vector<Slab> update_, residual_;
   PerSlice momentum_, length_, loss_;

@@ -55,10 +55,7 @@ class Cal final : public Method {
  private:
   /// The largest dose of every slice becomes 1.
   static void normalise(const Problem& problem, Iterate& iterate) {
-    PerSlice factor = maxima(iterate.dose, problem);
-    for (auto& lane : factor) {
-      for (float& f : lane) f = f > 0 ? 1.0F / f : 0.0F;
-    }
+    const PerSlice factor = reciprocal(maxima(iterate.dose, problem));
     scale(iterate.g, factor);
     scale(iterate.dose, factor);
   }

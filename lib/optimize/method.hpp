@@ -26,6 +26,8 @@ struct MethodOptions {
   double softness = 0.05;    // cal: gamma of the sigmoid, in units of the largest dose
   double step = 0.5;         // cal: lambda
   double peak = 0;           // largest fluence, 0 = any: apg, pm, bclp
+  double power = 2;          // pm, bclp: p of the norm, at least 1
+  double band = 0.1;         // bclp: epsilon, how far the response may be from the target
 };
 
 class Method {

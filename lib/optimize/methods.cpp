@@ -7,6 +7,9 @@ namespace vam::optimize {
 std::unique_ptr<Method> make_fbp(const MethodOptions& options);
 std::unique_ptr<Method> make_dose_norm(const MethodOptions& options);
 std::unique_ptr<Method> make_cal(const MethodOptions& options);
+std::unique_ptr<Method> make_osmo(const MethodOptions& options);
+std::unique_ptr<Method> make_pm(const MethodOptions& options);
+std::unique_ptr<Method> make_bclp(const MethodOptions& options);
 std::unique_ptr<Method> make_apg(const MethodOptions& options);
 
 namespace {
@@ -18,7 +21,8 @@ struct Entry {
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{
-      {"fbp", make_fbp}, {"dose-norm", make_dose_norm}, {"cal", make_cal}, {"apg", make_apg}};
+      {"fbp", make_fbp}, {"dose-norm", make_dose_norm}, {"cal", make_cal}, {"osmo", make_osmo},
+      {"pm", make_pm},   {"bclp", make_bclp},           {"apg", make_apg}};
   return all;
 }
 

@@ -51,7 +51,6 @@ void settle_thin(Slab& slab, std::size_t lane, std::vector<Label>& labels) {
 }
 
 constexpr auto larger = [](float& a, float b) { a = std::max(a, b); };
-constexpr auto plus = [](float& a, float b) { a += b; };
 
 }  // namespace
 
@@ -114,22 +113,31 @@ PerSlice maxima(std::span<const Slab> images, const Problem& problem) {
 }
 
 PerSlice sums(std::span<const Slab> images, const Problem& problem) {
-  return reduce(
-      images, 0.0F,
-      [&](float& a, std::size_t s, std::size_t i) {
-        a += problem.labels[s][i] == Label::outside ? 0.0F : images[s].values[i];
-      },
-      plus);
+  return summed(images, [&](std::size_t s, std::size_t i) {
+    return problem.labels[s][i] == Label::outside ? 0.0F : images[s].values[i];
+  });
 }
 
 PerSlice loss(std::span<const Slab> dose, const Problem& problem) {
-  return reduce(
-      dose, 0.0F,
-      [&](float& a, std::size_t s, std::size_t i) {
-        const float d = slope(dose[s].values[i], problem.labels[s][i], problem.window);
-        a += 0.5F * d * d;
-      },
-      plus);
+  return summed(dose, [&](std::size_t s, std::size_t i) {
+    const float d = slope(dose[s].values[i], problem.labels[s][i], problem.window);
+    return 0.5F * d * d;
+  });
+}
+
+PerSlice reciprocal(PerSlice values) {
+  for (auto& lane : values) {
+    for (float& v : lane) v = v > 0 ? 1.0F / v : 0.0F;
+  }
+  return values;
+}
+
+void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerSlice& back) {
+  for_values(now, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (back[s][i % lanes] != 0.0F) now[s].values[i] = before[s].values[i];
+    }
+  });
 }
 
 void scale(std::span<Slab> images, const PerSlice& factor) {

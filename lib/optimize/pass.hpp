@@ -65,6 +65,37 @@ void for_values(std::span<const Slab> like, const Work& work) {
   });
 }
 
+/// Sum over each slice of value(slab, index), the rows of a slice added in order.
+template <class Value>
+[[nodiscard]] PerSlice summed(std::span<const Slab> like, const Value& value) {
+  PerSlice result(like.size());
+  for (auto& lane : result) lane.fill(0.0F);
+  if (like.empty()) return result;
+  const auto rows = static_cast<std::size_t>(like[0].height);
+  const std::size_t row = static_cast<std::size_t>(like[0].width) * lanes;
+  std::vector<std::array<float, lanes>> partial(like.size() * rows);
+  for_values(like, [&](std::size_t s, std::size_t first, std::size_t last) {
+    std::array<float, lanes> sum{};
+    for (std::size_t i = first; i < last; i += lanes) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += value(s, i + lane);
+    }
+    partial[s * rows + first / row] = sum;
+  });
+  std::vector<std::array<double, lanes>> totals(like.size());
+  for (std::size_t i = 0; i < partial.size(); ++i) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) totals[i / rows][lane] += static_cast<double>(partial[i][lane]);
+  }
+  for (std::size_t s = 0; s < totals.size(); ++s) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) result[s][lane] = static_cast<float>(totals[s][lane]);
+  }
+  return result;
+}
+
+/// 1 / value, 0 for 0.
+[[nodiscard]] PerSlice reciprocal(PerSlice values);
+/// now = before for the slices whose `back` is not 0.
+void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerSlice& back);
+
 /// Smallest value of each slice.
 [[nodiscard]] PerSlice minima(std::span<const Slab> images);
 /// Largest value of each slice inside the circle, at least 0.

@@ -83,6 +83,41 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
   }
 }
 
+TEST_CASE("osmo, pm and bclp widen the process window of fbp and leave fewer voxels wrong") {
+  const auto parts = some_parts();
+  const auto fbp = parts::run(parts, size, 360, "fbp", {}, 0);
+  for (const std::string name : {"osmo", "pm", "bclp"}) {
+    const auto m = parts::run(parts, size, 360, name, {}, 20);
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      CAPTURE(name);
+      CAPTURE(s);
+      CHECK(m[s].pw > fbp[s].pw + 0.02);
+      CHECK(m[s].ver <= fbp[s].ver);
+      CHECK(m[s].iou >= fbp[s].iou);
+    }
+  }
+}
+
+TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's loss worse") {
+  const auto part = oracle::wheel(96);
+  MethodOptions options;
+  options.power = 4;
+  const auto fbp = parts::run({part}, 96, 180, "fbp", {}, 0)[0];
+  CHECK(parts::run({part}, 96, 180, "pm", options, 20)[0].pw > fbp.pw);
+  const ParallelOperator light(parts::turn(96, 180));
+  const auto problem = make_problem(part.data(), 1, 96, 96, parts::circle(96), {});
+  const auto method = make_method("pm", {});  // p = 2: twice the one-sided loss
+  Iterate state;
+  method->start(problem, light, state);
+  float before = loss(state.dose, problem)[0][0];
+  for (int i = 0; i < 15; ++i) {
+    method->step(problem, light, state);
+    const float now = loss(state.dose, problem)[0][0];
+    CHECK(now <= before * 1.00001F);  // the same sum, rounded in another way
+    before = now;
+  }
+}
+
 TEST_CASE("projections are never negative") {
   for (const auto& name : method_names()) {
     CAPTURE(name);
@@ -107,5 +142,6 @@ TEST_CASE("contradictory thresholds and unknown methods are refused") {
   MethodOptions options;
   options.window = {0.9, 0.7};
   CHECK_THROWS_WITH_AS(make_method("cal", options), doctest::Contains("0.9 is not below --dose-high 0.7"), vam::Error);
-  CHECK_THROWS_WITH_AS(make_method("magic", {}), doctest::Contains("there are fbp, dose-norm, cal, apg"), vam::Error);
+  CHECK_THROWS_WITH_AS(make_method("magic", {}),
+                       doctest::Contains("there are fbp, dose-norm, cal, osmo, pm, bclp, apg"), vam::Error);
 }

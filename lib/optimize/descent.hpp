@@ -1,0 +1,36 @@
+// Projected gradient descent with a step that chooses itself, for any loss that is a sum over voxels.
+#pragma once
+
+#include "optimize/method.hpp"
+
+namespace vam::optimize {
+
+/// g <- clamp(g - alpha A r(A* g), 0, g_max), r the slope of the loss. Each slice has its own alpha: at first Cauchy's,
+/// then Barzilai & Borwein's (1988) <dg, dg> / <dg, A dr> = <dg, dg> / <dx, dr>, which needs no projection of its own.
+/// A slice whose loss went up goes back and on with a shorter step, so that the loss never rises.
+class Descent : public Method {
+ public:
+  using Method::Method;
+  void start(const Problem& problem, const Operator& light, Iterate& iterate) override;
+  void resume(const Problem& problem, const Operator& light, Iterate& iterate) override;
+  void step(const Problem& problem, const Operator& light, Iterate& iterate) override;
+  [[nodiscard]] int usual_iterations() const override { return 60; }
+
+ protected:
+  /// The loss of one voxel, and its derivative by the dose.
+  [[nodiscard]] virtual float loss(float dose, float target, Label label) const = 0;
+  [[nodiscard]] virtual float slope(float dose, float target, Label label) const = 0;
+
+ private:
+  void prepare(const Problem& problem, const Operator& light, const Iterate& iterate);
+  void slopes(const Problem& problem, const std::vector<Slab>& dose, std::vector<Slab>& to) const;
+  [[nodiscard]] PerSlice losses(const Problem& problem, const std::vector<Slab>& dose) const;
+  void judge(const Problem& problem, Iterate& iterate);
+
+  Iterate before_;
+  std::vector<Slab> gradient_, slope_, slope_before_;
+  PerSlice length_, loss_;
+  float peak_ = 0;
+};
+
+}  // namespace vam::optimize
