@@ -61,7 +61,7 @@ cli::Manual manual() {
        "P; bclp how far the resin's response is outside a band around the target. apg, the best of them, asks the void "
        "to stay "
        "below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; it has no "
-       "step to choose.",
+       "step to choose, and a slice that has reached both is asked for a wider window.",
        "The dose that the projections give is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "

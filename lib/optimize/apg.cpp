@@ -14,6 +14,10 @@ namespace {
 
 constexpr float shorter = 0.7F;  // measured on a 512 x 512 resolution target; 0.5 and 0.9 do a little worse
 
+constexpr double close_enough = 0.2;  // of the half width of a slice's window
+constexpr double wider = 1.1;
+constexpr double widest = 0.3;  // half width, in doses
+
 class Apg final : public Method {
  public:
   using Method::Method;
@@ -67,7 +71,9 @@ class Apg final : public Method {
     for (auto& lane : length_) lane.fill(static_cast<float>(1.0 / largest));
     momentum_.assign(iterate.g.size(), {});
     for (auto& lane : momentum_) lane.fill(1.0F);
-    loss_ = loss(iterate.dose, problem);
+    window_.assign(iterate.g.size(), {});
+    for (auto& lane : window_) lane.fill(problem.window);
+    loss_ = losses(problem, iterate);
   }
 
   /// Values at a bound that the plain gradient would push beyond it are held there, and only the others take part in
@@ -111,7 +117,7 @@ class Apg final : public Method {
       for (std::size_t i = first; i < last; ++i) {
         const float now = iterate.dose[s].values[i];
         const float ahead = now + beta[s][i % lanes] * (now - before_.dose[s].values[i]);
-        residual_[s].values[i] = slope(ahead, problem.labels[s][i], problem.window);
+        residual_[s].values[i] = slope(ahead, problem.labels[s][i], window_[s][i % lanes]);
       }
     });
   }
@@ -119,7 +125,7 @@ class Apg final : public Method {
   /// A slice whose loss went up goes back to where it was and on with a shorter step, without momentum. So the loss
   /// never rises.
   void safeguard(const Problem& problem, Iterate& iterate) {
-    const PerSlice now = loss(iterate.dose, problem);
+    const PerSlice now = losses(problem, iterate);
     PerSlice back(now.size());
     bool any = false;
     for (std::size_t s = 0; s < now.size(); ++s) {
@@ -134,13 +140,43 @@ class Apg final : public Method {
         length_[s][lane] *= shorter;
       }
     }
-    if (!any) return;
-    restore(iterate.g, before_.g, back);
-    restore(iterate.dose, before_.dose, back);
+    if (any) {
+      restore(iterate.g, before_.g, back);
+      restore(iterate.dose, before_.dose, back);
+    }
+    if (widen(problem, iterate)) loss_ = losses(problem, iterate);
+  }
+
+  [[nodiscard]] PerSlice losses(const Problem& problem, const Iterate& iterate) const {
+    return summed(iterate.dose, [&](std::size_t s, std::size_t i) {
+      const float d = slope(iterate.dose[s].values[i], problem.labels[s][i], window_[s][i % lanes]);
+      return 0.5F * d * d;
+    });
+  }
+
+  /// A slice that has nearly what was asked of it, is asked for more: its window grows about the threshold, so that
+  /// easy parts get the widest process window they can and hard ones are not asked for what they cannot reach.
+  bool widen(const Problem& problem, const Iterate& iterate) {
+    bool any = false;
+    for (std::size_t s = 0; s < window_.size(); ++s) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        Window& window = window_[s][lane];
+        const double half = 0.5 * (window.high - window.low);
+        // One voxel that misses by a fifth of the half width costs so much.
+        if (static_cast<double>(loss_[s][lane]) > 0.5 * close_enough * close_enough * half * half ||
+            half * wider > widest)
+          continue;
+        const double middle = problem.window.threshold();
+        window = {middle - wider * half, middle + wider * half};
+        any = true;
+      }
+    }
+    return any && !iterate.dose.empty();
   }
 
   Iterate before_;
   std::vector<Slab> update_, residual_;
+  std::vector<std::array<Window, lanes>> window_;
   PerSlice momentum_, length_, loss_;
   float peak_ = 0;
   std::vector<std::vector<std::uint16_t>> active_;

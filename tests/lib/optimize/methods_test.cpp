@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
 #include "optimize/loss.hpp"
@@ -81,6 +82,14 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
     CHECK(apg[s].ver <= std::min(fbp[s].ver, normalised[s].ver));
     CHECK(apg[s].iou >= std::max(fbp[s].iou, normalised[s].iou));
   }
+}
+
+TEST_CASE("apg widens the window of an easy part further than a hard one's, which still prints") {
+  const auto easy = oracle::draw(96, [](double x, double y) { return std::hypot(x - 6, y) < 18; });
+  const auto m = parts::run({easy, oracle::resolution_target(96)}, 96, 180, "apg", {}, 40);
+  CHECK(m[0].min_part - m[0].max_void > 0.15);  // it began with 0.1
+  CHECK(m[0].pw > m[1].pw);
+  CHECK(m[1].ver == 0.0);
 }
 
 TEST_CASE("osmo, pm and bclp widen the process window of fbp and leave fewer voxels wrong") {
