@@ -1,0 +1,50 @@
+// The lamp half of a projector: LEDs, their current, and whether grey is linear.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "device/guardian.hpp"
+#include "device/lock.hpp"
+#include "device/usb_link.hpp"
+
+namespace vam::device {
+
+struct LightSettings {
+  std::optional<int> current;  // 0..255, in the controller's own steps; absent: as it is
+  int max_current = 100;       // a larger current is refused
+  std::string leds = "b";      // any of r, g, b
+};
+
+/// A DLP controller on USB. Between on() and dark() the guardian holds the order to darken. Throws Error: absent, busy
+/// (no answer), protocol (NACK, wrong answer, or a setting that does not read back), usage (current above the cap).
+class LightEngine {
+ public:
+  virtual ~LightEngine() = default;
+  /// Model, firmware, status bits.
+  virtual Json identify() = 0;
+  /// Awake, video input, gamma off (linear grey) and current set, each read back. LEDs stay off.
+  virtual void prepare() = 0;
+  virtual void on() = 0;
+  /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.
+  virtual void dark() = 0;
+  virtual void standby() = 0;
+
+  void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
+
+ private:
+  std::unique_ptr<DeviceLock> lock_;
+};
+
+/// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current, max_current and leds; sim: is a simulated
+/// DLPC350.
+[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, Guardian* guardian);
+
+enum class DlpModel { dlpc350, dlpc900 };
+[[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, DlpModel model,
+                                                          const LightSettings& settings, Guardian* guardian);
+
+}  // namespace vam::device

@@ -1,0 +1,140 @@
+#include "device/player.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace vam::device {
+
+namespace {
+
+constexpr double light_lead_s = 0.1;  // the engine's own time to come on
+
+// Black and dark on every way out.
+class DarkOnExit {
+ public:
+  DarkOnExit(Display& display, LightEngine* light) : display_(display), light_(light) {}
+  ~DarkOnExit() {
+    try {
+      if (light_ != nullptr) light_->dark();
+    } catch (...) {
+      // The guardian still holds the order.
+    }
+    try {
+      display_.present(-1);
+    } catch (...) {
+      // The display's destructor and the guardian come next.
+    }
+  }
+  DarkOnExit(const DarkOnExit&) = delete;
+  DarkOnExit& operator=(const DarkOnExit&) = delete;
+
+ private:
+  Display& display_;
+  LightEngine* light_;
+};
+
+// Presents, counts and logs.
+class Presenter {
+ public:
+  Presenter(Display& display, const std::function<void(const FlipRecord&)>& log) : display_(display), log_(log) {
+    last_ = display_.present(-1);
+  }
+
+  void show(int frame, const AngleSample& predicted, bool count) {
+    FlipRecord record;
+    record.flip = display_.present(frame);
+    record.frame = frame;
+    record.angle_deg = predicted.angle_deg;
+    record.sigma_deg = predicted.sigma_deg;
+    record.missed = std::max(0L, record.flip.sequence - last_.sequence - 1);
+    last_ = record.flip;
+    ++tally_.flips;
+    if (frame >= 0) ++tally_.lit;
+    if (count) tally_.missed += record.missed;
+    log_(record);
+  }
+
+  [[nodiscard]] double next_s() const { return last_.time_s + 1 / display_.mode().hz; }
+  [[nodiscard]] const PlayTally& tally() const { return tally_; }
+
+ private:
+  Display& display_;
+  const std::function<void(const FlipRecord&)>& log_;
+  Flip last_;
+  PlayTally tally_;
+};
+
+void require_flips(const PlayTally& tally, double expected, double allowed, const char* when) {
+  if (static_cast<double>(tally.missed) <= allowed * expected) return;
+  throw Error{Fault::busy, "display: missed " + std::to_string(tally.missed) + " vertical blanks " + when +
+                               " (allowed " + format_number(100 * allowed) + " % of " +
+                               format_number(std::floor(expected)) + "); end other programs or choose a slower mode"};
+}
+
+}  // namespace
+
+Json to_json(const FlipRecord& record) {
+  Json line{{"t_monotonic_s", record.flip.time_s}, {"event", "flip"}, {"sequence", record.flip.sequence}};
+  line["frame"] = record.frame;
+  line["angle_deg"] = record.angle_deg;
+  line["sigma_deg"] = record.sigma_deg;
+  if (record.missed > 0) line["missed"] = record.missed;
+  return line;
+}
+
+PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
+               const std::function<void(const FlipRecord&)>& log) {
+  const DarkOnExit dark(display, light);
+  Presenter presenter(display, log);
+  const double step_deg = 360.0 / plan.frames_per_turn;
+  const double end_deg = 360.0 * plan.turns;
+  bool light_is_on = false;
+  for (;;) {
+    bool switched = false;
+    angles.update();
+    // The frame is on from the next blank, plus the projector's latency, for one period: its angle is that in between.
+    const double period_s = 1 / display.mode().hz;
+    const double next_s = std::max(presenter.next_s(), clock.now_s());
+    const auto predicted = angles.at(next_s + plan.latency_s + 0.5 * period_s);
+    if (!predicted) {
+      presenter.show(-1, {}, false);
+      continue;
+    }
+    const double speed_deg_s = (angles.at(next_s + 1)->angle_deg - angles.at(next_s)->angle_deg);
+    const double expected = std::abs(end_deg / std::max(speed_deg_s, 1e-9)) * display.mode().hz;
+    if (predicted->angle_deg >= end_deg) break;
+    const bool lit = predicted->angle_deg >= 0;
+    if (!light_is_on && predicted->angle_deg >= -light_lead_s * speed_deg_s && speed_deg_s > 0) {
+      require_flips(presenter.tally(), expected, plan.allowed_missed, "in the dry run-up");
+      if (light != nullptr) light->on();
+      light_is_on = switched = true;
+    }
+    const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
+    presenter.show(
+        lit ? static_cast<int>(nearest % plan.frames_per_turn) : -1, *predicted,
+        predicted->angle_deg >= -360 && !switched);  // the engine's answer may take a blank, while all is black
+    require_flips(presenter.tally(), expected, plan.allowed_missed, "in the print");
+  }
+  presenter.show(-1, *angles.at(clock.now_s()), false);
+  return presenter.tally();
+}
+
+PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int frames, double hold_s, bool forever,
+                       const std::function<void(const FlipRecord&)>& log) {
+  const DarkOnExit dark(display, light);
+  Presenter presenter(display, log);
+  if (light != nullptr) light->on();
+  const double start_s = clock.now_s();
+  for (;;) {
+    const auto n = static_cast<long>((presenter.next_s() - start_s) / hold_s);
+    if (!forever && n >= frames) break;
+    presenter.show(static_cast<int>(std::max(0L, n) % frames), {}, true);
+  }
+  presenter.show(-1, {}, false);
+  return presenter.tally();
+}
+
+}  // namespace vam::device

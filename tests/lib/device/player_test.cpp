@@ -1,0 +1,254 @@
+#include "device/player.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+
+#include "base/error.hpp"
+#include "device/sim_dlp.hpp"
+#include "device/spin.hpp"
+#include "fault_of.hpp"
+#include "virtual_stage.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+struct Run {
+  std::vector<std::pair<double, AngleSample>> samples;  // when it became known, and the sample
+  std::vector<std::pair<double, double>> truth;         // time, angle
+  [[nodiscard]] double true_deg(double t_s) const {
+    const auto after = std::lower_bound(truth.begin(), truth.end(), std::pair(t_s, -1e18));
+    if (after == truth.begin() || after == truth.end()) return NAN;
+    const auto before = after - 1;
+    return before->second + (after->second - before->second) * (t_s - before->first) / (after->first - before->first);
+  }
+};
+
+// A whole run of a simulated stage, recorded in virtual time.
+Run recorded(const SimGcsSettings& sim, const SpinPlan& plan) {
+  Run run;
+  VirtualStage lab(sim);
+  spin(*lab.stage, lab.clock, plan,
+       [&](const AngleSample& sample) { run.samples.emplace_back(lab.clock.now_s(), sample); });
+  for (const auto& line : lab.log) {
+    if (line["event"] == "angle")
+      run.truth.emplace_back(line["t_monotonic_s"].get<double>(), line["angle_deg"].get<double>());
+  }
+  return run;
+}
+
+// Hands the recorded samples out as they became known.
+class Replay final : public AngleSource {
+ public:
+  Replay(const Run& run, Clock& clock) : run_(run), clock_(clock) {}
+  void update() override {
+    while (next_ < run_.samples.size() && run_.samples[next_].first <= clock_.now_s())
+      fit_.add(run_.samples[next_++].second);
+  }
+  std::optional<AngleSample> at(double t_s) const override {
+    if (!fit_.ready()) return std::nullopt;
+    return fit_.at(t_s);
+  }
+
+ private:
+  const Run& run_;
+  Clock& clock_;
+  std::size_t next_ = 0;
+  AngleFit fit_;
+};
+
+// By the clock from the true moment of angle 0: as well as elapsed time can be started.
+class WellStarted final : public AngleSource {
+ public:
+  WellStarted(const Run& run, double speed_deg_s) : speed_deg_s_(speed_deg_s) {
+    zero_s_ =
+        std::find_if(run.truth.begin(), run.truth.end(), [](const auto& point) { return point.second >= 0; })->first;
+  }
+  void update() override {}
+  std::optional<AngleSample> at(double t_s) const override {
+    return AngleSample{t_s, speed_deg_s_ * (t_s - zero_s_), 0};
+  }
+
+ private:
+  double speed_deg_s_;
+  double zero_s_ = 0;
+};
+
+constexpr int frames_per_turn = 3600;
+
+// |angle of the shown frame - true angle in the middle of its showing|, 99th percentile.
+double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, PlayTally& tally) {
+  const auto display = open_display("null:?hz=60", {16, 8, 60}, clock, nullptr);
+  PlayPlan plan;
+  plan.frames_per_turn = frames_per_turn;
+  for (int i = 0; i < frames_per_turn; ++i) display->add(GreyImage(16, 8, 8));
+  std::vector<double> errors;
+  tally = play(*display, nullptr, angles, clock, plan, [&](const FlipRecord& record) {
+    if (record.frame < 0) return;
+    const double truth = run.true_deg(record.flip.time_s + 0.5 / 60);
+    if (std::isfinite(truth))
+      errors.push_back(std::abs(std::remainder(record.frame * 360.0 / frames_per_turn - truth, 360)));
+  });
+  REQUIRE(errors.size() > 500);
+  std::nth_element(errors.begin(),
+                   errors.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(errors.size())),
+                   errors.end());
+  return errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size()))];
+}
+
+}  // namespace
+
+TEST_CASE(
+    "Promise 3: with 1 % speed error and 5 ms jitter the shown frame is within 0.1 deg, p99; by elapsed time it is "
+    "not") {
+  for (const double speed_deg_s : {10.0, 25.0}) {
+    for (const double speed_error : {-0.01, 0.01}) {
+      CAPTURE(speed_deg_s);
+      CAPTURE(speed_error);
+      SimGcsSettings sim;
+      sim.motor.speed_error = speed_error;
+      sim.jitter_s = 0.005;
+      SpinPlan plan;
+      plan.speed_deg_s = speed_deg_s;
+      const Run run = recorded(sim, plan);
+      VirtualClock clock(run.truth.front().first);
+      Replay followed(run, clock);
+      PlayTally tally;
+      const double error_deg = p99_error_deg(run, followed, clock, tally);
+      MESSAGE(speed_deg_s << " deg/s, " << speed_error << ": p99 " << error_deg << " deg");
+      CHECK(error_deg <= 0.1);
+      CHECK(tally.missed == 0);
+      VirtualClock again(run.truth.front().first);
+      WellStarted elapsed(run, speed_deg_s);
+      const double blind_deg = p99_error_deg(run, elapsed, again, tally);
+      MESSAGE("by elapsed time: p99 " << blind_deg << " deg");
+      CHECK(blind_deg > 1);  // 1 % of a turn is 3.6 deg at its end
+    }
+  }
+}
+
+TEST_CASE("Light only from angle 0 to the last turn's end, and black after") {
+  VirtualClock clock;
+  std::vector<Json> leds;
+  const auto light =
+      make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }), DlpModel::dlpc350, {}, nullptr);
+  light->prepare();
+  leds.clear();
+  const auto display = open_display("null:", {4, 4, 60}, clock, nullptr);
+  for (int i = 0; i < 360; ++i) display->add(GreyImage(4, 4, 8));
+  class Steady final : public AngleSource {
+   public:
+    explicit Steady(double zero_s) : zero_s_(zero_s) {}
+    void update() override {}
+    std::optional<AngleSample> at(double t_s) const override { return AngleSample{t_s, 30 * (t_s - zero_s_), 0.01}; }
+    double zero_s_;
+  } angles(clock.now_s() + 14);
+  PlayPlan plan;
+  plan.turns = 2;
+  std::vector<FlipRecord> records;
+  const PlayTally tally =
+      play(*display, light.get(), angles, clock, plan, [&](const FlipRecord& record) { records.push_back(record); });
+  REQUIRE(leds.size() == 2);
+  CHECK(leds[0]["bits"] == 4);
+  CHECK(leds[1]["bits"] == 0);
+  CHECK(records.back().frame == -1);
+  for (const auto& record : records) {
+    const double angle_deg = 30 * (record.flip.time_s + 0.5 / 60 - angles.zero_s_);
+    if (record.frame >= 0) {
+      CHECK(angle_deg > -1e-6);
+      CHECK(angle_deg < 720);
+      CHECK(std::abs(std::remainder(angle_deg - record.frame, 360)) <= 0.5 + 1e-6);
+    } else if (angle_deg > 0) {
+      CHECK(angle_deg >= 720);
+    }
+  }
+  CHECK(tally.lit == 2 * 12 * 60);  // 2 turns of 12 s at 60 Hz
+  CHECK(tally.missed == 0);
+}
+
+TEST_CASE("Missed vertical blanks: in the run-up no light at all, in the print black at once") {
+  for (const int miss : {50, 1200}) {
+    VirtualClock clock;
+    std::vector<Json> leds;
+    const auto light = make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }),
+                                      DlpModel::dlpc350, {}, nullptr);
+    light->prepare();
+    leds.clear();
+    const auto display = open_display("null:?miss=" + std::to_string(miss), {4, 4, 60}, clock, nullptr);
+    display->add(GreyImage(4, 4, 8));
+    class Steady final : public AngleSource {
+     public:
+      explicit Steady(double zero_s) : zero_s_(zero_s) {}
+      void update() override {}
+      std::optional<AngleSample> at(double t_s) const override { return AngleSample{t_s, 30 * (t_s - zero_s_), 0.01}; }
+      double zero_s_;
+    } angles(clock.now_s() + 13);
+    PlayPlan plan;
+    plan.frames_per_turn = 1;
+    FlipRecord last;
+    const auto fault = fault_of(
+        [&] { play(*display, light.get(), angles, clock, plan, [&](const FlipRecord& record) { last = record; }); });
+    CHECK(fault == Fault::busy);
+    // 780 blanks of run-up come before the light: every 50th missed is noticed there, the 1200th only later.
+    CHECK(leds.size() == (miss == 50 ? 0 : 2));
+    if (!leds.empty()) CHECK(leds.back()["bits"] == 0);
+  }
+}
+
+TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are errors") {
+  std::array<int, 2> line{};
+  const auto start = [&](VirtualClock& clock) {
+    REQUIRE(pipe(line.data()) == 0);
+    return followed_angle("/dev/fd/" + std::to_string(line[0]), clock);
+  };
+  const auto say = [&](const std::string& text) {
+    REQUIRE(write(line[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()));
+  };
+  {
+    VirtualClock clock(50);
+    const auto angles = start(clock);
+    angles->update();
+    CHECK_FALSE(angles->at(50).has_value());
+    for (int i = 0; i <= 100; ++i) say(to_line({50 + 0.01 * i, 0.25 * i, 0.01}));
+    say("\n");  // to_line() has no LF of its own: what stands on one line is no line
+    CHECK(fault_of([&] { angles->update(); }) == Fault::data);
+    close(line[0]);
+    close(line[1]);
+  }
+  {
+    VirtualClock clock(50);
+    const auto angles = start(clock);
+    for (int i = 0; i <= 100; ++i) say(to_line({50 + 0.01 * i, 0.25 * i, 0.01}) + "\n");
+    angles->update();
+    REQUIRE(angles->at(51.1).has_value());
+    CHECK(angles->at(51.1)->angle_deg == doctest::Approx(27.5));
+    clock.sleep_until(50.2);
+    angles->update();
+    clock.sleep_until(50.4);
+    CHECK(message_of([&] { angles->update(); }).find("none for 0.3 s after line 101") != std::string::npos);
+    close(line[1]);
+    CHECK(message_of([&] { angles->update(); }).find("ended") != std::string::npos);
+    close(line[0]);
+  }
+  VirtualClock clock;
+  CHECK(fault_of([&] { (void)followed_angle("/nonexistent", clock); }) == Fault::no_input);
+}
+
+TEST_CASE("A screen takes frames of its own size and depth only") {
+  VirtualClock clock;
+  const auto display = open_display("null:", {4, 3, 60}, clock, nullptr);
+  CHECK(fault_of([&] { display->add(GreyImage(3, 4, 8)); }) == Fault::data);
+  CHECK(fault_of([&] { display->add(GreyImage(4, 3, 10)); }) == Fault::usage);
+  GreyImage two(2, 1, 1);
+  two(1, 0) = 1;
+  CHECK(screen_bytes(two, {2, 1, 60}) == std::vector<std::uint8_t>{0, 255});
+  CHECK(fault_of([&] { (void)open_display("hdmi:1", {4, 3, 60}, clock, nullptr); }) == Fault::usage);
+}
