@@ -1,5 +1,6 @@
 // vam-project: projector frames from sinograms, for files; one frame per time step of the turning stage.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "io/report.hpp"
 #include "io/response_file.hpp"
 #include "io/stream.hpp"
+#include "live.hpp"
 #include "optics/flatland.hpp"
 #include "optics/frames.hpp"
 #include "resin/response.hpp"
@@ -38,6 +40,7 @@ struct Options {
   cli::PrinterOptions printer;
   io::StackOptions stack;
   std::string report;
+  tool::LiveOptions live;
 };
 
 cli::Manual manual() {
@@ -55,6 +58,15 @@ cli::Manual manual() {
        "from. A name in .exr, or standard output, is an EXR frame stack with the wanted intensity as a fraction of "
        "full, "
        "quantised only when --bits is given.",
+       "Live: an output of sdl:N is a window over screen N of the desktop, drm:HDMI-A-1 the connector itself by page "
+       "flips (no desktop may run there), null: a dry run. One turn of frames is preloaded; then for every vertical "
+       "blank the frame is shown that belongs to the table's angle in the middle of its showing. With --follow the "
+       "angle "
+       "is predicted from the lines of vam-stage spin: black before angle 0, black again after the last turn. Without "
+       "it "
+       "the angle is the speed times the time since the first frame. The run-up turn is a dry run: when vertical "
+       "blanks "
+       "are missed there, no light comes at all. The frames' size must be the screen's.",
        "Time: frame n is centred on time n / fps, when the stage stands at n x speed / fps; it is shown for one frame "
        "period around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its "
        "rows; otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "
@@ -83,8 +95,21 @@ cli::Manual manual() {
        {"The validation movie of the slice in the middle:",
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-project "
         "--flatland 0 "
-        "-o flatland.mp4"}},
-      {"Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
+        "-o flatland.mp4"},
+       {"A synchronised print of one turn, here on a simulated stage and no screen:",
+        "vam-stage spin --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed 0.1"}},
+      {"Safety (live output). When vam-project dies of anything, hangs for 0.5 s, loses the stage's angles for 0.3 s "
+       "or "
+       "misses too many flips, the screen is black and the light engine dark within 100 ms: a child process, the "
+       "guardian, "
+       "holds the order. This is software and no interlock: wire a hardware one that cuts the light. A window that "
+       "goes "
+       "shows the desktop behind it, so make that black. The LED current is never raised above max_current.",
+       "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
+       "current=0..255, max_current (100 unless given) and leds (any of r, g and b; b unless given). The engine is "
+       "woken, "
+       "set to video with its gamma off, and every setting is read back before light.",
+       "Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
        "x 200 "
        "slices x 400 lit columns: 115 MB), and a few frames. A sinogram cannot be turned into frames slice by slice.",
        "PNG: 1, 2, 4 and 8 bits are stored at that depth. 10 bits are stored in 16, spread over the full range and "
@@ -121,6 +146,7 @@ void declare(cli::App& app, Options& options) {
              "The value that becomes full intensity; without it the largest of the stack.");
   app.option("--intensity", "FACTOR", options.intensity, cli::positive,
              "Multiplies all light; beyond full it is clipped.");
+  tool::add_live(app, options.live);
   cli::add_printer(app, options.printer);
   app.group("Output and machine");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
@@ -221,6 +247,40 @@ Json figures(const optics::FrameSchedule& schedule, int bits, double peak, const
           {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};
 }
 
+void warn_clipped(const resin::LightTally& tally) {
+  if (tally.clipped == 0) return;
+  warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
+       " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
+}
+
+// One turn's frames into the display, then the print: the angle of the table chooses the frame.
+void run_live(const cli::App& app, const Options& options, const model::Printer& printer) {
+  const double turns = options.turns.value_or(printer.stage.turns);
+  if (turns != std::floor(turns))
+    throw Error{Fault::usage, "--turns: a live print has whole turns, not " + format_number(turns)};
+  if (options.live.follow == "-" && options.input == "-") {
+    throw Error{Fault::usage,
+                "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
+  }
+  tool::Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
+  io::StackReader reader(options.input);
+  const Light light = read_light(options, reader, printer.projector);
+  const double peak = options.peak.value_or(light.peak);
+  const int frames = options.live.frames_per_turn.value_or(reader.info().height);
+  const auto schedule = optics::frame_schedule(frames, 360, 1);
+  tool::LiveSink sink(live, printer.stage.speed_deg_s, static_cast<int>(turns));
+  const auto tally =
+      show(light, static_cast<float>(options.intensity / peak), schedule, printer.projector, app.given("--bits"), sink);
+  warn_clipped(tally);
+  Json report = figures(schedule, printer.projector.bits, peak, tally);
+  report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
+  report.erase("fps_hz");
+  report["flips"] = sink.tally.flips;
+  report["lit_flips"] = sink.tally.lit;
+  report["missed_flips"] = sink.tally.missed;
+  io::write_report(options.report, "vam-project/1", report);
+}
+
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = settings(options);
   const model::Projector& projector = printer.projector;
@@ -228,6 +288,9 @@ void run(const cli::App& app, Options& options) {
     io::OutputFile out(options.output, io::Content::text);
     out.write(io::printer_toml(printer));
     return out.commit();
+  }
+  if (device::names_display(options.output)) {
+    return device::interruptible([&] { run_live(app, options, printer); });
   }
   const double turns = options.turns.value_or(printer.stage.turns);
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
@@ -245,10 +308,7 @@ void run(const cli::App& app, Options& options) {
   const auto sink = io::open_frame_sink(options.output, facts);
   const auto scale = static_cast<float>(options.intensity / peak);
   const auto tally = show(light, scale, schedule, projector, app.given("--bits"), *sink);
-  if (tally.clipped > 0) {
-    warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
-         " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
-  }
+  warn_clipped(tally);
   io::write_report(options.report, "vam-project/1", figures(schedule, projector.bits, peak, tally));
 }
 

@@ -27,9 +27,14 @@ struct TextureCloser {
 };
 struct Library {
   Library() {
+    // Without a desktop SDL would draw on a screen that nobody sees.
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
+      throw Error{Fault::absent, "sdl: cannot reach a desktop; set DISPLAY or WAYLAND_DISPLAY, or use drm:"};
+    }
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");            // signals are ours
     SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");  // a print must not vanish at a click elsewhere
     if (SDL_Init(SDL_INIT_VIDEO) != 0) throw refused("reach a desktop; set DISPLAY or WAYLAND_DISPLAY");
+    SDL_ShowCursor(SDL_DISABLE);  // before there is a window: a cursor is light, too
   }
   ~Library() { SDL_Quit(); }
   Library(const Library&) = delete;
@@ -55,7 +60,6 @@ class SdlDisplay final : public Display {
     texture_.reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING,
                                      mode_.columns, mode_.rows));
     if (!texture_) throw refused("draw");
-    SDL_ShowCursor(SDL_DISABLE);
     SDL_DisableScreenSaver();
     origin_s_ = clock_.now_s();
     next_s_ = origin_s_;

@@ -1,0 +1,84 @@
+#!/bin/sh
+# vam-project on a screen: pixels exact, frames by the table's angle, black whatever happens.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
+screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
+
+cat >printer.toml <<'TOML'
+[projector]
+columns = 64
+rows = 48
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 40
+TOML
+$exr make part.exr space=projector width=64 height=36 count=3
+
+fails 64 'whole turns' vam-project part.exr -o null: --turns 1.5
+fails 64 'cannot be both' vam-project - -o null: --follow -
+fails 64 'unknown scheme|unknown option' vam-project part.exr -o null:?herz=5
+fails 64 'out of range' vam-project part.exr -o null: --missed 2
+fails 66 'cannot be opened' vam-project part.exr -o null: --follow missing
+fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
+fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
+fails 64 'above the cap' vam-project part.exr -o null: --light 'sim:?current=120'
+fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
+
+# A dry run by the stage's angles.
+vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 |
+  vam-project part.exr -o null: --follow - --light 'sim:?log=leds' --log flips --missed 0.2 --report report.json
+is 'a followed print ends well' $? 0
+is 'the light came on once and went off once' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
+holds 'about four seconds of light at 60 Hz' "$(json report.json lit_flips) > 200 && $(json report.json lit_flips) < 260"
+is 'black before and after' "$(grep -c '"frame":-1' flips | awk '{ print ($1 > 50) }') $(grep '"event":"flip"' flips | tail -n 1 | grep -c '"frame":-1')" '1 1'
+python3 - >angles <<'PY'
+import json
+worst = 0
+for line in map(json.loads, open("flips")):
+    if line["event"] == "flip" and line["frame"] >= 0:
+        off = (line["angle_deg"] - 10 * line["frame"] + 180) % 360 - 180
+        worst = max(worst, abs(off))
+        assert line["angle_deg"] >= 0
+print(worst <= 5 + 1e-9)
+PY
+is 'every frame is the one nearest to the angle' "$(cat angles)" True
+
+# The stage ends too early: black, dark, and an error.
+vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.25 | sed -u 550q |
+  vam-project part.exr -o null: --follow - --light 'sim:?log=leds2' --missed 0.5 2>errors
+is 'a stage that ends is an error' $? 75
+ok 'which is named' grep -q 'ended after line 550' errors
+is 'and the light is off' "$(tail -n 1 leds2 | grep -o '"bits":[0-9]*')" '"bits":0'
+
+# A real window, on a virtual screen whose picture is a file.
+mkdir screen
+exec 4>screen.number
+# -noreset: a server that starts over when its last client goes draws a cursor for an instant.
+Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset >/dev/null 2>&1 &
+server=$!
+tries=0; while [ ! -s screen.number ] && [ $tries -lt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+DISPLAY=:$(cat screen.number); export DISPLAY
+export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+
+fails 65 'do not fit the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
+fails 69 'no such screen' vam-project part.exr -o sdl:7
+vam-project part.exr -o frames/ --fps 1 --speed 10
+vam-project part.exr -o sdl:0 --speed 90 --log shown --missed 0.5 2>errors &
+tool=$!
+$screen watch 6 0.5 >seen &
+watcher=$!
+vam-project part.exr -o sdl:0 2>second
+is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
+wait $tool
+is 'an unfollowed print ends well' $? 0
+wait $watcher
+$screen compare frames seen >compared
+is 'every picture seen on the screen is one of the frames, exactly' "$(cut -d' ' -f1 compared)" exact
+holds 'and of the 19 different frames nearly all were seen' "$(cut -d' ' -f2 compared) >= 18"
+is 'black at the end' "$($screen now)" black
+is 'nothing was said' "$(cat errors)" ''
+
+kill $server
+wait $server 2>/dev/null
+done_testing
