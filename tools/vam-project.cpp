@@ -104,7 +104,8 @@ cli::Manual manual() {
        "guardian, "
        "holds the order. This is software and no interlock: wire a hardware one that cuts the light. A window that "
        "goes "
-       "shows the desktop behind it, so make that black. The LED current is never raised above max_current.",
+       "shows the desktop behind it, so make that black and keep the pointer on another screen. The LED current is "
+       "never raised above max_current.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
        "current=0..255, max_current (100 unless given) and leds (any of r, g and b; b unless given). The engine is "
        "woken, "

@@ -54,8 +54,8 @@ is 'and the light is off' "$(tail -n 1 leds2 | grep -o '"bits":[0-9]*')" '"bits"
 # A real window, on a virtual screen whose picture is a file.
 mkdir screen
 exec 4>screen.number
-# -noreset: a server that starts over when its last client goes draws a cursor for an instant.
-Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset >/dev/null 2>&1 &
+# -noreset, -nocursor: what the server itself draws when its last client goes is no part of this test.
+Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
 server=$!
 tries=0; while [ ! -s screen.number ] && [ $tries -lt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
 DISPLAY=:$(cat screen.number); export DISPLAY
