@@ -1,0 +1,93 @@
+// What prints, with which method, and how fast: prints a table. Argument: target, stack or osmo; all without.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lib/optimize/parts.hpp"
+#include "oracle/part_2d.hpp"
+
+namespace {
+
+using namespace vam;
+
+double seconds(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Iterations that keep within 120 projections, the start and apg's and descent's search for a step included.
+struct Budget {
+  std::string method;
+  int iterations;
+  int projections;
+};
+
+const std::vector<Budget>& budgets() {
+  static const std::vector<Budget> all{{"fbp", 0, 2},   {"dose-norm", 1, 4}, {"cal", 59, 120}, {"osmo", 29, 119},
+                                       {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 53, 120}};
+  return all;
+}
+
+void print(const std::string& problem, const Budget& budget, const model::DoseMetrics& m, double time, int slices) {
+  std::printf("%-22s %-10s %4d projections  VER %.1e  PW %+.4f  IoU %.5f  %7.2f s a slice\n", problem.c_str(),
+              budget.method.c_str(), budget.projections, m.ver, m.pw, m.iou, time / slices);
+  std::fflush(stdout);
+}
+
+void target() {
+  const int size = 512;
+  const auto slice = oracle::resolution_target(size);
+  for (const auto& budget : budgets()) {
+    model::DoseMetrics m;
+    const double time = seconds([&] { m = parts::run({slice}, size, 360, budget.method, {}, budget.iterations)[0]; });
+    print("resolution 512 x 512", budget, m, time, 1);
+  }
+}
+
+/// 64 different slices: gyroid sections of different height.
+void stack() {
+  const int size = 512;
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 64; ++k) slices.push_back(oracle::gyroid(size, 3, 0.1 * k, 0.4));
+  std::vector<model::DoseMetrics> m;
+  const Budget& budget = budgets().back();
+  const double time = seconds([&] { m = parts::run(slices, size, 360, budget.method, {}, budget.iterations); });
+  print("64 gyroid slices", budget, *std::min_element(m.begin(), m.end(), [](auto& a, auto& b) { return a.pw < b.pw; }),
+        time, 64);
+}
+
+/// One osmo iteration on 315^3 voxels: five passes of at most 64 slices, start left out.
+void osmo() {
+  const int size = 315;
+  double time = 0;
+  for (int first = 0; first < size; first += optimize::slices_per_pass) {
+    std::vector<std::vector<float>> slices;
+    for (int k = first; k < std::min(size, first + optimize::slices_per_pass); ++k) {
+      slices.push_back(oracle::gyroid(size, 3, 0.02 * k, 0.4));
+    }
+    const optimize::ParallelOperator light(parts::turn(size, 360));
+    const auto all = parts::stacked(slices);
+    const auto problem =
+        optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, parts::circle(size), {});
+    const auto method = optimize::make_method("osmo", {});
+    optimize::Iterate state;
+    method->start(problem, light, state);
+    time += seconds([&] { method->step(problem, light, state); });
+  }
+  std::printf("osmo, 31 Mvoxels, 360 angles, one iteration: %.2f s\n", time);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string only = argc > 1 ? argv[1] : "";
+  if (only.empty() || only == "target") target();
+  if (only.empty() || only == "stack") stack();
+  if (only.empty() || only == "osmo") osmo();
+  return 0;
+}
