@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "device/interrupt.hpp"
 
 namespace vam::device {
 
@@ -93,6 +94,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
   const double end_deg = 360.0 * plan.turns;
   bool light_is_on = false;
   for (;;) {
+    check_interrupted();  // a display with blanks of its own never sleeps by the clock
     bool switched = false;
     angles.update();
     // The frame is on from the next blank, plus the projector's latency, for one period: its angle is that in between.
@@ -129,6 +131,7 @@ PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int f
   if (light != nullptr) light->on();
   const double start_s = clock.now_s();
   for (;;) {
+    check_interrupted();
     const auto n = static_cast<long>((presenter.next_s() - start_s) / hold_s);
     if (!forever && n >= frames) break;
     presenter.show(static_cast<int>(std::max(0L, n) % frames), {}, true);

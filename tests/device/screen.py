@@ -80,4 +80,5 @@ def main():
         compare(sys.argv[3], sys.argv[4])
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,11 @@
+#!/bin/sh
+# Promise 1 for vam-project alone: a black screen within 100 ms of any end. VAM_TRIALS a cause (10; 100 under "long").
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 40\n' >printer.toml
+python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=64 height=36 count=3
+mkdir screen locks
+python3 "$VAM_SOURCE/tests/device/project_trials.py" "${VAM_TRIALS:-10}" >table; status=$?
+cat table
+is 'every trial was black in time' $status 0
+is 'every cause was tried' "$(grep -c trials table)" 9
+done_testing
