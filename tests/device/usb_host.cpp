@@ -1,0 +1,223 @@
+// Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
+// and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host tic|dlpc350 LOG PROGRAM ARGS...
+// Exit status: the program's. The device lives on for half a second after the program, for its guardian.
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+#include <sys/wait.h>
+#include <umockdev.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "device/guardian_actions.hpp"
+#include "device/sim_dlp.hpp"
+#include "device/sim_tic.hpp"
+
+namespace {
+
+using vam::device::UsbLink;
+
+constexpr std::uint8_t end_in = 0x80;
+
+struct Urb {
+  UMockdevIoctlData* urb;
+  UMockdevIoctlData* buffer;
+};
+
+struct Host {
+  std::unique_ptr<UsbLink> link;
+  std::deque<Urb> done;
+  std::string descriptors;
+  GMainLoop* loop = nullptr;
+  int status = 70;
+};
+
+int low_byte_first(const std::uint8_t* bytes) { return bytes[0] | bytes[1] << 8; }
+
+// A string descriptor in UTF-16.
+std::string string_descriptor(int index, const vam::Json& about) {
+  if (index == 0) return std::string("\x04\x03\x09\x04", 4);
+  const std::string text = about[index == 1 ? "maker" : index == 2 ? "model" : "serial"];
+  std::string bytes{static_cast<char>(2 + 2 * text.size()), 3};
+  for (const char c : text) bytes += std::string{c, '\0'};
+  return bytes;
+}
+
+// Standard and vendor requests on endpoint 0. Returns the bytes moved, or a negative errno.
+int control(Host& host, std::uint8_t* buffer) {
+  const int type = buffer[0];
+  const int request = buffer[1];
+  const int value = low_byte_first(buffer + 2);
+  const int index = low_byte_first(buffer + 4);
+  const int length = low_byte_first(buffer + 6);
+  std::string answer;
+  if ((type & 0x60) == 0x40) {
+    if ((type & end_in) == 0) {
+      host.link->control_out(request, value, index);
+      return 0;
+    }
+    answer = host.link->control_in(request, value, index, length);
+  } else if (request == 6 && value >> 8 == 3) {
+    answer = string_descriptor(value & 0xFF, host.link->about());
+  } else {
+    return (type & end_in) != 0 ? -EPIPE : 0;
+  }
+  answer.resize(std::min(answer.size(), static_cast<std::size_t>(length)));
+  std::memcpy(buffer + 8, answer.data(), answer.size());
+  return static_cast<int>(answer.size());
+}
+
+int interrupt(Host& host, const usbdevfs_urb& urb, std::uint8_t* buffer) {
+  if ((urb.endpoint & end_in) == 0) {
+    host.link->write_report(std::string(reinterpret_cast<char*>(buffer), static_cast<std::size_t>(urb.buffer_length)));
+    return urb.buffer_length;
+  }
+  const std::string report = host.link->read_report();
+  std::memcpy(buffer, report.data(), report.size());
+  return static_cast<int>(report.size());
+}
+
+void submit(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
+  UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
+  auto* urb = reinterpret_cast<usbdevfs_urb*>(data->data);
+  UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
+                                                          static_cast<gsize>(urb->buffer_length), nullptr);
+  int moved = 0;
+  try {
+    moved = urb->type == USBDEVFS_URB_TYPE_CONTROL ? control(host, buffer->data) : interrupt(host, *urb, buffer->data);
+  } catch (const vam::Error& error) {
+    moved = error.fault == vam::Fault::busy ? -ETIMEDOUT : -EPIPE;
+  }
+  urb->status = std::min(moved, 0);
+  urb->actual_length = std::max(moved, 0);
+  host.done.push_back({data, buffer});
+  umockdev_ioctl_client_complete(client, 0, 0);
+}
+
+void reap(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
+  if (host.done.empty()) return umockdev_ioctl_client_complete(client, -1, EAGAIN);
+  const Urb urb = host.done.front();
+  host.done.pop_front();
+  UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(arg, 0, sizeof(void*), nullptr);
+  umockdev_ioctl_data_set_ptr(pointer, 0, urb.urb);
+  umockdev_ioctl_client_complete(client, 0, 0);
+}
+
+gboolean handle(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
+  Host& host = *static_cast<Host*>(user);
+  UMockdevIoctlData* arg = umockdev_ioctl_client_get_arg(client);
+  switch (umockdev_ioctl_client_get_request(client)) {
+    case USBDEVFS_GET_CAPABILITIES: {
+      UMockdevIoctlData* bits = umockdev_ioctl_data_resolve(arg, 0, sizeof(guint32), nullptr);
+      const guint32 none = 0;
+      std::memcpy(bits->data, &none, sizeof none);
+      umockdev_ioctl_client_complete(client, 0, 0);
+      return TRUE;
+    }
+    case USBDEVFS_SUBMITURB:
+      submit(host, client, arg);
+      return TRUE;
+    case USBDEVFS_REAPURB:
+    case USBDEVFS_REAPURBNDELAY:
+      reap(host, client, arg);
+      return TRUE;
+    case USBDEVFS_GETDRIVER:
+      umockdev_ioctl_client_complete(client, -1, ENODATA);
+      return TRUE;
+    case USBDEVFS_DISCARDURB:
+      umockdev_ioctl_client_complete(client, -1, EINVAL);
+      return TRUE;
+    case USBDEVFS_CLAIMINTERFACE:
+    case USBDEVFS_RELEASEINTERFACE:
+    case USBDEVFS_DISCONNECT_CLAIM:
+    case USBDEVFS_IOCTL:
+      umockdev_ioctl_client_complete(client, 0, 0);
+      return TRUE;
+    default:
+      return FALSE;
+  }
+}
+
+std::string bytes_of(std::initializer_list<int> values) {
+  std::string bytes;
+  for (const int value : values) bytes += static_cast<char>(value);
+  return bytes;
+}
+
+// Device, configuration, one interface of class 3 (HID) or 255, two interrupt endpoints of 64 bytes.
+std::string descriptors(int vendor, int product, int interface_class) {
+  return bytes_of(
+             {18, 1, 0, 2, 0, 0, 0, 64, vendor & 255, vendor >> 8, product & 255, product >> 8, 0, 1, 1, 2, 3, 1}) +
+         bytes_of({9, 2, 32, 0, 1, 1, 0, 0x80, 50}) + bytes_of({9, 4, 0, 0, 2, interface_class, 0, 0, 0}) +
+         bytes_of({7, 5, 0x81, 3, 64, 0, 1}) + bytes_of({7, 5, 0x01, 3, 64, 0, 1});
+}
+
+void ended(GPid, gint status, gpointer user) {
+  Host& host = *static_cast<Host*>(user);
+  host.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  g_timeout_add(
+      500,
+      [](gpointer loop) {
+        g_main_loop_quit(static_cast<GMainLoop*>(loop));
+        return FALSE;
+      },
+      host.loop);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) return 64;
+  const bool tic = std::string(argv[1]) == "tic";
+  Host host;
+  const auto log = vam::device::file_sim_log(argv[2]);
+  if (tic) {
+    host.link = vam::device::make_sim_tic({}, vam::device::real_clock(), log);
+  } else {
+    host.link = vam::device::make_sim_dlp({}, log);
+  }
+  const int vendor = tic ? 0x1FFB : 0x0451;
+  const int product = tic ? 0x00B3 : 0x6401;
+  host.descriptors = descriptors(vendor, product, tic ? 255 : 3);
+
+  UMockdevTestbed* testbed = umockdev_testbed_new();
+  const vam::Json about = host.link->about();
+  const std::string ids = about["usb_id"];
+  const std::string tree =
+      "P: /devices/usb1/1-1\nN: bus/usb/001/002\nE: DEVNAME=/dev/bus/usb/001/002\nE: DEVTYPE=usb_device\n"
+      "E: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=002\nE: MAJOR=189\nE: MINOR=1\nA: busnum=1\\n\n"
+      "A: devnum=2\\n\nA: speed=12\\n\nA: bConfigurationValue=1\\n\nA: idVendor=" +
+      ids.substr(0, 4) + "\\n\nA: idProduct=" + ids.substr(5) +
+      "\\n\nH: descriptors=" + vam::device::to_hex(host.descriptors) + "\n";
+  GError* problem = nullptr;
+  if (umockdev_testbed_add_from_string(testbed, tree.c_str(), &problem) == FALSE) {
+    std::fprintf(stderr, "usb_host: %s\n", problem->message);
+    return 70;
+  }
+  UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
+  g_signal_connect(handler, "handle-ioctl", G_CALLBACK(handle), &host);
+  if (umockdev_testbed_attach_ioctl(testbed, "/dev/bus/usb/001/002", handler, &problem) == FALSE) {
+    std::fprintf(stderr, "usb_host: %s\n", problem->message);
+    return 70;
+  }
+  host.loop = g_main_loop_new(nullptr, FALSE);
+  GPid child = 0;
+  const auto flags =
+      static_cast<GSpawnFlags>(G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_CHILD_INHERITS_STDIN);
+  if (g_spawn_async(nullptr, argv + 3, nullptr, flags, nullptr, nullptr, &child, &problem) == FALSE) {
+    std::fprintf(stderr, "usb_host: %s\n", problem->message);
+    return 70;
+  }
+  g_child_watch_add(child, ended, &host);
+  g_main_loop_run(host.loop);
+  g_object_unref(testbed);
+  return host.status;
+}
