@@ -1,62 +1,14 @@
 // vam-ost: optical scattering tomography, from camera views to the print as it stands.
-#include <cmath>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
+#include <cstdio>
 
-#include "base/constants.hpp"
-#include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
-#include "cli/app.hpp"
-#include "cli/common.hpp"
-#include "io/event_log.hpp"
-#include "io/image_figure.hpp"
-#include "io/mesh_file.hpp"
-#include "io/picture.hpp"
 #include "io/printer_file.hpp"
 #include "io/report.hpp"
-#include "io/stream.hpp"
-#include "io/vdb.hpp"
-#include "io/view_source.hpp"
-#include "metrology/cured.hpp"
-#include "metrology/ost.hpp"
-#include "metrology/projection_sheet.hpp"
-#include "metrology/sliding_turn.hpp"
-#include "metrology/threshold.hpp"
-#include "model/conditions.hpp"
-#include "solid/isosurface.hpp"
+#include "vam-ost/session.hpp"
 
 namespace {
 
 using namespace vam;
-
-struct Options {
-  std::string command;
-  std::string views = "-";
-  std::string output = "-";
-  double step_deg = 0;
-  std::string dark, flat;
-  int binning = 1;
-  std::optional<double> pixel_mm, axis_column, tilt_deg;
-  metrology::OstOptions how;
-  bool no_refraction = false;
-  bool keep_negative = false;
-  std::optional<double> level;
-  std::string resin_record;
-  std::string mesh, projections;
-  bool live = false;
-  double every_deg = 360;
-  std::string reference, until, log, page;
-  std::string report;
-  cli::PrinterOptions printer;
-  std::string scatter = "-";
-  std::string record = "-";
-  std::string profile;
-  std::optional<double> diameter_mm;
-  double profile_pixel_mm = 0.05;
-};
+using ost_tool::Options;
 
 cli::Manual manual() {
   return {
@@ -158,209 +110,16 @@ void declare(cli::App& app, Options& o) {
   threshold.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel of that picture.");
 }
 
-model::Volume dense(const io::SparseVolume& sparse) {
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
-std::optional<double> level_of(const Options& o) {
-  if (o.level || o.resin_record.empty()) return o.level;
-  try {
-    return Json::parse(io::read_all(o.resin_record)).at("level").get<double>();
-  } catch (const Json::exception& error) {
-    throw Error{Fault::data, o.resin_record + ": not a record of vam-ost threshold (" + error.what() + ")"};
-  }
-}
-
-/// One run: the views' corrections, the rig, and what is written for every volume.
-class Run {
- public:
-  Run(const cli::App& app, const Options& options)
-      : app_(app),
-        options_(options),
-        printer_(io::load_printer(options.printer.file, options.printer.sets)),
-        level_(level_of(options)) {
-    if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
-    if (!options.flat.empty()) {
-      fields_.flat = io::read_field(options.flat);
-      if (!fields_.dark.values.empty() && fields_.dark.size() == fields_.flat.size()) {
-        for (std::size_t i = 0; i < fields_.flat.size(); ++i) fields_.flat.values[i] -= fields_.dark.values[i];
-      }
-    }
-    if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
-    if (!level_ && (!options.mesh.empty() || !options.until.empty()))
-      throw Error{Fault::usage, "--mesh and --until: need the threshold, --level or --resin"};
-    if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design, --reference"};
-  }
-
-  metrology::View take(const io::CameraFrame& frame) {
-    metrology::require_exposed(frame.image, frame.name);
-    metrology::View view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
-    if (width_ == 0) {
-      width_ = view.image.width;
-      height_ = view.image.height;
-    }
-    if (view.image.width != width_ || view.image.height != height_) {
-      throw Error{Fault::data, frame.name + ": " + std::to_string(view.image.width) + " x " +
-                                   std::to_string(view.image.height) +
-                                   " pixels after binning, but the first frame has " + std::to_string(width_) + " x " +
-                                   std::to_string(height_)};
-    }
-    return view;
-  }
-
-  model::Volume reconstruct(std::span<const metrology::View> views, double stack_pixel_mm) {
-    if (!rig_) set_up(views, stack_pixel_mm);
-    return rig_->reconstruct(views);
-  }
-
-  void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) {
-    io::SparseVolume sparse("scatter", volume.grid);
-    sparse.history = history;
-    sparse.history.push_back(app_.history());
-    sparse.units = "view units per mm";
-    sparse.write_slices(0, volume.grid.nz, volume.values.data());
-    io::write_volume(path, sparse);
-  }
-
-  void write_print(const model::Volume& volume) {
-    if (!options_.mesh.empty()) {
-      const auto mesh = solid::isosurface(volume, *level_);
-      if (mesh.triangles.empty())
-        throw Error{Fault::data, "no print at this threshold: nothing scatters " + format_number(*level_) + " or more"};
-      const bool stl = options_.mesh.size() > 4 && options_.mesh.substr(options_.mesh.size() - 4) == ".stl";
-      stl ? io::write_stl(options_.mesh, mesh) : io::write_ply(options_.mesh, mesh, {}, {app_.history()});
-    }
-    if (options_.projections.empty()) return;
-    const auto sheet = metrology::projection_sheet(volume, level_, reference_ ? &*reference_ : nullptr);
-    io::ImageFigure figure;
-    figure.title = "Sum projections";
-    for (std::size_t i = 0; i < sheet.images.size(); ++i)
-      figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
-    figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
-    figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
-    figure.value_label = "relative sum";
-    figure.pixel_mm = sheet.pixel_mm;
-    io::write_png(options_.projections, io::draw(figure));
-  }
-
-  [[nodiscard]] Json figures(const model::Volume& volume) const {
-    const auto& a = axis_;
-    Json json{{"axis_column_px", a.pose.column},
-              {"axis_column_sigma_px", a.column_sigma},
-              {"axis_tilt_deg", a.pose.tilt_rad * deg_per_rad},
-              {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
-              {"voxel_mm", volume.grid.voxel_mm},
-              {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
-    if (level_) json["level"] = *level_;
-    if (level_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *level_, *reference_));
-    return json;
-  }
-
-  [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const {
-    if (!level_ || !reference_) return std::nullopt;
-    return metrology::cured(volume, *level_, *reference_);
-  }
-
- private:
-  void set_up(std::span<const metrology::View> views, double stack_pixel_mm) {
-    if (!options_.axis_column || !options_.tilt_deg) axis_ = metrology::find_axis(metrology::mean_view(views));
-    if (options_.axis_column) axis_.pose.column = *options_.axis_column;
-    if (options_.tilt_deg) axis_.pose.tilt_rad = *options_.tilt_deg * rad_per_deg;
-    const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
-    metrology::OstOptions how = options_.how;
-    how.refraction = !options_.no_refraction;
-    how.non_negative = !options_.keep_negative;
-    rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
-                                                         axis_.pose, how);
-    note("axis at column " + format_number(axis_.pose.column, 6) + " +- " + format_number(axis_.column_sigma, 2) +
-         " px, tilt " + format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
-         format_number(axis_.tilt_sigma_rad * deg_per_rad, 2) + " deg");
-  }
-
-  const cli::App& app_;
-  const Options& options_;
-  model::Printer printer_;
-  std::optional<double> level_;
-  metrology::CameraFields fields_;
-  std::optional<model::Volume> reference_;
-  metrology::AxisEstimate axis_;
-  std::unique_ptr<metrology::OstReconstructor> rig_;
-  int width_ = 0;
-  int height_ = 0;
-};
-
 void once(const cli::App& app, const Options& options) {
-  Run run(app, options);
+  ost_tool::Session session(app, options);
   io::ViewSource source(options.views, options.step_deg);
   std::vector<metrology::View> views;
   io::CameraFrame frame;
-  while (source.next(frame)) views.push_back(run.take(frame));
-  const model::Volume volume = run.reconstruct(views, source.pixel_mm());
-  run.write_print(volume);
-  run.write(volume, options.output, source.history());
-  io::write_report(options.report, "vam-ost/1", run.figures(volume));
-}
-
-void write_page(const Options& options) {
-  if (options.page.empty()) return;
-  io::OutputFile page(options.page, io::Content::text);
-  const std::string picture = std::filesystem::path(options.projections).filename().string();
-  page.write(
-      "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\"><title>vam-ost</title>"
-      "<body style=\"margin:0;background:#fff\"><img src=\"" +
-      picture + "\" style=\"max-width:100%\">\n");
-  page.commit();
-}
-
-void live(const cli::App& app, const Options& options) {
-  std::vector<model::Condition> conditions;
-  if (!options.until.empty()) conditions = model::parse_conditions(options.until, metrology::cured_names());
-  if (!options.page.empty() && options.projections.empty())
-    throw Error{Fault::usage, "--page: needs --projections, the picture that it shows"};
-  Run run(app, options);
-  const bool keep = options.output != "-";
-  if (keep) std::filesystem::create_directories(options.output);
-  const auto log = io::open_log(options.log);
-  io::ViewSource source(options.views, options.step_deg);
-  metrology::SlidingTurn turn(options.every_deg);
-  io::CameraFrame frame;
-  for (int index = 0; source.next(frame);) {
-    if (!turn.push(run.take(frame))) continue;
-    const model::Volume volume = run.reconstruct(turn.views(), source.pixel_mm());
-    char name[32];
-    std::snprintf(name, sizeof name, "scatter-%04d.vdb", index++);
-    if (keep) run.write(volume, (std::filesystem::path(options.output) / name).string(), source.history());
-    run.write_print(volume);
-    write_page(options);
-    Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}};
-    const auto state = run.state(volume);
-    if (state) line.update(metrology::to_json(*state));
-    if (log) io::log_line(*log, line.dump());
-    if (conditions.empty() || !state) continue;
-    if (!model::unmet(conditions, [&](const std::string& wanted) { return metrology::figure(*state, wanted); }).empty())
-      continue;
-    line["event"] = "stop";
-    line["condition"] = options.until;
-    std::puts(line.dump().c_str());
-    break;
-  }
-}
-
-void threshold(const Options& options) {
-  if (options.diameter_mm.has_value() == !options.profile.empty()) {
-    throw Error{Fault::usage, "threshold: give the standard's size, either --diameter or --profile"};
-  }
-  double diameter_mm = options.diameter_mm.value_or(0);
-  if (!options.profile.empty())
-    diameter_mm = 2 * options.profile_pixel_mm * metrology::find_circle(io::read_field(options.profile)).radius;
-  const model::Volume volume = dense(io::read_volume(options.scatter, ""));
-  Image overhead = metrology::sum_projections(volume).along_z;
-  const auto height_mm = static_cast<float>(volume.grid.nz * volume.grid.voxel_mm);
-  for (float& value : overhead.values) value /= height_mm;
-  Json figures = metrology::to_json(metrology::gelation_threshold(overhead, volume.grid.voxel_mm, diameter_mm));
-  io::write_report(options.record, "vam-resin/1", figures);
+  while (source.next(frame)) views.push_back(session.take(frame));
+  const model::Volume volume = session.reconstruct(views, source.pixel_mm());
+  session.write_print(volume);
+  session.write(volume, options.output, source.history());
+  io::write_report(options.report, "vam-ost/1", session.figures(volume));
 }
 
 void run(const cli::App& app, const Options& options) {
@@ -368,8 +127,8 @@ void run(const cli::App& app, const Options& options) {
     std::fputs(io::printer_toml(io::load_printer(options.printer.file, options.printer.sets)).c_str(), stdout);
     return;
   }
-  if (options.command == "threshold") return threshold(options);
-  options.live ? live(app, options) : once(app, options);
+  if (options.command == "threshold") return ost_tool::threshold(options);
+  options.live ? ost_tool::live(app, options) : once(app, options);
 }
 
 }  // namespace

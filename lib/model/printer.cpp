@@ -13,7 +13,8 @@ std::optional<double> lens_distance_mm(const Projector& projector) {
 double resin_radius_mm(const Vial& vial) { return vial.radius_mm - vial.wall_mm; }
 
 double writable_radius_mm(const Printer& printer) {
-  return resin_radius_mm(printer.vial) * std::min(1.0, printer.bath.index / printer.resin.index);
+  // n b is conserved through concentric shells (Bouguer): the outermost ray, b = R, ends up at R n_0 / n_resin.
+  return std::min(resin_radius_mm(printer.vial), printer.vial.radius_mm * printer.bath.index / printer.resin.index);
 }
 
 double vertical_magnification(const Printer& printer) {

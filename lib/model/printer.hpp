@@ -78,7 +78,8 @@ struct Printer {
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 
-/// Largest radius that light from outside reaches: R_resin * min(1, n_outside / n_resin) [physics, RAY21 section 2].
+/// Largest radius that light reaches from all sides: R n_outside / n_resin with R the outer radius of the vial, at most
+/// the resin's own [RAY21 section 2; a glass wall refracts but does not stop the outermost ray].
 [[nodiscard]] double writable_radius_mm(const Printer& printer);
 
 /// Vertical magnification of the projected image, M_vp = 1 - R(1 - 1/n)/D [OST22 eq S1]; 1 when telecentric.

@@ -17,6 +17,14 @@ TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric
   CHECK(vertical_magnification(printer) == 1.0);
 }
 
+TEST_CASE("a glass wall does not narrow what is lit, until the resin itself ends") {
+  Printer printer;
+  printer.vial.wall_mm = 1;
+  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7 / 1.53));
+  printer.vial.wall_mm = 6;
+  CHECK(writable_radius_mm(printer) == doctest::Approx(6.7));
+}
+
 TEST_CASE("a matched bath opens the whole vial") {
   Printer printer;
   printer.bath.index = 1.53;

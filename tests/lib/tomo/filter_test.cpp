@@ -121,7 +121,7 @@ TEST_CASE("a ceiling caps the gain; members given by position keep their meaning
   spec.ceiling = 0.4;
   const vam::tomo::Filter filter(64, spec);
   const auto& gains = filter.gains();
-  CHECK(gains.back() == doctest::Approx(0.2));  // 0.4 of the 1/2 at the highest frequency
+  CHECK(gains.back() == doctest::Approx(0.2));                             // 0.4 of the 1/2 at the highest frequency
   CHECK(gains[gains.size() / 4] == doctest::Approx(0.125).epsilon(0.02));  // below it the ramp
   spec.floor = 0.5;
   CHECK_THROWS_AS(vam::tomo::Filter(64, spec), vam::Error);

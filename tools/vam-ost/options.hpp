@@ -1,0 +1,38 @@
+// What the user asks of vam-ost, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/common.hpp"
+#include "metrology/ost.hpp"
+
+namespace vam::ost_tool {
+
+struct Options {
+  std::string command;
+  std::string views = "-";
+  std::string output = "-";
+  double step_deg = 0;
+  std::string dark, flat;
+  int binning = 1;
+  std::optional<double> pixel_mm, axis_column, tilt_deg;
+  metrology::OstOptions how;
+  bool no_refraction = false;
+  bool keep_negative = false;
+  std::optional<double> level;
+  std::string resin_record;
+  std::string mesh, projections;
+  bool live = false;
+  double every_deg = 360;
+  std::string reference, until, log, page;
+  std::string report;
+  cli::PrinterOptions printer;
+  std::string scatter = "-";
+  std::string record = "-";
+  std::string profile;
+  std::optional<double> diameter_mm;
+  double profile_pixel_mm = 0.05;
+};
+
+}  // namespace vam::ost_tool

@@ -1,0 +1,137 @@
+#include "vam-ost/session.hpp"
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "io/image_figure.hpp"
+#include "io/mesh_file.hpp"
+#include "io/picture.hpp"
+#include "io/printer_file.hpp"
+#include "io/stream.hpp"
+#include "metrology/projection_sheet.hpp"
+#include "solid/isosurface.hpp"
+
+namespace vam::ost_tool {
+
+namespace {
+
+std::optional<double> level_of(const Options& o) {
+  if (o.level || o.resin_record.empty()) return o.level;
+  try {
+    return Json::parse(io::read_all(o.resin_record)).at("level").get<double>();
+  } catch (const Json::exception& error) {
+    throw Error{Fault::data, o.resin_record + ": not a record of vam-ost threshold (" + error.what() + ")"};
+  }
+}
+
+}  // namespace
+
+model::Volume dense(const io::SparseVolume& sparse) {
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  return volume;
+}
+
+Session::Session(const cli::App& app, const Options& options)
+    : app_(app),
+      options_(options),
+      printer_(io::load_printer(options.printer.file, options.printer.sets)),
+      level_(level_of(options)) {
+  if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
+  if (!options.flat.empty()) {
+    fields_.flat = io::read_field(options.flat);
+    if (!fields_.dark.values.empty() && fields_.dark.size() == fields_.flat.size()) {
+      for (std::size_t i = 0; i < fields_.flat.size(); ++i) fields_.flat.values[i] -= fields_.dark.values[i];
+    }
+  }
+  if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
+  if (!level_ && (!options.mesh.empty() || !options.until.empty()))
+    throw Error{Fault::usage, "--mesh and --until: need the threshold, --level or --resin"};
+  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design, --reference"};
+}
+
+metrology::View Session::take(const io::CameraFrame& frame) {
+  metrology::require_exposed(frame.image, frame.name);
+  metrology::View view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
+  if (width_ == 0) {
+    width_ = view.image.width;
+    height_ = view.image.height;
+  }
+  if (view.image.width != width_ || view.image.height != height_) {
+    throw Error{Fault::data, frame.name + ": " + std::to_string(view.image.width) + " x " +
+                                 std::to_string(view.image.height) + " pixels after binning, but the first frame has " +
+                                 std::to_string(width_) + " x " + std::to_string(height_)};
+  }
+  return view;
+}
+
+model::Volume Session::reconstruct(std::span<const metrology::View> views, double stack_pixel_mm) {
+  if (!rig_) set_up(views, stack_pixel_mm);
+  return rig_->reconstruct(views);
+}
+
+void Session::write(const model::Volume& volume, const std::string& path,
+                    const std::vector<std::string>& history) const {
+  io::SparseVolume sparse("scatter", volume.grid);
+  sparse.history = history;
+  sparse.history.push_back(app_.history());
+  sparse.units = "view units per mm";
+  sparse.write_slices(0, volume.grid.nz, volume.values.data());
+  io::write_volume(path, sparse);
+}
+
+void Session::write_print(const model::Volume& volume) const {
+  if (!options_.mesh.empty()) {
+    const auto mesh = solid::isosurface(volume, *level_);
+    if (mesh.triangles.empty())
+      throw Error{Fault::data, "no print at this threshold: nothing scatters " + format_number(*level_) + " or more"};
+    const bool stl = options_.mesh.size() > 4 && options_.mesh.substr(options_.mesh.size() - 4) == ".stl";
+    stl ? io::write_stl(options_.mesh, mesh) : io::write_ply(options_.mesh, mesh, {}, {app_.history()});
+  }
+  if (options_.projections.empty()) return;
+  const auto sheet = metrology::projection_sheet(volume, level_, reference_ ? &*reference_ : nullptr);
+  io::ImageFigure figure;
+  figure.title = "Sum projections";
+  for (std::size_t i = 0; i < sheet.images.size(); ++i)
+    figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
+  figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
+  figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
+  figure.value_label = "relative sum";
+  figure.pixel_mm = sheet.pixel_mm;
+  io::write_png(options_.projections, io::draw(figure));
+}
+
+Json Session::figures(const model::Volume& volume) const {
+  const auto& a = axis_;
+  Json json{{"axis_column_px", a.pose.column},
+            {"axis_column_sigma_px", a.column_sigma},
+            {"axis_tilt_deg", a.pose.tilt_rad * deg_per_rad},
+            {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
+            {"voxel_mm", volume.grid.voxel_mm},
+            {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
+  if (level_) json["level"] = *level_;
+  if (level_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *level_, *reference_));
+  return json;
+}
+
+std::optional<metrology::Cured> Session::state(const model::Volume& volume) const {
+  if (!level_ || !reference_) return std::nullopt;
+  return metrology::cured(volume, *level_, *reference_);
+}
+
+void Session::set_up(std::span<const metrology::View> views, double stack_pixel_mm) {
+  if (!options_.axis_column || !options_.tilt_deg) axis_ = metrology::find_axis(metrology::mean_view(views));
+  if (options_.axis_column) axis_.pose.column = *options_.axis_column;
+  if (options_.tilt_deg) axis_.pose.tilt_rad = *options_.tilt_deg * rad_per_deg;
+  const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
+  metrology::OstOptions how = options_.how;
+  how.refraction = !options_.no_refraction;
+  how.non_negative = !options_.keep_negative;
+  rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
+                                                       axis_.pose, how);
+  note("axis at column " + format_number(axis_.pose.column, 6) + " +- " + format_number(axis_.column_sigma, 2) +
+       " px, tilt " + format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
+       format_number(axis_.tilt_sigma_rad * deg_per_rad, 2) + " deg");
+}
+
+}  // namespace vam::ost_tool

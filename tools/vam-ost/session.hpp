@@ -1,0 +1,60 @@
+// One run of vam-ost: the corrections of the views, the rig, and what is written for every volume.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "cli/app.hpp"
+#include "io/vdb.hpp"
+#include "io/view_source.hpp"
+#include "metrology/cured.hpp"
+#include "metrology/ost.hpp"
+#include "model/printer.hpp"
+#include "vam-ost/options.hpp"
+
+namespace vam::ost_tool {
+
+class Session {
+ public:
+  /// Reads printer, fields, record and reference: all secondary inputs, before the views.
+  Session(const cli::App& app, const Options& options);
+
+  /// A frame as a view: exposure and size checked, corrected, binned.
+  metrology::View take(const io::CameraFrame& frame);
+  /// The first call finds the axis and sets up the rig.
+  model::Volume reconstruct(std::span<const metrology::View> views, double stack_pixel_mm);
+  void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
+  /// --mesh and --projections.
+  void write_print(const model::Volume& volume) const;
+  [[nodiscard]] Json figures(const model::Volume& volume) const;
+  /// Nothing without level and reference.
+  [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
+
+ private:
+  void set_up(std::span<const metrology::View> views, double stack_pixel_mm);
+
+  const cli::App& app_;
+  const Options& options_;
+  model::Printer printer_;
+  std::optional<double> level_;
+  metrology::CameraFields fields_;
+  std::optional<model::Volume> reference_;
+  metrology::AxisEstimate axis_;
+  std::unique_ptr<metrology::OstReconstructor> rig_;
+  int width_ = 0;
+  int height_ = 0;
+};
+
+/// Reconstructs a sliding turn as frames come.
+void live(const cli::App& app, const Options& options);
+
+/// vam-ost threshold.
+void threshold(const Options& options);
+
+[[nodiscard]] model::Volume dense(const io::SparseVolume& sparse);
+
+}  // namespace vam::ost_tool
