@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -26,7 +27,7 @@ using namespace vam;
 struct Options {
   std::string input = "-";
   std::string output = "-";
-  std::string method = "dose-norm";
+  std::string method = "auto";
   int angles = 360;
   std::optional<int> columns;
   std::optional<int> iterations;
@@ -97,7 +98,12 @@ cli::Manual manual() {
 void declare(cli::App& app, Options& options) {
   app.positional("TARGET", options.input, "Volume (VDB) with a grid 'target' of coverage 0...1.");
   cli::add_output(app, options.output);
-  app.choice("--method", options.method, optimize::method_names(), "How to look for projections.");
+  std::vector<std::string> methods{"auto"};
+  methods.insert(methods.end(), optimize::method_names().begin(), optimize::method_names().end());
+  app.choice(
+      "--method", options.method, methods,
+      "How to look for projections; auto is apg, the best of tests/bench/printability, until the part prints with "
+      "a process window of 0.05.");
   app.option("--angles", "N", options.angles, {1, 100000}, "Stage angles over 360 degrees.");
   app.option("--columns", "N", options.columns, {1, 65536},
              "Columns, each a voxel wide; without it as many as see the writable circle.");
@@ -191,7 +197,15 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
   return {file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file)), bits};
 }
 
+/// auto is the method that measures best, stopped where the part prints with room to spare unless the user says when.
+void settle_auto(const cli::App& app, Options& options) {
+  if (options.method != "auto") return;
+  options.method = "apg";
+  if (options.until.empty() && !app.given("--iterations")) options.until = "ver=0,pw>=0.05";
+}
+
 void run(const cli::App& app, Options& options) {
+  settle_auto(app, options);
   if (options.peak && !options.bits) throw Error{Fault::usage, "--peak: has no meaning without --bits"};
   if (options.error_feedback && !options.bits)
     throw Error{Fault::usage, "--error-feedback: has no meaning without --bits"};

@@ -87,7 +87,7 @@ Problem make_problem(const float* slices, int count, int width, int height, cons
 }
 
 double reach(const float* slice, int width, int height, double axis_x, double axis_y) {
-  double farthest = 0;
+  double farthest = -1;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       if (*slice++ > model::coverage_rounding) farthest = std::max(farthest, std::hypot(x - axis_x, y - axis_y));

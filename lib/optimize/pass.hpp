@@ -44,7 +44,7 @@ struct Problem {
 [[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
                                    const Window& window);
 
-/// Distance from the axis to the farthest voxel centre with coverage, in voxels; 0 for an empty slice.
+/// Distance from the axis to the farthest voxel centre with coverage, in voxels; -1 for an empty slice.
 [[nodiscard]] double reach(const float* slice, int width, int height, double axis_x, double axis_y);
 
 /// One number for each slice of the pass: values[slab][lane].

@@ -16,10 +16,22 @@ std::size_t pixels(Shape shape) {
   return static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height);
 }
 
+bool void_inside(const float* slice, Shape shape, const Circle& circle) {
+  for (int y = 0; y < shape.height; ++y) {
+    for (int x = 0; x < shape.width; ++x, ++slice) {
+      if (*slice <= model::coverage_rounding && circle.contains(x, y)) return true;
+    }
+  }
+  return false;
+}
+
 /// Digests of all slices; also the place where a part beyond the light is noticed.
 std::vector<Digest> digests(const VolumeTask& task, Shape shape) {
   std::vector<Digest> all(static_cast<std::size_t>(task.slices));
   std::vector<double> reaches(lanes);
+  std::vector<char> has_void(lanes);
+  bool any_part = false;
+  bool any_void = false;
   std::vector<float> buffer(pixels(shape) * lanes);
   for (int k = 0; k < task.slices; k += lanes) {
     const int count = std::min(lanes, task.slices - k);
@@ -29,14 +41,21 @@ std::vector<Digest> digests(const VolumeTask& task, Shape shape) {
       all[static_cast<std::size_t>(k + i)] = digest({slice, pixels(shape)});
       reaches[static_cast<std::size_t>(i)] =
           reach(slice, shape.width, shape.height, task.circle.axis_x, task.circle.axis_y);
+      has_void[static_cast<std::size_t>(i)] = void_inside(slice, shape, task.circle) ? 1 : 0;
     });
     for (int i = 0; i < count; ++i) {
+      any_part = any_part || reaches[static_cast<std::size_t>(i)] >= 0;
+      any_void = any_void || has_void[static_cast<std::size_t>(i)] != 0;
       const double r = reaches[static_cast<std::size_t>(i)];
       if (r <= task.circle.radius) continue;
       throw Error{Fault::data, "slice " + std::to_string(k + i) + ": the part reaches " + format_number(r, 4) +
                                    " voxels from the axis, but light reaches only " +
                                    format_number(task.circle.radius, 4) + "; scale the part down or use a wider vial"};
     }
+  }
+  if (!any_part) throw Error{Fault::data, "the target is empty (no coverage anywhere); there is nothing to print"};
+  if (!any_void) {
+    throw Error{Fault::data, "the target fills the whole writable circle; without void there is nothing to optimise"};
   }
   return all;
 }

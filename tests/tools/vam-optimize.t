@@ -13,6 +13,10 @@ holds "dose-norm widens the process window of fbp" "$(value dn.json pw) > $(valu
 is "a part of constant cross-section costs a few slices, its ends included" \
   "$([ "$(value dn.json distinct_slices)" -le 5 ] && echo yes)" yes
 
+quiet "auto is apg until the part prints with room to spare" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
+is "its goal" "$(value auto.json stopped_by)" goal
+holds "no voxel errs" "$(value auto.json ver) == 0"
+
 ok "through pipes" sh -c 'vam-optimize --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
 vam-optimize --method dose-norm --angles 90 --threads 1 --compression none part.vdb -o one.exr

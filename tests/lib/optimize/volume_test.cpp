@@ -127,6 +127,23 @@ TEST_CASE("a part beyond the light is refused with both radii") {
   CHECK_THROWS_WITH_AS(run({oracle::wheel(size)}, task), doctest::Contains("light reaches only 20;"), vam::Error);
 }
 
+TEST_CASE("targets without part or without void are refused") {
+  CHECK_THROWS_WITH_AS(run({std::vector<float>(size * size, 0.0F)}), doctest::Contains("is empty"), vam::Error);
+  VolumeTask task;
+  task.circle = {31.5, 31.5, 20};
+  const auto full = oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 19.9; });
+  auto disc = full;
+  for (float& v : disc) v = v > 0 ? 1.0F : 0.0F;
+  task.circle.radius = 19;  // smaller than the disc, larger than nothing: the part leaves it, which is said first
+  CHECK_THROWS_WITH_AS(run({disc}, task), doctest::Contains("light reaches only 19;"), vam::Error);
+  std::vector<float> filled(size * size, 0.0F);
+  task.circle.radius = 20;
+  for (int i = 0; i < size * size; ++i) {
+    if (task.circle.contains(i % size, i / size)) filled[static_cast<std::size_t>(i)] = 1.0F;
+  }
+  CHECK_THROWS_WITH_AS(run({filled}, task), doctest::Contains("fills the whole"), vam::Error);
+}
+
 TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
   const std::vector<std::vector<float>> slices{oracle::wheel(size)};
   VolumeTask task;
