@@ -22,6 +22,7 @@
 #include "live.hpp"
 #include "optics/flatland.hpp"
 #include "optics/frames.hpp"
+#include "patterns.hpp"
 #include "resin/response.hpp"
 
 namespace {
@@ -41,6 +42,7 @@ struct Options {
   io::StackOptions stack;
   std::string report;
   tool::LiveOptions live;
+  tool::PatternOptions pattern;
 };
 
 cli::Manual manual() {
@@ -96,6 +98,7 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-project "
         "--flatland 0 "
         "-o flatland.mp4"},
+       {"A focus star as a picture:", "vam-project --pattern star -o star/"},
        {"A synchronised print of one turn, here on a simulated stage and no screen:",
         "vam-stage spin --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed 0.1"}},
       {"Safety (live output). When vam-project dies of anything, hangs for 0.5 s, loses the stage's angles for 0.3 s "
@@ -148,6 +151,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--intensity", "FACTOR", options.intensity, cli::positive,
              "Multiplies all light; beyond full it is clipped.");
   tool::add_live(app, options.live);
+  tool::add_patterns(app, options.pattern);
   cli::add_printer(app, options.printer);
   app.group("Output and machine");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
@@ -289,6 +293,9 @@ void run(const cli::App& app, Options& options) {
     io::OutputFile out(options.output, io::Content::text);
     out.write(io::printer_toml(printer));
     return out.commit();
+  }
+  if (!options.pattern.plan.name.empty()) {
+    return tool::run_pattern(app, options.pattern, options.live, options.output, options.stack, projector);
   }
   if (device::names_display(options.output)) {
     return device::interruptible([&] { run_live(app, options, printer); });

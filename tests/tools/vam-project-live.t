@@ -25,6 +25,15 @@ fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project 
 fails 64 'above the cap' vam-project part.exr -o null: --light 'sim:?current=120'
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 
+# Test pictures, to files and to a dry run.
+fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
+fails 64 'out of range' vam-project --pattern grey --level 2 -o grey/
+for pattern in star axis grid grey ramp sweep; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
+is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
+is 'a sweep has 64 / 16 places' "$(ls sweep | grep -c png)" 4
+ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o null: --log ramps --light sim:
+is 'each in its turn' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' ')" '"frame":0 "frame":1 "frame":2 "frame":-1 '
+
 # A dry run by the stage's angles.
 vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 |
   vam-project part.exr -o null: --follow - --light 'sim:?log=leds' --log flips --missed 0.2 --report report.json
@@ -68,6 +77,7 @@ vam-project part.exr -o sdl:0 --speed 90 --log shown --missed 0.5 2>errors &
 tool=$!
 $screen watch 6 0.5 >seen &
 watcher=$!
+tries=0; until [ -s shown ] || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
 vam-project part.exr -o sdl:0 2>second
 is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool

@@ -1,0 +1,31 @@
+// Pictures to adjust and measure a projector with, in its own grey levels: no response table stands between.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/pixels.hpp"
+#include "model/printer.hpp"
+
+namespace vam::optics {
+
+/// star: 36 spokes about the middle, for focus · axis: the rotation axis' column and the row of z = 0 · grid: lines
+/// every pitch_px from the axis outwards · grey: one uniform level · ramp: `steps` uniform frames from 0 to full ·
+/// sweep: a line of width_px that steps by pitch_px from the first column to the last, one position a frame.
+struct PatternPlan {
+  std::string name = "grid";
+  double level = 1;   // of the lines or the field, fraction of full grey
+  int pitch_px = 16;  // grid and sweep
+  int width_px = 1;   // of lines
+  int steps = 17;     // ramp
+};
+[[nodiscard]] const std::vector<std::string>& pattern_names();
+
+/// How many frames the pattern has: 1 but for ramp and sweep. Throws Fault::usage for a name that is none.
+[[nodiscard]] int pattern_frames(const PatternPlan& plan, const model::Projector& projector);
+
+/// Frame n, of the projector's size and bits, before its orientation. The lit columns of sweep frame n begin at
+/// n * pitch_px.
+[[nodiscard]] GreyImage pattern_frame(const PatternPlan& plan, const model::Projector& projector, int n);
+
+}  // namespace vam::optics
