@@ -1,5 +1,6 @@
 // vam-optimize: projections that print a target.
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "io/response_file.hpp"
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
+#include "optimize/attenuated_operator.hpp"
 #include "optimize/parallel_operator.hpp"
 #include "optimize/quantise.hpp"
 #include "optimize/slice_figures.hpp"
@@ -37,6 +39,7 @@ struct Options {
   std::string trace;
   std::string report;
   std::string negative = "clip";
+  std::string absorption = "exact";
   bool no_threshold = false;
   optimize::MethodOptions how;
   std::optional<int> bits;
@@ -67,6 +70,8 @@ cli::Manual manual() {
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "
        "light * (angle step in radian) over all angles along the rays gives this dose.",
+       "A resin that absorbs (resin.absorption_per_mm) weakens light on its way: e^(-mu s) is then part of the dose "
+       "that the method works with, s the path from where the ray enters the resin, and light is what enters there.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void: they are asked for nothing. "
        "A slice that has only such voxels is printed if any of them is at least half covered."},
       {{"Projections of a gyroid for the default printer:",
@@ -132,6 +137,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--max-light", "LIGHT", options.how.peak, cli::non_negative, "apg, pm, bclp: largest light; 0 = any.");
   app.option("--step", "LAMBDA", options.how.step, cli::positive, "cal: length of a step.");
   app.flag("--no-threshold", options.no_threshold, "cal: a resin without threshold (for comparison).");
+  app.choice("--absorption", options.absorption, {"exact", "disc", "none"},
+             "What the absorption of the resin (resin.absorption_per_mm) does to the light: exact everywhere; first "
+             "projections corrected by a uniform disc's dose; or left out.");
   app.group("Projector's grey levels");
   app.option("--bits", "N", options.bits, {1, 16},
              "Round the light to the intensities of this many bits, through projector.response.");
@@ -197,6 +205,16 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
   return {file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file)), bits};
 }
 
+/// Parallel light; the resin's absorption is in it unless it is to be left out.
+std::unique_ptr<optimize::Operator> make_light(const tomo::ParallelGeometry& turn, const model::Grid& grid,
+                                               const model::Printer& printer, const Options& options) {
+  const double mu_per_px = printer.resin.absorption_per_mm * grid.voxel_mm;
+  if (mu_per_px == 0 || options.absorption == "none") return std::make_unique<optimize::ParallelOperator>(turn);
+  const double radius_px = model::resin_radius_mm(printer.vial) / grid.voxel_mm;
+  const auto correction = options.absorption == "disc" ? optimize::Correction::disc : optimize::Correction::exact;
+  return std::make_unique<optimize::AttenuatedOperator>(turn, mu_per_px, radius_px, correction);
+}
+
 /// auto is the method that measures best, stopped where the part prints with room to spare unless the user says when.
 void settle_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
@@ -258,8 +276,8 @@ void run(const cli::App& app, Options& options) {
     }
     progress.tick();
   };
-  const optimize::ParallelOperator light(turn);
-  const auto outcome = optimize::optimise(task, light);
+  const auto light = make_light(turn, grid, printer, options);
+  const auto outcome = optimize::optimise(task, *light);
   if (levels) levels->finish();
   if (!options.trace.empty()) {
     io::OutputFile trace(options.trace, io::Content::text);

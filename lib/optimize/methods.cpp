@@ -68,8 +68,7 @@ void Method::resume(const Problem& /*problem*/, const Operator& light, Iterate& 
 
 void filtered_projections(const Operator& light, std::span<const Slab> object, std::vector<Slab>& g) {
   if (g.empty()) g = slabs(object.size(), light.sinogram().width, light.sinogram().height);
-  light.forward(object, g);
-  light.filter(g);
+  light.invert(object, g);
 }
 
 }  // namespace vam::optimize

@@ -43,6 +43,12 @@ class Operator {
   /// from vanishing at low frequencies and from growing where the angles are too few.
   virtual void precondition(std::span<Slab> sinograms) const = 0;
 
+  /// sinograms = light, negative in places, whose dose is about the objects: the start of most methods.
+  virtual void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
+    forward(objects, sinograms);
+    filter(sinograms);
+  }
+
   /// Unknowns to fluence: dose(r) = angle step * sum over stage angles of the image along the rays.
   virtual void expand(const Slab& sinogram, Slab& image) const = 0;
   /// The way back; collapse(expand(g)) = g.

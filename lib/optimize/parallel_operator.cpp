@@ -1,10 +1,10 @@
 #include "optimize/parallel_operator.hpp"
 
 #include <algorithm>
-#include <numbers>
 
 #include "base/parallel.hpp"
 #include "optimize/pass.hpp"
+#include "optimize/preconditioner.hpp"
 
 namespace vam::optimize {
 
@@ -17,15 +17,6 @@ tomo::ParallelGeometry first_half(tomo::ParallelGeometry turn) {
   return turn;
 }
 
-/// A A* falls off like 1/|k| from the lowest frequency that the circle holds, about 0.64 / columns cycles per column,
-/// up to where neighbouring angles see different things, rows / (pi columns); beyond, it is flat. Both as fractions of
-/// the gain at the highest frequency, 1/2.
-double least_gain(int columns) { return 1.28 / columns; }
-double most_gain(const tomo::ParallelGeometry& rows) {
-  const double turns = rows.angles * rows.angle_step_rad / std::numbers::pi;  // rows over half a turn
-  return std::min(1.0, 2 * rows.angles / (turns * std::numbers::pi * rows.columns));
-}
-
 double row_angle(const tomo::ParallelGeometry& turn) { return turn.angle_step_rad * (may_halve(turn) ? 2 : 1); }
 
 }  // namespace
@@ -35,7 +26,7 @@ ParallelOperator::ParallelOperator(const tomo::ParallelGeometry& turn)
       rows_(first_half(turn)),
       row_angle_rad_(row_angle(turn)),
       ramp_(turn.columns, {}),
-      preconditioner_(turn.columns, {.floor = least_gain(turn.columns), .ceiling = most_gain(rows_)}) {}
+      preconditioner_(turn.columns, preconditioner_spec(turn)) {}
 
 /// Filtered back-projection over a full turn is f = (1/2) integral of ramp * p over theta [KS88 eq 36]; a row's value
 /// is its fluence times the angle it stands for.

@@ -17,6 +17,14 @@ quiet "auto is apg until the part prints with room to spare" vam-optimize --angl
 is "its goal" "$(value auto.json stopped_by)" goal
 holds "no voxel errs" "$(value auto.json ver) == 0"
 
+absorbing="--set resin.absorption_per_mm=0.1"
+for how in exact disc none; do
+  quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --absorption $how $absorbing part.vdb -o light.exr
+  vam-dose light.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
+done
+holds "the judge sees the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
+is "and no error" "$(value exact.json ver)" 0.0
+
 ok "through pipes" sh -c 'vam-optimize --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
 vam-optimize --method dose-norm --angles 90 --threads 1 --compression none part.vdb -o one.exr
