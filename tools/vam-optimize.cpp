@@ -18,6 +18,7 @@
 #include "optimize/attenuated_operator.hpp"
 #include "optimize/parallel_operator.hpp"
 #include "optimize/quantise.hpp"
+#include "optimize/shadowed_operator.hpp"
 #include "optimize/slice_figures.hpp"
 #include "optimize/volume.hpp"
 #include "tomo/fbp.hpp"
@@ -70,6 +71,9 @@ cli::Manual manual() {
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "
        "light * (angle step in radian) over all angles along the rays gives this dose.",
+       "A grid 'insert' in the same file is an opaque object to print around (overprinting): rays carry no light "
+       "behind "
+       "it. Part voxels that no light can reach are counted in the report and left out.",
        "A resin that absorbs (resin.absorption_per_mm) weakens light on its way: e^(-mu s) is then part of the dose "
        "that the method works with, s the path from where the ray enters the resin, and light is what enters there.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void: they are asked for nothing. "
@@ -205,6 +209,31 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
   return {file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file)), bits};
 }
 
+struct Inputs {
+  std::vector<io::SparseVolume> volumes;
+  std::size_t target = 0;
+  std::optional<std::size_t> insert;
+};
+
+Inputs read(const std::string& path) {
+  Inputs in{io::read_volumes(path), 0, std::nullopt};
+  const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
+    for (std::size_t i = 0; i < in.volumes.size(); ++i) {
+      if (in.volumes[i].name() == name) return i;
+    }
+    return std::nullopt;
+  };
+  const auto target = find("target");
+  if (!target) throw Error{Fault::data, path + ": has no grid 'target'; vam-slice makes one"};
+  in.target = *target;
+  in.insert = find("insert");
+  if (in.insert && !(in.volumes[*in.insert].grid() == in.volumes[in.target].grid())) {
+    throw Error{Fault::data,
+                path + ": the insert's grid is not the target's; slice both together (vam-slice --insert)"};
+  }
+  return in;
+}
+
 /// Parallel light; the resin's absorption is in it unless it is to be left out.
 std::unique_ptr<optimize::Operator> make_light(const tomo::ParallelGeometry& turn, const model::Grid& grid,
                                                const model::Printer& printer, const Options& options) {
@@ -245,7 +274,8 @@ void run(const cli::App& app, Options& options) {
   }
   io::refuse_same_file(options.input, options.output);
   if (!options.init.empty()) io::refuse_same_file(options.init, options.output);
-  const io::SparseVolume target = io::read_volume(options.input, "target");
+  const Inputs in = read(options.input);
+  const io::SparseVolume& target = in.volumes[in.target];
   const model::Grid& grid = target.grid();
   task.slices = grid.nz;
   task.circle = model::writable_circle(grid, printer);
@@ -276,9 +306,22 @@ void run(const cli::App& app, Options& options) {
     }
     progress.tick();
   };
+  if (in.insert) {
+    const io::SparseVolume& insert = in.volumes[*in.insert];
+    task.read_insert = [&](int k, int count, float* to) { insert.read_slices(k, count, to); };
+    task.around = [&](std::span<const optimize::Slab> inserts) -> std::unique_ptr<optimize::Operator> {
+      const double mu_per_px = options.absorption == "none" ? 0 : printer.resin.absorption_per_mm * grid.voxel_mm;
+      const double radius_px = model::resin_radius_mm(printer.vial) / grid.voxel_mm;
+      return std::make_unique<optimize::ShadowedOperator>(turn, mu_per_px, radius_px, inserts);
+    };
+  }
   const auto light = make_light(turn, grid, printer, options);
   const auto outcome = optimize::optimise(task, *light);
   if (levels) levels->finish();
+  if (outcome.dark_part_voxels > 0) {
+    warn(options.input + ": no light reaches " + std::to_string(outcome.dark_part_voxels) +
+         " voxels of the part behind the insert; they will not print");
+  }
   if (!options.trace.empty()) {
     io::OutputFile trace(options.trace, io::Content::text);
     trace.write(optimize::trace_csv(outcome.trace));

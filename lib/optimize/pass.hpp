@@ -44,6 +44,14 @@ struct Problem {
 [[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
                                    const Window& window);
 
+/// Voxels that an insert fills to a half or more are neither part nor void.
+void exclude(Problem& problem, std::span<const Slab> inserts);
+
+class Operator;
+
+/// Voxels of part or void that no light can reach are left out too; returns how many of the part's there were.
+[[nodiscard]] long exclude_dark(Problem& problem, const Operator& light);
+
 /// Distance from the axis to the farthest voxel centre with coverage, in voxels; -1 for an empty slice.
 [[nodiscard]] double reach(const float* slice, int width, int height, double axis_x, double axis_y);
 

@@ -16,6 +16,14 @@ std::size_t pixels(Shape shape) {
   return static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height);
 }
 
+/// Voxels that part and insert together fill more than once, rounding left aside.
+long overlap(const float* part, const float* insert, std::size_t count) {
+  constexpr float more_than_full = 1.05F;
+  long shared = 0;
+  for (std::size_t i = 0; i < count; ++i) shared += part[i] + insert[i] > more_than_full ? 1 : 0;
+  return shared;
+}
+
 bool void_inside(const float* slice, Shape shape, const Circle& circle) {
   for (int y = 0; y < shape.height; ++y) {
     for (int x = 0; x < shape.width; ++x, ++slice) {
@@ -30,22 +38,35 @@ std::vector<Digest> digests(const VolumeTask& task, Shape shape) {
   std::vector<Digest> all(static_cast<std::size_t>(task.slices));
   std::vector<double> reaches(lanes);
   std::vector<char> has_void(lanes);
+  std::vector<float> inserts(task.read_insert ? pixels(shape) * lanes : 0);
+  std::vector<long> overlaps(lanes, 0);
   bool any_part = false;
   bool any_void = false;
   std::vector<float> buffer(pixels(shape) * lanes);
   for (int k = 0; k < task.slices; k += lanes) {
     const int count = std::min(lanes, task.slices - k);
     task.read(k, count, buffer.data());
+    if (task.read_insert) task.read_insert(k, count, inserts.data());
     parallel_for(count, [&](int i) {
       const float* slice = buffer.data() + static_cast<std::size_t>(i) * pixels(shape);
-      all[static_cast<std::size_t>(k + i)] = digest({slice, pixels(shape)});
+      Digest& mark = all[static_cast<std::size_t>(k + i)];
+      mark = digest({slice, pixels(shape)});
       reaches[static_cast<std::size_t>(i)] =
           reach(slice, shape.width, shape.height, task.circle.axis_x, task.circle.axis_y);
       has_void[static_cast<std::size_t>(i)] = void_inside(slice, shape, task.circle) ? 1 : 0;
+      if (!task.read_insert) return;
+      const float* insert = inserts.data() + static_cast<std::size_t>(i) * pixels(shape);
+      mark = digest({insert, pixels(shape)}, mark);
+      overlaps[static_cast<std::size_t>(i)] = overlap(slice, insert, pixels(shape));
     });
     for (int i = 0; i < count; ++i) {
       any_part = any_part || reaches[static_cast<std::size_t>(i)] >= 0;
       any_void = any_void || has_void[static_cast<std::size_t>(i)] != 0;
+      if (overlaps[static_cast<std::size_t>(i)] > 0) {
+        throw Error{Fault::data, "slice " + std::to_string(k + i) + ": part and insert share " +
+                                     std::to_string(overlaps[static_cast<std::size_t>(i)]) +
+                                     " voxels; cut the insert out of the part"};
+      }
       const double r = reaches[static_cast<std::size_t>(i)];
       if (r <= task.circle.radius) continue;
       throw Error{Fault::data, "slice " + std::to_string(k + i) + ": the part reaches " + format_number(r, 4) +
@@ -100,6 +121,25 @@ class Run {
     return make_problem(slices.data(), count, shape.width, shape.height, task_.circle, task_.window);
   }
 
+  /// The operator around the inserts of these jobs; the problem loses what the inserts fill and hide.
+  std::unique_ptr<Operator> go_around(Problem& problem, int first, int count) {
+    const Shape shape = light_.object();
+    std::vector<Slab> inserts;
+    std::vector<float> slices(pixels(shape) * lanes);
+    for (int i = 0; i < count; i += lanes) {
+      const int used = std::min(lanes, count - i);
+      for (int lane = 0; lane < used; ++lane) {
+        task_.read_insert(slice(first + i + lane), 1, slices.data() + static_cast<std::size_t>(lane) * pixels(shape));
+      }
+      inserts.emplace_back(shape.width, shape.height);
+      tomo::pack(slices.data(), used, inserts.back());
+    }
+    exclude(problem, inserts);
+    auto light = task_.around(inserts);
+    outcome_.dark_part_voxels += exclude_dark(problem, *light);
+    return light;
+  }
+
   [[nodiscard]] std::vector<Slab> initial(int first, int count) const {
     const Shape shape = light_.image();
     std::vector<Slab> g;
@@ -119,7 +159,10 @@ class Run {
   }
 
   void pass(int first, int count) {
-    const Problem problem = load(first, count);
+    Problem problem = load(first, count);
+    std::unique_ptr<Operator> around;
+    if (task_.read_insert) around = go_around(problem, first, count);
+    const Operator& light = around ? *around : light_;
     Iterate state;
     if (task_.initial) state.g = initial(first, count);
     const auto method = task_.make();
@@ -135,7 +178,7 @@ class Run {
         seen = iteration;
       };
     }
-    const Outcome outcome = iterate(*method, problem, light_, task_.limits, state, watch);
+    const Outcome outcome = iterate(*method, problem, light, task_.limits, state, watch);
     if (task_.watch) ends_[static_cast<std::size_t>(seen)].add(last);
     if (outcome.iterations >= outcome_.iterations) {
       outcome_.iterations = outcome.iterations;

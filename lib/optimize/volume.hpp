@@ -21,7 +21,9 @@ struct VolumeTask {
   bool watch = false;                                      // fill the trace
   std::size_t keep_bytes = std::size_t{512} << 20U;        // finished projections held for identical slices to come
   std::function<void(int k, int count, float* out)> read;  // `count` row-major slices from k on
-  std::function<Image(int k)> initial;                     // image to start from (fluence); none = from nothing
+  std::function<void(int k, int count, float* out)> read_insert;           // coverage of an opaque insert; may be empty
+  std::function<std::unique_ptr<Operator>(std::span<const Slab>)> around;  // the operator of a pass with these inserts
+  std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>()> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
   std::function<void(int slices)> progress;              // so many more slices are done; may be empty
@@ -34,6 +36,7 @@ struct VolumeOutcome {
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
   double efficiency = 0;
+  long dark_part_voxels = 0;  // of the part, behind the insert from everywhere
 };
 
 /// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside

@@ -20,6 +20,7 @@ Json report(const VolumeOutcome& outcome) {
   json["stopped_by"] = outcome.reason;
   for (const auto& name : model::figure_names()) json[name] = model::figure(outcome.metrics, name);
   json["efficiency"] = outcome.efficiency;
+  json["dark_part_voxels"] = outcome.dark_part_voxels;
   return json;
 }
 

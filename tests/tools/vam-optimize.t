@@ -17,6 +17,11 @@ quiet "auto is apg until the part prints with room to spare" vam-optimize --angl
 is "its goal" "$(value auto.json stopped_by)" goal
 holds "no voxel errs" "$(value auto.json ver) == 0"
 
+quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb &&
+  vam-optimize --angles 180 --report handle.json handle.vdb -o handle.exr'
+holds "every voxel of it is right" "$(value handle.json ver) == 0"
+is "all of it can be lit" "$(value handle.json dark_part_voxels)" 0
+
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do
   quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --absorption $how $absorbing part.vdb -o light.exr

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "optimize/schedule.hpp"
+#include "optimize/shadowed_operator.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 
@@ -142,6 +143,28 @@ TEST_CASE("targets without part or without void are refused") {
     if (task.circle.contains(i % size, i / size)) filled[static_cast<std::size_t>(i)] = 1.0F;
   }
   CHECK_THROWS_WITH_AS(run({filled}, task), doctest::Contains("fills the whole"), vam::Error);
+}
+
+TEST_CASE("an insert that overlaps the part is refused; one that hides part of it is told") {
+  const auto disc = oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 10; });
+  const auto ring = oracle::draw(size, [](double x, double y) { return std::abs(std::hypot(x, y) - 14) < 2; });
+  const auto outside = oracle::draw(size, [](double x, double y) {
+    return std::hypot(x, y) < 10 || (std::hypot(x, y) > 19 && std::hypot(x, y) < 24);
+  });
+  VolumeTask task;
+  task.read_insert = [&](int, int count, float* out) {
+    for (int i = 0; i < count; ++i) out = std::copy(disc.begin(), disc.end(), out);
+  };
+  CHECK_THROWS_WITH_AS(run({disc}, task), doctest::Contains("part and insert share"), vam::Error);
+  task.read_insert = [&](int, int count, float* out) {
+    for (int i = 0; i < count; ++i) out = std::copy(ring.begin(), ring.end(), out);
+  };
+  task.around = [](std::span<const Slab> inserts) {
+    return std::make_unique<ShadowedOperator>(parts::turn(size, angles), 0, 32, inserts);
+  };
+  const auto result = run({outside}, task);
+  CHECK(result.outcome.dark_part_voxels > 250);  // the disc of 314 pixels inside the ring, its rim being surface
+  CHECK(result.outcome.dark_part_voxels < 314);
 }
 
 TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
