@@ -132,7 +132,7 @@ class DlpLight final : public LightEngine {
       if (answer.size() < header_bytes) break;
       if (static_cast<unsigned char>(answer[1]) != sequence_) continue;
       if ((static_cast<unsigned char>(answer[0]) & not_acknowledged) != 0) throw wrong(command, "refused");
-      const auto length = static_cast<std::size_t>(byte(answer, 2) + 256 * byte(answer, 3));
+      const auto length = static_cast<std::size_t>(byte(answer, 2)) + 256 * static_cast<std::size_t>(byte(answer, 3));
       if (header_bytes + length > answer.size())
         throw wrong(command, "answered with a length of " + std::to_string(length));
       if (guardian_ != nullptr) guardian_->beat();
