@@ -75,7 +75,7 @@ void GcsLink::send(const std::string& text) {
 }
 
 std::string GcsLink::read_more(const std::string& question, const std::string& so_far) {
-  const std::string bytes = port_->read(settings_.timeout_s);
+  std::string bytes = port_->read(settings_.timeout_s);
   if (bytes.empty()) {
     throw Error{Fault::busy, port_->name() + ": no " + (so_far.empty() ? "answer" : "end of the answer") + " to '" +
                                  shown(question) + "' within " + format_number(settings_.timeout_s) +

@@ -133,7 +133,7 @@ class GrblStage final : public Stage {
       const std::string line = next_line(timeout_s, true);
       if (line == "ok") break;
       if (line.rfind("[VER:", 0) == 0) greeting_ = "Grbl " + line.substr(5, line.find(':', 5) - 5);
-      if (line.rfind("[", 0) != 0) {
+      if (line.rfind('[', 0) != 0) {
         throw Error{Fault::protocol,
                     port_->name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
       }
