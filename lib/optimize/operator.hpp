@@ -33,6 +33,9 @@ class Operator {
   /// The angle in radians that a row stands for: fluence = value / row_angle_rad().
   [[nodiscard]] virtual double row_angle_rad() const = 0;
 
+  /// Whether light of one slice gives dose in others: then methods decide for all slices of a pass together.
+  [[nodiscard]] virtual bool couples_slices() const { return false; }
+
   /// sinograms = A objects.
   virtual void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const = 0;
   /// objects = A* sinograms: the relative dose.

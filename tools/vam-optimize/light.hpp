@@ -1,0 +1,28 @@
+// The light that vam-optimize works with, by the printer and the options.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "optimize/operator.hpp"
+#include "tomo/radon.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Where the light comes from and what it goes through.
+struct Scene {
+  model::Grid grid;
+  model::Printer printer;
+  tomo::ParallelGeometry turn;
+};
+
+/// Parallel light; the resin's absorption is in it unless it is to be left out.
+[[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options);
+/// The same around opaque inserts, a slab for every slab of the pass.
+[[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options,
+                                                             std::span<const optimize::Slab> inserts);
+
+}  // namespace vam::optimize_tool
