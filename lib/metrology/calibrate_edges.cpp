@@ -1,0 +1,266 @@
+#include "metrology/calibrate_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "optics/vial.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+constexpr double window = 0.2;  // of R_e, to either side of an edge
+
+// Impact parameter of the outermost ray that meets resin: n_0 b may not exceed n R on either side of any interface.
+double grazing_mm(const optics::View& view) {
+  double outside = view.bath_index;
+  double smallest_mm = INFINITY;
+  for (const auto& shell : view.shells) {
+    smallest_mm = std::min(smallest_mm, shell.radius_mm * std::min(outside, shell.index) / view.bath_index);
+    outside = shell.index;
+  }
+  return smallest_mm;
+}
+
+// The column whose ray has this impact parameter; impact_mm() rises with the column.
+double column_of_impact_mm(const optics::View& view, double impact) {
+  double low = 0;
+  double high = 2 * impact;
+  while (optics::impact_mm(view, high) < impact && high < 1e6 * impact) high *= 2;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (optics::impact_mm(view, middle) < impact ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// Fluorescence along the ray of column q * R_e, 0 beyond the edge, as the running integral over q: a line that has a
+// width is a difference of two integrals, exactly, however steep the edge.
+class EdgeShape {
+ public:
+  EdgeShape(const model::Printer& printer, double edge_mm) {
+    const optics::View view = optics::projector_view(printer);
+    const double radius_mm = optics::resin_radius_mm(view);
+    double sum = 0;
+    double before = 0;
+    for (int i = 0; i <= cells; ++i) {
+      // Midpoints, denser towards the edge: q = 1 - s^2.
+      const double s = 1 - static_cast<double>(i) / cells;
+      const double q = 1 - s * s * (1 - low);
+      if (i > 0) sum += (q - before) * brightness(printer, view, radius_mm, 0.5 * (q + before) * edge_mm);
+      integral_.push_back(sum);
+      before = q;
+    }
+  }
+  /// Integral from `low` to q; below `low` the curve goes on level.
+  [[nodiscard]] double integral(double q) const {
+    if (q >= 1) return integral_.back();
+    if (q <= low) return (q - low) * (integral_[1] - integral_[0]) / width_of_first();
+    const double place = (1 - std::sqrt((1 - q) / (1 - low))) * cells;
+    const auto cell = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(cells - 1));
+    // Linear in q between the nodes.
+    const auto node = [](std::size_t i) {
+      const double s = 1 - static_cast<double>(i) / cells;
+      return 1 - s * s * (1 - low);
+    };
+    const double part = (q - node(cell)) / (node(cell + 1) - node(cell));
+    return integral_[cell] + part * (integral_[cell + 1] - integral_[cell]);
+  }
+
+ private:
+  static double brightness(const model::Printer& printer, const optics::View& view, double radius_mm, double x_mm) {
+    const auto ray = optics::chief_ray(view, x_mm);
+    if (!ray.hits) return 0;
+    const double path_mm = 2 * std::sqrt(std::max(radius_mm * radius_mm - ray.x_v_mm * ray.x_v_mm, 0.0));
+    const double mu = printer.resin.absorption_per_mm;
+    return ray.transmittance * (mu > 0 ? -std::expm1(-mu * path_mm) / (mu * radius_mm) : path_mm / radius_mm);
+  }
+  static double width_of_first() {
+    const double s = 1 - 1.0 / cells;
+    return (1 - s * s) * (1 - low);
+  }
+  static constexpr int cells = 1000;
+  static constexpr double low = 1 - 2 * window;
+  std::vector<double> integral_;
+};
+
+// Columns of the two steepest changes, smoothed over three frames, and the smoothed signal's range.
+struct Steepest {
+  double rise = 0, fall = 0;
+  bool clear = false;
+};
+
+Steepest steepest(const std::vector<double>& column, const std::vector<double>& signal) {
+  const std::size_t n = signal.size();
+  std::vector<double> smooth(n);
+  double noise = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i;
+    const std::size_t b = std::min(i + 1, n - 1);
+    smooth[i] = (signal[a] + signal[i] + signal[b]) / 3;
+  }
+  const auto [low, high] = std::minmax_element(smooth.begin(), smooth.end());
+  // The half height, seen from either end: the slope may be steeper inside where noise helps it.
+  const double half = 0.5 * (*low + *high);
+  Steepest edges;
+  std::size_t first = 0;
+  while (first < n && smooth[first] < half) ++first;
+  std::size_t last = n;
+  while (last > first && smooth[last - 1] < half) --last;
+  for (std::size_t i = 1; i < n; ++i) noise += std::abs(signal[i] - signal[i - 1]);
+  noise /= static_cast<double>(n - 1);
+  edges.clear = first > 0 && last < n && last > first + 3 && *high - *low > 3 * noise;
+  if (edges.clear) {
+    edges.rise = 0.5 * (column[first - 1] + column[first]);
+    edges.fall = 0.5 * (column[last - 1] + column[last]);
+  }
+  return edges;
+}
+
+// Parameters: centre, R_e, blur, background, brightness and its slope at the low and at the high edge.
+enum : std::size_t { centre, edge, blur, ground, low_0, low_1, high_0, high_1, count };
+
+class BandModel {
+ public:
+  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShape& shape, const Steepest& first)
+      : shape_(shape), width_px_(scan.width_px) {
+    const double middle = 0.5 * (first.rise + first.fall);
+    const double radius = 0.5 * (first.fall - first.rise);
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+      const double q = std::abs(scan.column[i] - middle) / radius;
+      if (q < 1 - window || q > 1 + window) continue;
+      column_.push_back(scan.column[i]);
+      signal_.push_back(signal[i]);
+    }
+  }
+
+  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& p) const {
+    std::vector<double> out(signal_.size());
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const bool right = column_[i] > p[centre];
+      const double u = (std::abs(column_[i] - p[centre]) - p[edge]) / (window * p[edge]);
+      const double bright = right ? p[high_0] + p[high_1] * u : p[low_0] + p[low_1] * u;
+      out[i] = signal_[i] - p[ground] - bright * blurred(std::abs(column_[i] - p[centre]), p[edge], p[blur]);
+    }
+    return out;
+  }
+
+ private:
+  // Mean over the line's width and a Gaussian, in R_e's units.
+  [[nodiscard]] double blurred(double x_px, double edge_px, double blur_px) const {
+    constexpr int half_nodes = 9;
+    constexpr double reach = 3.2;
+    const double sigma = std::max(std::abs(blur_px), 1e-3);
+    double sum = 0;
+    double weights = 0;
+    for (int k = -half_nodes; k <= half_nodes; ++k) {
+      const double z = reach * k / half_nodes;
+      const double weight = std::exp(-0.5 * z * z);
+      const double x = x_px + sigma * z;
+      weights += weight;
+      sum += weight *
+             (shape_.integral((x + 0.5 * width_px_) / edge_px) - shape_.integral((x - 0.5 * width_px_) / edge_px));
+    }
+    return sum / weights * edge_px / width_px_;
+  }
+
+  const EdgeShape& shape_;
+  double width_px_;
+  std::vector<double> column_;
+  std::vector<double> signal_;
+};
+
+struct BandEdges {
+  Measured centre, edge, blur;
+};
+
+BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShape& shape,
+                   const Steepest& first) {
+  const BandModel model(scan, signal, shape, first);
+  const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
+  const double height = *high - *low;
+  std::vector<double> start(count);
+  start[centre] = 0.5 * (first.rise + first.fall);
+  start[edge] = 0.5 * (first.fall - first.rise) + 1;
+  start[blur] = 1.5;
+  start[ground] = *low;
+  start[low_0] = start[high_0] = height;
+  std::vector<double> step(count, 1e-3 * height);
+  step[centre] = step[edge] = step[blur] = 0.01;
+  const auto fit =
+      fit_curve([&](const std::vector<double>& p) { return model.residuals(p); }, start, step, "sweep: vial edges");
+  BandEdges out{fit.measured(centre), fit.measured(edge), fit.measured(blur)};
+  out.blur.value = std::abs(out.blur.value);
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> band_means(const Image& frame, int bands) {
+  if (frame.height < bands) {
+    throw Error{Fault::data, "sweep: " + std::to_string(frame.height) + " rows are too few for " +
+                                 std::to_string(bands) + " heights"};
+  }
+  const int rows = frame.height / bands;
+  std::vector<double> means(static_cast<std::size_t>(bands));
+  for (int b = 0; b < bands; ++b) {
+    double sum = 0;
+    for (int y = b * rows; y < (b + 1) * rows; ++y) {
+      for (int x = 0; x < frame.width; ++x) sum += frame(x, y);
+    }
+    means[static_cast<std::size_t>(b)] = sum / rows / frame.width;
+  }
+  return means;
+}
+
+VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
+  const double pixel_mm = printer.projector.pixel_mm;
+  const optics::View view = optics::projector_view(printer);
+  const EdgeShape shape(printer, column_of_impact_mm(view, grazing_mm(view)));
+  VialEdges out;
+  std::vector<Measured> edges;
+  std::vector<Measured> blurs;
+  std::vector<std::size_t> seen;
+  for (std::size_t b = 0; b < scan.signal.size(); ++b) {
+    out.centre_column.emplace_back();
+    if (scan.column.size() < 2 * count) continue;
+    const Steepest first = steepest(scan.column, scan.signal[b]);
+    if (!first.clear) continue;
+    const BandEdges band = fit_band(scan, scan.signal[b], shape, first);
+    out.centre_column.back() = band.centre;
+    edges.push_back(band.edge);
+    blurs.push_back(band.blur);
+    seen.push_back(b);
+  }
+  if (seen.empty()) {
+    throw Error{Fault::data, "sweep: no height shows light between two dark sides in " +
+                                 std::to_string(scan.column.size()) +
+                                 " frames; sweep beyond both edges of the vial, with the camera exposed"};
+  }
+  out.edge_px = weighted_mean(edges);
+  out.blur_px = weighted_mean(blurs);
+  if (seen.size() > 1) {
+    std::vector<double> heights;
+    std::vector<Measured> centres;
+    for (const std::size_t b : seen) {
+      heights.push_back(scan.height_mm[b]);
+      centres.push_back(out.centre_column[b]);
+    }
+    const WeightedLine axis = weighted_line(heights, centres);
+    out.axis_column = axis.at_zero;
+    out.tilt_deg = lean_deg(axis.slope, pixel_mm);
+  } else {
+    out.axis_column = out.centre_column[seen.front()];
+  }
+  // Slip 1 is in impact_mm(); where the resin, not the glass, ends the light, the glass is a wall further out.
+  const double impact = optics::impact_mm(view, out.edge_px.value * pixel_mm);
+  const double next = optics::impact_mm(view, (out.edge_px.value + 1) * pixel_mm);
+  const bool at_glass = grazing_mm(view) >= view.shells.front().radius_mm * (1 - 1e-12);
+  const double scale = at_glass ? 1 : optics::resin_radius_mm(view) / grazing_mm(view);
+  out.radius_mm = {impact * scale + (at_glass ? 0 : printer.vial.wall_mm), (next - impact) * scale * out.edge_px.sigma,
+                   out.edge_px.n};
+  return out;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,94 @@
+#include "metrology/calibrate_edges.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "coverage.hpp"
+#include "fault_of.hpp"
+#include "oracle/calibration_scans.hpp"
+
+using namespace vam;
+using namespace vam::metrology;
+
+namespace {
+
+model::Printer printer_of(const oracle::SweepTruth& truth) {
+  model::Printer printer;
+  printer.projector.pixel_mm = truth.pixel_mm;
+  printer.projector.lens_distance_mm = truth.lens_mm;
+  printer.vial = {12.7, truth.wall_mm, truth.glass_index};  // the radius is to be found
+  printer.resin.index = truth.resin_index;
+  return printer;
+}
+
+constexpr int bands = 3;
+constexpr double band_mm = 6;
+
+SweepScan swept(const oracle::SweepTruth& truth, double pitch_px, double first, double last, oracle::Random& random) {
+  const oracle::SweepBench bench(truth);
+  const std::vector<double> height_mm{7.5, 6, 4.5, 1.5, 0, -1.5, -4.5, -6, -7.5};  // three rows a band
+  SweepScan scan;
+  scan.width_px = 2;
+  scan.height_mm = {band_mm, 0, -band_mm};
+  scan.signal.resize(bands);
+  for (double column = first; column <= last; column += pitch_px) {
+    scan.column.push_back(column);
+    const auto means = band_means(bench.frame(column, scan.width_px, height_mm, 32, random), bands);
+    for (int b = 0; b < bands; ++b)
+      scan.signal[static_cast<std::size_t>(b)].push_back(means[static_cast<std::size_t>(b)]);
+  }
+  return scan;
+}
+
+}  // namespace
+
+TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, radius within 0.05 %") {
+  oracle::Random random(7);
+  std::uniform_real_distribution<double> part;
+  test::Coverage centre("centre"), radius("radius"), tilt("tilt");
+  for (int run = 0; run < 200; ++run) {
+    oracle::SweepTruth truth;
+    truth.radius_mm = 10 + 4 * part(random);
+    if (run % 4 == 0) {  // a glass wall that is not matched
+      truth.wall_mm = 1;
+      truth.glass_index = 1.47;
+    }
+    truth.axis_column = 490 + 40 * part(random);
+    truth.tilt_rad = (part(random) - 0.5) * 0.03;
+    truth.blur_px = 0.5 + 2 * part(random);
+    truth.slope = 0.4 * (part(random) - 0.5);
+    const double reach = 1.25 * truth.radius_mm / truth.pixel_mm;
+    const auto scan = swept(truth, 2, std::floor(truth.axis_column - reach), truth.axis_column + reach, random);
+    const VialEdges found = find_edges(scan, printer_of(truth));
+    centre.add(found.axis_column, truth.axis_column);
+    radius.add(found.radius_mm, truth.radius_mm, 1 / truth.radius_mm);
+    tilt.add(found.tilt_deg, truth.tilt_rad * 180 / 3.14159265358979);
+  }
+  centre.check();
+  radius.check();
+  tilt.check();
+  CHECK(centre.worst() < 0.1);
+  CHECK(radius.worst() < 5e-4);
+}
+
+TEST_CASE("Vial edges: slip 1, the tangent column is further out than the vial") {
+  oracle::Random random(3);
+  oracle::SweepTruth truth;
+  truth.noise = 0.5;
+  const VialEdges found = find_edges(swept(truth, 1, 250, 770, random), printer_of(truth));
+  const double tangent_px =
+      truth.radius_mm / truth.pixel_mm / std::sqrt(1 - std::pow(truth.radius_mm / truth.lens_mm, 2));
+  CHECK(found.edge_px.value == doctest::Approx(tangent_px).epsilon(3e-4));
+  CHECK(found.radius_mm.value == doctest::Approx(truth.radius_mm).epsilon(3e-4));
+  CHECK(found.blur_px.value == doctest::Approx(truth.blur_px).epsilon(0.2));
+}
+
+TEST_CASE("Vial edges: a sweep that misses an edge, a dark one, and a picture without rows are refused") {
+  oracle::Random random(5);
+  oracle::SweepTruth truth;
+  CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 500, 800, random), printer_of(truth)); }) == Fault::data);
+  CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 800, 1000, random), printer_of(truth)); }) == Fault::data);
+  CHECK(fault_of([&] { (void)find_edges(swept(truth, 100, 0, 1000, random), printer_of(truth)); }) == Fault::data);
+  CHECK(fault_of([] { (void)band_means(Image(4, 2), 3); }) == Fault::data);
+}

@@ -1,0 +1,255 @@
+// Response, flat field, beam, camera axis and latency: 200 scans of each, and what is refused.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "coverage.hpp"
+#include "fault_of.hpp"
+#include "metrology/calibrate_axis.hpp"
+#include "metrology/calibrate_beam.hpp"
+#include "metrology/calibrate_flat.hpp"
+#include "metrology/calibrate_latency.hpp"
+#include "metrology/calibrate_response.hpp"
+#include "metrology/half_maximum.hpp"
+#include "oracle/calibration_scans.hpp"
+
+using namespace vam;
+using namespace vam::metrology;
+
+namespace {
+
+constexpr int runs = 200;
+std::uniform_real_distribution<double> part;
+std::normal_distribution<double> unit;
+
+// A display's curve: power law over a leak.
+double true_light(double grey, double gamma, double leak) { return leak + (1 - leak) * std::pow(grey / 255, gamma); }
+
+ResponseScan ramp(double gamma, double leak, int readings, double noise, oracle::Random& random) {
+  ResponseScan scan;
+  for (int level = 0; level <= 16; ++level) {
+    scan.grey.push_back(level == 16 ? 255 : 16 * level);
+    scan.light.emplace_back();
+    for (int i = 0; i < readings; ++i) {
+      const double light = true_light(scan.grey.back(), gamma, leak);
+      scan.light.back().push_back(3000 * light * (1 + noise * unit(random)) + 2 * unit(random));
+    }
+  }
+  return scan;
+}
+
+}  // namespace
+
+TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling") {
+  oracle::Random random(11);
+  test::Coverage levels("levels");
+  for (int run = 0; run < runs; ++run) {
+    const double gamma = 1 + 1.4 * part(random);
+    const double leak = 0.002 * part(random);
+    const auto curve = measure_response(ramp(gamma, leak, 5, 0.004, random));
+    for (std::size_t i = 0; i + 1 < curve.grey.size(); ++i) {
+      levels.add(curve.intensity[i], true_light(curve.grey[i], gamma, leak));
+      CHECK(curve.intensity[i].value <= curve.intensity[i + 1].value);
+    }
+    CHECK(curve.intensity.back().value == 1);
+    CHECK(to_table(curve).intensity.size() == 17);
+  }
+  levels.check();
+  CHECK(levels.worst() < 0.02);
+}
+
+TEST_CASE("Response: few levels, single readings, darkness and falling light are refused") {
+  oracle::Random random(12);
+  const auto refused = [](const ResponseScan& scan) { return message_of([&] { (void)measure_response(scan); }); };
+  auto few = ramp(1, 0, 5, 0.01, random);
+  few.grey.resize(9);
+  few.light.resize(9);
+  CHECK(refused(few).find("9 grey levels") != std::string::npos);
+  CHECK(refused(ramp(1, 0, 2, 0.01, random)).find("2 readings") != std::string::npos);
+  auto dark = ramp(1, 0, 5, 0.01, random);
+  for (auto& readings : dark.light) readings = {1, -1, 0.5, -0.5, 0};
+  CHECK(refused(dark).find("no light") != std::string::npos);
+  auto drift = ramp(1, 0, 5, 0.001, random);
+  for (double& reading : drift.light[10]) reading *= 1.3;
+  CHECK(refused(drift).find("falls by") != std::string::npos);
+  auto unsorted = ramp(1, 0, 5, 0.01, random);
+  std::swap(unsorted.grey[3], unsorted.grey[4]);
+  CHECK(refused(unsorted).find("must rise") != std::string::npos);
+}
+
+TEST_CASE("Flat field: the shape of the light comes out, dead pixels are mended") {
+  oracle::Random random(13);
+  const auto truth = [](int x, int y) { return 1 + 0.2 * std::sin(0.2 * x) * std::cos(0.1 * y); };
+  FrameMean frames;
+  for (int n = 0; n < 20; ++n) {
+    Image frame(48, 32);
+    for (int y = 0; y < frame.height; ++y) {
+      for (int x = 0; x < frame.width; ++x) {
+        frame(x, y) = static_cast<float>(100 + (x == 20 && y == 9 ? 0 : 800 * truth(x, y)) + 8 * unit(random));
+      }
+    }
+    frames.add(frame);
+  }
+  const Image dark(48, 32, 100);
+  const FlatField flat = flat_field(frames, dark);
+  CHECK(flat.dead == 1);
+  CHECK(frames.noise() == doctest::Approx(8).epsilon(0.03));
+  CHECK(flat.pixel_sigma == doctest::Approx(8 / std::sqrt(20) / flat.level.value).epsilon(0.05));
+  CHECK(flat.unevenness == doctest::Approx(0.19).epsilon(0.1));
+  double mean = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 48; ++x) mean += truth(x, y) / 48 / 32;
+  }
+  int inside = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 48; ++x) {
+      if (x == 20 && y == 9) {
+        CHECK(flat.field(x, y) == doctest::Approx(truth(x, y) / mean).epsilon(0.02));
+        continue;
+      }
+      if (std::abs(flat.field(x, y) - truth(x, y) / mean) < 2 * flat.pixel_sigma + 0.001) ++inside;
+    }
+  }
+  CHECK(inside >= 0.95 * 48 * 32);
+  CHECK(fault_of([&] { frames.add(Image(4, 4)); }) == Fault::data);
+  CHECK(fault_of([&] { (void)flat_field(frames, Image(4, 4)); }) == Fault::data);
+  CHECK(fault_of([] { (void)flat_field(FrameMean(), {}); }) == Fault::data);
+  FrameMean nothing;
+  for (int n = 0; n < 3; ++n) nothing.add(Image(8, 8));
+  CHECK(fault_of([&] { (void)flat_field(nothing, {}); }) == Fault::data);
+}
+
+TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
+  oracle::Random random(17);
+  test::Coverage width("width"), divergence("divergence"), at_axis("width at the axis");
+  constexpr double pixel_mm = 0.0035;
+  for (int run = 0; run < runs; ++run) {
+    const double slope = 0.008 + 0.01 * part(random);
+    const double waist_mm = 0.05 + 0.03 * part(random);
+    const double focus_mm = 4 * (part(random) - 0.5);
+    const auto fwhm_mm = [&](double y_mm) { return std::hypot(waist_mm, slope * (y_mm - focus_mm)); };
+    BeamWidths widths;
+    for (int plane = -5; plane <= 5; ++plane) {
+      const double y_mm = 1.27 * plane;
+      oracle::BandTruth truth;
+      truth.columns = 160;
+      truth.rows = 48;
+      truth.middle = 79.5 + 5 * (part(random) - 0.5);
+      truth.half_width = 0.5 * fwhm_mm(y_mm) / pixel_mm;
+      truth.blur_px = 1.5;
+      truth.light = 400;
+      const Measured px = line_width_px(oracle::bright_band(truth, random), "plane");
+      if (plane == 3) width.add(px, 2 * truth.half_width);
+      widths.plane_mm.push_back(y_mm);
+      widths.fwhm_mm.push_back({px.value * pixel_mm, px.sigma * pixel_mm, px.n});
+    }
+    const Beam beam = measure_beam(widths);
+    divergence.add(beam.divergence_deg, std::atan(slope) * 180 / std::numbers::pi);
+    at_axis.add(beam.axis_fwhm_mm, fwhm_mm(0));
+  }
+  width.check();
+  divergence.check();
+  at_axis.check();
+  CHECK(fault_of([] { (void)line_width_px(Image(50, 8), "plane"); }) == Fault::data);
+  CHECK(fault_of([] { (void)line_width_px(Image(50, 50), "plane"); }) == Fault::data);
+  CHECK(fault_of([] { (void)measure_beam({{0, 1, 2}, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}}); }) == Fault::data);
+}
+
+TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
+  oracle::Random random(19);
+  test::Coverage column("column"), tilt("tilt"), wobble("wobble"), phase("phase");
+  for (int run = 0; run < runs; ++run) {
+    const double axis = 60 + 10 * part(random);
+    const double lean = 0.04 * (part(random) - 0.5);
+    const double amplitude = 1 + 2 * part(random);
+    const double phase_deg = 30 + 300 * part(random);
+    TurnScan scan;
+    scan.rows = 24;
+    scan.middle.resize(3);
+    for (int n = 0; n < 24; ++n) {
+      scan.angle_deg.push_back(15 * n + 3 * part(random));
+      const double theta = (scan.angle_deg.back() - phase_deg) * std::numbers::pi / 180;
+      oracle::BandTruth truth;
+      truth.columns = 130;
+      truth.rows = 24;
+      truth.middle = axis + amplitude * std::cos(theta) + 0.05 * std::sin(2 * theta);
+      truth.lean = lean;
+      truth.half_width = 30;
+      truth.noise = 6;
+      const auto middles = bright_middles(oracle::bright_band(truth, random), 3);
+      for (std::size_t b = 0; b < 3; ++b) scan.middle[b].push_back(middles[b]);
+    }
+    const CameraAxis found = find_camera_axis(scan);
+    column.add(found.column, axis);
+    tilt.add(found.tilt_deg, std::atan(lean) * 180 / std::numbers::pi);
+    wobble.add(found.wobble_px, amplitude);
+    phase.add(found.phase_deg, phase_deg);
+    CHECK(found.bands == 3);
+  }
+  column.check();
+  tilt.check();
+  wobble.check();
+  phase.check();
+  CHECK(column.worst() < 0.1);
+  TurnScan half;
+  half.rows = 3;
+  half.middle.resize(1);
+  for (int n = 0; n < 18; ++n) {
+    half.angle_deg.push_back(10.0 * n);
+    half.middle[0].push_back(7);
+  }
+  CHECK(message_of([&] { (void)find_camera_axis(half); }).find("gap of 190") != std::string::npos);
+  for (double& angle : half.angle_deg) angle *= 2;
+  half.middle[0].assign(18, NAN);
+  CHECK(fault_of([&] { (void)find_camera_axis(half); }) == Fault::data);
+}
+
+TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
+  oracle::Random random(23);
+  test::Coverage latency("latency, ms");
+  for (int run = 0; run < runs; ++run) {
+    const double delay_s = 0.06 * part(random);
+    BlinkScan scan;
+    scan.exposure_s = 0.02;
+    for (int i = 0; i < 20; ++i) scan.lit_s.emplace_back(100 + 0.274 * i, 100 + 0.274 * i + 0.137);
+    for (int n = 0; n < 54; ++n) {
+      scan.begin_s.push_back(100.003 + 0.1 * n);
+      double lit = 0;  // looked at 2000 times during the exposure
+      for (int k = 0; k < 2000; ++k) {
+        const double seen_s = scan.begin_s.back() + scan.exposure_s * (k + 0.5) / 2000 - delay_s - 100;
+        const double into_s = std::fmod(seen_s + 274, 0.274);
+        if (seen_s >= 0 && seen_s < 20 * 0.274 && into_s < 0.137) lit += 1.0 / 2000;
+      }
+      scan.light.push_back(12 + 90 * lit + unit(random));
+    }
+    latency.add(measure_latency(scan).ms, 1e3 * delay_s);
+  }
+  latency.check();
+  CHECK(latency.worst() < 1);
+  BlinkScan dark;
+  CHECK(fault_of([&] { (void)measure_latency(dark); }) == Fault::data);
+  dark.exposure_s = 0.01;
+  dark.lit_s = {{1, 2}};
+  for (int n = 0; n < 20; ++n) {
+    dark.begin_s.push_back(0.1 * n);
+    dark.light.push_back(unit(random));
+  }
+  CHECK(message_of([&] { (void)measure_latency(dark); }).find("does not see") != std::string::npos);
+  for (std::size_t n = 0; n < 20; ++n) dark.light[n] = dark.begin_s[n] >= 0.95 ? 90 : 10;  // in step with the flips
+  CHECK(message_of([&] { (void)measure_latency(dark); }).find("across a flip") != std::string::npos);
+}
+
+TEST_CASE("Half maximum: between pixels, and only with dark on both sides") {
+  std::vector<double> profile(40);
+  for (int i = 0; i < 40; ++i)
+    profile[static_cast<std::size_t>(i)] = 5 + 100 * std::clamp(10.0 - std::abs(i - 20.25), 0.0, 4.0) / 4;
+  const auto extent = half_maximum(profile);
+  REQUIRE(extent);
+  CHECK(extent->middle() == doctest::Approx(20.25));
+  CHECK(extent->width() == doctest::Approx(16));
+  CHECK_FALSE(half_maximum(std::vector<double>(40, 3)));
+  std::vector<double> step(40);
+  for (std::size_t i = 20; i < 40; ++i) step[i] = 1;
+  CHECK_FALSE(half_maximum(step));
+}
