@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
-#include "io/printer_file.hpp"
+#include "printer.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
@@ -82,12 +82,6 @@ cli::Manual manual() {
       {"vam-slice", "vam-project", "vam-view", "vam-score"}};
 }
 
-bool print_settings(const cli::PrinterOptions& options) {
-  if (!options.print) return false;
-  curethrough::print_text(io::printer_toml(io::load_printer(options.file, options.sets)));
-  return true;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -109,11 +103,11 @@ int main(int argc, char** argv) {
   curethrough::declare(for_response, response);
   curethrough::declare(for_sweep, sweep);
   return app.run(argc, argv, [&] {
-    if (chosen == "model" && !print_settings(model.print.printer)) run(app, for_model, model);
-    if (chosen == "correct" && !print_settings(correct.print.printer)) run(app, for_correct, correct);
+    if (chosen == "model" && !tool::print_printer(model.print.printer)) run(app, for_model, model);
+    if (chosen == "correct" && !tool::print_printer(correct.print.printer)) run(app, for_correct, correct);
     if (chosen == "working-curve") run(app, for_curve, working_curve);
     if (chosen == "response") run(app, for_response, response);
-    if (chosen == "sweep" && !print_settings(sweep.print.printer)) run(app, for_sweep, sweep);
+    if (chosen == "sweep" && !tool::print_printer(sweep.print.printer)) run(app, for_sweep, sweep);
     if (chosen.empty()) {
       throw Error{Fault::usage, "no subcommand; give model, correct, working-curve, response or sweep"};
     }

@@ -11,7 +11,6 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
 #include "io/stack_batches.hpp"
 #include "io/stream.hpp"
@@ -19,6 +18,7 @@
 #include "metrology/exposure.hpp"
 #include "metrology/simulation.hpp"
 #include "optics/blur.hpp"
+#include "printer.hpp"
 
 namespace {
 
@@ -261,12 +261,8 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
 }
 
 void run(const cli::App& app, Options& options) {
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(printer));
-    return out.commit();
-  }
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, options.output)) return;
   if (!options.like.empty() && options.size_mm) {
     throw Error{Fault::usage, "--size: --like already says which voxels"};
   }

@@ -4,12 +4,12 @@
 #include <string>
 
 #include "base/log.hpp"
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
 #include "io/response_file.hpp"
 #include "io/stream.hpp"
 #include "optimize/quantise.hpp"
 #include "optimize/volume.hpp"
+#include "printer.hpp"
 #include "tomo/fbp.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
@@ -106,7 +106,7 @@ void tell(const optimize::VolumeOutcome& outcome, const Options& options) {
 
 void run(const cli::App& app, Options& options) {
   settle(app, options);
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  const model::Printer printer = tool::load_printer(options.printer);
   if (options.printer.print) return write_text(options.output, io::printer_toml(printer));
   io::refuse_same_file(options.input, options.output);
   if (!options.init.empty()) io::refuse_same_file(options.init, options.output);

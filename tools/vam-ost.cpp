@@ -1,8 +1,8 @@
 // vam-ost: optical scattering tomography, from camera views to the print as it stands.
 #include <cstdio>
 
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
+#include "printer.hpp"
 #include "vam-ost/session.hpp"
 
 namespace {
@@ -123,10 +123,7 @@ void once(const cli::App& app, const Options& options) {
 }
 
 void run(const cli::App& app, const Options& options) {
-  if (options.printer.print) {
-    std::fputs(io::printer_toml(io::load_printer(options.printer.file, options.printer.sets)).c_str(), stdout);
-    return;
-  }
+  if (tool::print_printer(options.printer)) return;
   if (options.command == "threshold") return ost_tool::threshold(options);
   options.live ? ost_tool::live(app, options) : once(app, options);
 }

@@ -15,7 +15,6 @@
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"
 #include "io/frame_sink.hpp"
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
 #include "io/response_file.hpp"
 #include "io/stream.hpp"
@@ -23,6 +22,7 @@
 #include "optics/flatland.hpp"
 #include "optics/frames.hpp"
 #include "patterns.hpp"
+#include "printer.hpp"
 #include "resin/response.hpp"
 
 namespace {
@@ -160,7 +160,7 @@ void declare(cli::App& app, Options& options) {
 }
 
 model::Printer settings(const Options& options) {
-  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+  model::Printer printer = tool::load_printer(options.printer);
   printer.projector.fps = options.fps.value_or(printer.projector.fps);
   printer.projector.bits = options.bits.value_or(printer.projector.bits);
   printer.stage.speed_deg_s = options.speed_deg_s.value_or(printer.stage.speed_deg_s);
@@ -289,11 +289,7 @@ void run_live(const cli::App& app, const Options& options, const model::Printer&
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = settings(options);
   const model::Projector& projector = printer.projector;
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(printer));
-    return out.commit();
-  }
+  if (tool::print_printer(options.printer, printer, options.output)) return;
   if (!options.pattern.plan.name.empty()) {
     return tool::run_pattern(app, options.pattern, options.live, options.output, options.stack, projector);
   }

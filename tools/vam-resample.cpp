@@ -7,10 +7,10 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"
-#include "io/printer_file.hpp"
 #include "io/stack_batches.hpp"
 #include "io/stream.hpp"
 #include "optics/resample_stack.hpp"
+#include "printer.hpp"
 
 namespace {
 
@@ -115,17 +115,11 @@ void check(const Options& options) {
   refuse(!projector && options.no_jacobian, "--no-jacobian");
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  io::OutputFile out(path, io::Content::text);
-  out.write(text);
-  out.commit();
-}
-
 void run(const cli::App& app, Options& options) {
   check(options);
   const bool projector = options.to == "projector";
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) return write_text(options.output, io::printer_toml(printer));
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, options.output)) return;
 
   optics::ResampleOptions how;
   how.interpolation = options.interpolation == "linear" ? optics::Interpolation::linear : optics::Interpolation::cubic;
@@ -139,7 +133,7 @@ void run(const cli::App& app, Options& options) {
                       projector ? optics::projector_detector(printer, options.alignment)
                                 : optics::camera_detector(printer, options.alignment),
                       how);
-    return write_text(options.output, map.str());
+    return io::write_text(options.output, map.str());
   }
 
   io::refuse_same_file(options.input, options.output);

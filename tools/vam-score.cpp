@@ -11,12 +11,12 @@
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"
 #include "io/mesh_file.hpp"
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
 #include "metrology/score.hpp"
 #include "model/conditions.hpp"
+#include "printer.hpp"
 #include "solid/isosurface.hpp"
 
 namespace {
@@ -168,17 +168,11 @@ void write_print(const Options& options, const Inputs& in, double threshold) {
   io::write_ply(options.print, print.points, print.values, comments);
 }
 
-void write_text(const std::string& text) {
-  io::OutputFile out("-", io::Content::text);
-  out.write(text);
-  out.commit();
-}
-
 void run(Options& options) {
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::Score::names());
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) return write_text(io::printer_toml(printer));
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, "-")) return;
   for (const auto& output : {options.print, options.report}) {
     if (output.empty()) continue;
     io::refuse_same_file(options.input, output);
@@ -200,7 +194,7 @@ void run(Options& options) {
     write_print(options, in, options.print_at.value_or(options.how.threshold.value_or(best)));
   }
   io::write_report(options.report, "vam-score/1", figures);
-  write_text(options.json ? figures.dump(2) + "\n" : result.table());
+  io::write_text("-", options.json ? figures.dump(2) + "\n" : result.table());
   const auto failures = model::unmet(conditions, [&](const std::string& name) { return result.figure(name); });
   if (failures.empty()) return;
   std::string line;

@@ -162,9 +162,7 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
     text += format_number(histogram.edges[i]) + "," + format_number(histogram.edges[i + 1]) + "," +
             format_number(histogram.percent[i]) + "\n";
   }
-  io::OutputFile out(path, io::Content::text);
-  out.write(text);
-  out.commit();
+  io::write_text(path, text);
 }
 
 void run(const cli::App& app, const Options& options) {

@@ -11,9 +11,9 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"
-#include "io/printer_file.hpp"
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
+#include "printer.hpp"
 #include "tomo/fbp.hpp"
 #include "tomo/projections.hpp"
 
@@ -189,12 +189,8 @@ void run(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--attenuation: give it or --resin, not both"};
   if (options.cutoff && options.filter == "none")
     throw Error{Fault::usage, "--cutoff: has no meaning without --filter"};
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(printer));
-    return out.commit();
-  }
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, options.output)) return;
   io::refuse_same_file(options.input, options.output);
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
   const tomo::ProjectionSpec spec = make_spec(options, printer, volume.grid());

@@ -15,11 +15,11 @@
 #include "cli/common.hpp"
 #include "io/mesh_file.hpp"
 #include "io/picture.hpp"
-#include "io/printer_file.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
 #include "model/printer.hpp"
+#include "printer.hpp"
 #include "solid/part.hpp"
 #include "solid/shapes.hpp"
 
@@ -209,12 +209,8 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
 
 void run(const cli::App& app, Options& options) {
   check(app, options);
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(printer));
-    return out.commit();
-  }
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, options.output)) return;
   solid::Placement& placement = options.placement;
   placement.scale *= mm_per.at(options.unit);
   if (!options.rotate_deg.empty()) std::copy_n(options.rotate_deg.begin(), 3, placement.rotate_deg.begin());

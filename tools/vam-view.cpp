@@ -7,10 +7,10 @@
 #include "io/file_type.hpp"
 #include "io/nrrd.hpp"
 #include "io/picture.hpp"
-#include "io/printer_file.hpp"
 #include "io/stream.hpp"
 #include "io/view.hpp"
 #include "model/circle.hpp"
+#include "printer.hpp"
 
 namespace {
 
@@ -117,7 +117,7 @@ void show_volume(const Options& options, const io::PictureText& text) {
   const io::SparseVolume volume = io::read_volume(options.input, grid);
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
-    const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets);
+    const model::Printer printer = tool::load_printer(options.printer);
     const auto circle = model::writable_circle(volume.grid(), printer);
     return io::write_png(options.output,
                          io::draw(io::dose_histogram(volume, target_for(options), circle, options.view)), text);
@@ -141,11 +141,7 @@ void show_images(const Options& options, io::FileType type, const io::PictureTex
 }
 
 void run(const cli::App& app, Options& options) {
-  if (options.printer.print) {
-    io::OutputFile out(options.output, io::Content::text);
-    out.write(io::printer_toml(io::load_printer(options.printer.file, options.printer.sets)));
-    return out.commit();
-  }
+  if (tool::print_printer(options.printer, options.output)) return;
   check(options);
   options.view.name = options.input == "-" ? "stdin" : options.input.substr(options.input.find_last_of('/') + 1);
   options.view.plane = options.plane == "axial"     ? io::Plane::axial

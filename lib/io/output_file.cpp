@@ -157,4 +157,10 @@ void OutputFile::discard() noexcept {
   descriptor_ = -1;
 }
 
+void write_text(const std::string& path, std::string_view text) {
+  OutputFile out(path, Content::text);
+  out.write(text);
+  out.commit();
+}
+
 }  // namespace vam::io

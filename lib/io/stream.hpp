@@ -97,6 +97,9 @@ class OutputFile {
 [[nodiscard]] std::string read_all(const std::string& path, Content content = Content::text,
                                    std::uint64_t limit = std::uint64_t{4} << 30);
 
+/// Writes a whole text; throws as OutputFile does.
+void write_text(const std::string& path, std::string_view text);
+
 /// Throws Fault::usage when both are the same regular file, by whatever names ("-" included).
 void refuse_same_file(const std::string& input, const std::string& output);
 

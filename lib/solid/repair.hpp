@@ -34,6 +34,9 @@ struct Repair {
 /// majority's choice, then outwards: a component inside another of the opposite orientation is a cavity and stays one;
 /// one of the same orientation is a solid within a solid. A file that is inside out as a whole is turned over.
 /// Pieces too open to have an outside keep the file's orientation. Throws Fault::data when no triangle remains.
+/// CGAL's polygon soup functions do the first half of this (tests/oracle/polygon_soup judges it by them), but neither
+/// cracks, outsides nor a count of what was turned, and take 2.0 s of the 3 s that a million triangles may take in all,
+/// where this takes 0.4 s (CPU time; build/release/voxelize_bench --benchmark_filter='repair|cgal').
 Repair repair(model::TriangleSoup& mesh, const std::string& subject);
 
 }  // namespace vam::solid

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "oracle/meshes.hpp"
+#include "oracle/polygon_soup.hpp"
 #include "solid/placement.hpp"
 #include "solid/repair.hpp"
 #include "solid/voxelize.hpp"
@@ -36,6 +37,12 @@ void repair(benchmark::State& state) {
   }
 }
 BENCHMARK(repair)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+// What the library would take for a part of the work.
+void cgal_polygon_soup(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(oracle::oriented_by_cgal(stl()));
+}
+BENCHMARK(cgal_polygon_soup)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void voxelize(benchmark::State& state, solid::Fill fill) {
   for (auto _ : state) {

@@ -60,9 +60,7 @@ Json compare(const Correct& options, const Print& print, const resin::PartColumn
       report.push_back(entry);
     }
   }
-  io::OutputFile out("-", io::Content::text);
-  out.write(text);
-  out.commit();
+  io::write_text("-", text);
   return report;
 }
 

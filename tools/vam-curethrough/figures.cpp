@@ -9,12 +9,6 @@
 
 namespace vam::curethrough {
 
-void print_text(const std::string& text) {
-  io::OutputFile out("-", io::Content::text);
-  out.write(text);
-  out.commit();
-}
-
 Json to_json(const resin::CureTotals& totals, const resin::Process& process) {
   const double voxel_mm3 = std::pow(process.slice_um * 1e-3, 3);
   const auto entry = [&](std::int64_t voxels) {

@@ -22,7 +22,6 @@ struct Plane {
   std::vector<double> omega;  // at the slices' centres, in that column
 };
 
-void print_text(const std::string& text);
 [[nodiscard]] Json to_json(const resin::CureTotals& totals, const resin::Process& process);
 [[nodiscard]] std::string table_of(const resin::CureTotals& totals, const resin::Process& process);
 

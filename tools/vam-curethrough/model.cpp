@@ -243,7 +243,7 @@ void run(const cli::App& root, const cli::App& app, const Model& options) {
   if (judge.map_) {
     const resin::CureTotals totals = judge.map_->finish();
     report.update(to_json(totals, in.print.process));
-    if (options.output.empty() && options.report != "-") print_text(table_of(totals, in.print.process));
+    if (options.output.empty() && options.report != "-") io::write_text("-", table_of(totals, in.print.process));
   }
   if (!options.plane.empty()) draw_plane(options.plane, judge.plane_, in.print);
   io::write_report(options.report, "vam-curethrough-model/1", report);

@@ -7,8 +7,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/printer_file.hpp"
 #include "io/response_file.hpp"
+#include "printer.hpp"
 
 namespace vam::curethrough {
 
@@ -47,7 +47,7 @@ void add_print(cli::App& app, PrintOptions& options) {
 }
 
 Print resolve(const PrintOptions& options, double slice_um) {
-  Print print{io::load_printer(options.printer.file, options.printer.sets), {}, {}, resin::Response()};
+  Print print{tool::load_printer(options.printer), {}, {}, resin::Response()};
   model::Projector& projector = print.printer.projector;
   if (options.min_intensity_mw_cm2) projector.min_intensity_mw_cm2 = *options.min_intensity_mw_cm2;
   if (options.max_intensity_mw_cm2) projector.max_intensity_mw_cm2 = *options.max_intensity_mw_cm2;

@@ -30,9 +30,7 @@ void run(const cli::App& root, const cli::App&, const GreyResponse& options) {
     fit.table.intensity[i] *= options.scale;
     text += format_number(fit.table.grey[i], 9) + "," + format_number(fit.table.intensity[i], 9) + "\n";
   }
-  io::OutputFile out(options.output, io::Content::text);
-  out.write(text);
-  out.commit();
+  io::write_text(options.output, text);
   if (!options.plot.empty()) draw_response(options.plot, fit.table);
   Json report{{"levels", fit.table.grey.size()},
               {"readings", readings.size()},

@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/report.hpp"
+#include "io/stream.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
@@ -126,7 +127,7 @@ void run(const cli::App&, const cli::App&, const Sweep& options) {
   study.process = resolve(options.print, options.slice_um).process;
   study.gel_dose_mj_cm3 = options.gel_dose_mj_cm3.value_or(study.process.critical_dose_mj_cm3 / 5);
   const auto points = resin::run_study(resin::graded_ladder(whole_heights(options.heights)), study);
-  if (options.report != "-") print_text(csv_of(points, options.slice_um));
+  if (options.report != "-") io::write_text("-", csv_of(points, options.slice_um));
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);
   io::write_report(options.report, "vam-curethrough-sweep/1", figures(points, study));
 }

@@ -4,6 +4,7 @@
 #include "base/log.hpp"
 #include "io/csv_table.hpp"
 #include "io/report.hpp"
+#include "io/stream.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
@@ -85,7 +86,7 @@ void run(const cli::App&, const cli::App&, const WorkingCurve& options) {
   std::vector<resin::CuredSample> samples;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) samples.push_back({csv.number(row, 0), csv.number(row, 1)});
   const resin::WorkingCurve curve = resin::fit_working_curve(samples, options.confidence);
-  if (options.report != "-") print_text(table_of(curve, csv, samples));
+  if (options.report != "-") io::write_text("-", table_of(curve, csv, samples));
   if (!options.plot.empty()) draw_working_curve(options.plot, samples, curve);
   io::write_report(options.report, "vam-curethrough-working-curve/1", figures(curve, samples));
 }

@@ -6,9 +6,9 @@
 #include "io/image_figure.hpp"
 #include "io/mesh_file.hpp"
 #include "io/picture.hpp"
-#include "io/printer_file.hpp"
 #include "io/stream.hpp"
 #include "metrology/projection_sheet.hpp"
+#include "printer.hpp"
 #include "solid/isosurface.hpp"
 
 namespace vam::ost_tool {
@@ -33,10 +33,7 @@ model::Volume dense(const io::SparseVolume& sparse) {
 }
 
 Session::Session(const cli::App& app, const Options& options)
-    : app_(app),
-      options_(options),
-      printer_(io::load_printer(options.printer.file, options.printer.sets)),
-      level_(level_of(options)) {
+    : app_(app), options_(options), printer_(tool::load_printer(options.printer)), level_(level_of(options)) {
   if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
   if (!options.flat.empty()) {
     fields_.flat = io::read_field(options.flat);

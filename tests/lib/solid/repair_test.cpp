@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "oracle/meshes.hpp"
+#include "oracle/polygon_soup.hpp"
 
 using namespace vam;
 using namespace vam::solid;
@@ -152,6 +153,23 @@ TEST_CASE("open, crowded and unorientable edges are counted") {
     strip.triangles.push_back({p + 1, q, r});
   }
   CHECK(repaired(strip).unorientable == 1);
+}
+
+// CGAL chooses one of the two sides, this house the outer one: what both must agree on is which triangles run the same
+// way, so the enclosed volume is the same up to its sign, whatever was flipped, split or doubled.
+TEST_CASE("welded and oriented as CGAL's polygon soup does it") {
+  const TriangleSoup sphere = oracle::sphere(3, 20);
+  for (const TriangleSoup& damaged :
+       {oracle::unwelded(sphere), oracle::flipped(oracle::unwelded(sphere), 0.2, 3), oracle::flipped(sphere, 0.45, 7),
+        oracle::join(sphere, sphere), oracle::unwelded(oracle::flipped(cube, 0.3, 5))}) {
+    TriangleSoup ours = damaged;
+    const Repair done = repaired(ours);
+    const TriangleSoup theirs = oracle::oriented_by_cgal(damaged);
+    CHECK(done.closed());
+    CHECK(ours.points.size() == theirs.points.size());
+    CHECK(ours.triangles.size() == theirs.triangles.size());
+    CHECK(oracle::signed_volume(ours) == doctest::Approx(std::abs(oracle::signed_volume(theirs))).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("a mesh without surface is an error") {
