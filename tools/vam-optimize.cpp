@@ -85,19 +85,13 @@ class Sink {
   Progress progress_;
 };
 
-void write_text(const std::string& path, const std::string& text) {
-  io::OutputFile out(path, io::Content::text);
-  out.write(text);
-  out.commit();
-}
-
 /// What there is to tell: dark voxels, the trace, the report.
 void tell(const optimize::VolumeOutcome& outcome, const Options& options) {
   if (outcome.dark_part_voxels > 0) {
     warn(options.input + ": no light reaches " + std::to_string(outcome.dark_part_voxels) +
          " voxels of the part behind the insert; they will not print");
   }
-  if (!options.trace.empty()) write_text(options.trace, optimize::trace_csv(outcome.trace));
+  if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.how.window.threshold();
@@ -107,7 +101,7 @@ void tell(const optimize::VolumeOutcome& outcome, const Options& options) {
 void run(const cli::App& app, Options& options) {
   settle(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
-  if (options.printer.print) return write_text(options.output, io::printer_toml(printer));
+  if (tool::print_printer(options.printer, printer, options.output)) return;
   io::refuse_same_file(options.input, options.output);
   if (!options.init.empty()) io::refuse_same_file(options.init, options.output);
 
