@@ -78,7 +78,9 @@ void Canvas::line(Spot from, Spot to, Rgb colour, double thickness) {
 void Canvas::dashed(Spot from, Spot to, Rgb colour, double thickness) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   constexpr double period = 12;
-  for (double at = 0; at < length; at += period) {
+  const int dashes = static_cast<int>(std::ceil(length / period));
+  for (int dash = 0; dash < dashes; ++dash) {
+    const double at = dash * period;
     const auto along = [&](double d) {
       return Spot{from.x + (to.x - from.x) * d / length, from.y + (to.y - from.y) * d / length};
     };

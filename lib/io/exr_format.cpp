@@ -49,7 +49,7 @@ class MemoryWriter : public Imf::OStream {
 };
 
 Imf::Slice float_slice(const float* pixels, const Imath::Box2i& window) {
-  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x) + 1;
   return Imf::Slice::Make(Imf::FLOAT, pixels, window, sizeof(float), width * sizeof(float));
 }
 

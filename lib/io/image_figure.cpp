@@ -61,7 +61,9 @@ void draw_scale_bar(Canvas& canvas, double pixel_mm, Scale scale, Spot corner, d
 }
 
 void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, double top, double bottom) {
-  for (double y = top; y < bottom; ++y) {
+  const int rows = static_cast<int>(std::ceil(bottom - top));
+  for (int row = 0; row < rows; ++row) {
+    const double y = top + row;
     const Rgb here = colour(figure.colours, (bottom - 0.5 - y) / (bottom - top));
     canvas.fill({left, y}, {left + bar_width, y + 1}, here);
   }
@@ -143,8 +145,9 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   const double total = std::max(20 + body_width + colour_bar_room(figure), title);
   Canvas canvas(static_cast<int>(total), static_cast<int>(top + body_height + foot));
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    const Spot corner{20 + static_cast<double>(static_cast<int>(i) % columns) * (width + gap),
-                      top + caption + static_cast<double>(static_cast<int>(i) / columns) * (height + gap + caption)};
+    const int row = static_cast<int>(i) / columns;
+    const int column = static_cast<int>(i) % columns;
+    const Spot corner{20 + column * (width + gap), top + caption + row * (height + gap + caption)};
     draw_panel(canvas, figure, figure.panels[i], corner, scale);
     canvas.outline({corner.x - 1, corner.y - 1}, {corner.x + width, corner.y + height}, paint::grey);
     canvas.text({corner.x + 0.5 * width, corner.y - 6}, figure.panels[i].caption, label_size, paint::black,

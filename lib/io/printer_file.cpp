@@ -42,7 +42,7 @@ std::string suggestion(std::string_view section, std::string_view key) {
     if (section == field.section) here.emplace_back(field.key);
     if (key == field.key) return "; did you mean " + dotted_name(field) + "?";
   }
-  const std::string close = did_you_mean(key, here);
+  std::string close = did_you_mean(key, here);
   if (!close.empty()) return close;
   if (!here.empty()) return "; [" + std::string(section) + "] has " + join(here, ", ");
   const std::string near_section = did_you_mean(section, section_names());
@@ -231,7 +231,7 @@ struct Print {
 }  // namespace
 
 Printer parse_printer(std::string_view toml, const std::string& subject) {
-  const Printer printer = read_settings(toml, subject);
+  Printer printer = read_settings(toml, subject);
   check(printer, Fault::data, subject);
   return printer;
 }

@@ -107,7 +107,7 @@ Leaf::NodeMaskType active_mask(const float* values, float background) {
 
 Block block_at(const Coord& at, const Slab& slab, const float* in, const Tree& tree, ConstAccessor& accessor) {
   const CoordBBox part = slab.part(at);
-  float values[Leaf::SIZE];
+  float values[Leaf::SIZE] = {};
   if (part.volume() < Leaf::SIZE) {
     const Leaf* old = accessor.probeConstLeaf(at);
     if (old != nullptr) {
