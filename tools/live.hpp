@@ -19,7 +19,7 @@ struct LiveOptions {
   std::string follow;
   std::string light;
   std::string log;
-  double latency_ms = 0;
+  std::optional<double> latency_ms;
   double allowed_missed = device::PlayPlan{}.allowed_missed;
   std::optional<int> frames_per_turn;
   bool with_parent = false;
@@ -32,7 +32,8 @@ inline void add_live(cli::App& app, LiveOptions& options) {
   app.option("--light", "DEVICE", options.light, "Light engine: dlpc350:, dlpc900: or sim:.");
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000},
              "Frames to preload; without it one for each angle of the sinogram.");
-  app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "From the vertical blank to the light, calibrated.");
+  app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
+             "From the vertical blank to the light; without it projector.latency_ms.");
   app.option("--missed", "PART", options.allowed_missed, {0, 1}, "End when more of all vertical blanks are missed.");
   app.option("--log", "FILE", options.log, "Append a JSON line for every flip: time, frame, angle.");
   app.flag("--die-with-parent", options.with_parent, "Go black and end when the process that started this one ends.");
@@ -66,7 +67,7 @@ class Live {
     device::PlayPlan plan;
     plan.frames_per_turn = frames_;
     plan.turns = turns;
-    plan.latency_s = 1e-3 * options_.latency_ms;
+    plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
     plan.allowed_missed = options_.allowed_missed;
     const auto tally = device::play(*display_, light_.get(), *angles, clock_, plan, logger());
     log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});

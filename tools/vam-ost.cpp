@@ -65,14 +65,15 @@ void declare(cli::App& app, Options& o) {
   app.group("Camera");
   app.option("--step", "DEG", o.step_deg, cli::any, "Angle between frames that carry none. Negative: the other way.");
   app.option("--dark", "FILE", o.dark, "Picture or stack taken in the dark, subtracted.");
-  app.option("--flat", "FILE", o.flat, "Picture or stack of an even scene, divided out after the dark is subtracted.");
+  app.option("--flat", "FILE", o.flat,
+             "Picture or stack of an even scene, divided out after the dark is subtracted; without it camera.flat.");
   app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pitch at the axis before binning; without it the stack's, else camera.pixel_mm.");
   app.option("--axis", "PX", o.axis_column, cli::any,
-             "Column of the axis after binning; without it found in the views.");
+             "Column of the axis after binning; without it camera.axis_column, else found in the views.");
   app.option("--tilt", "DEG", o.tilt_deg, {-30, 30},
-             "Lean of the axis, its lower end to the right; without it found in the views.");
+             "Lean of the axis, its lower end to the right; without it camera.tilt_deg, else found in the views.");
   app.group("Reconstruction");
   app.option("--voxel", "MM", o.how.voxel_mm, cli::non_negative, "Voxel edge; 0 is the binned pixel.");
   app.option("--radius", "MM", o.how.radius_mm, cli::non_negative, "Radius of the volume; 0 is all that is seen.");

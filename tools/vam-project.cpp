@@ -293,6 +293,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.pattern.plan.name.empty()) {
     return tool::run_pattern(app, options.pattern, options.live, options.output, options.stack, projector);
   }
+  if (!options.live.latency_ms) options.live.latency_ms = projector.latency_ms;
   if (device::names_display(options.output)) {
     return device::interruptible([&] { run_live(app, options, printer); });
   }

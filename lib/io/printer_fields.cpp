@@ -34,6 +34,7 @@ const std::vector<PrinterField> fields{
     {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "of the rotation axis, from 0 at the left, before orientation", -65536, 131072},
     {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "of z = 0, from 0 at the top (z is up), before orientation", -65536, 131072},
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
+    {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "from a vertical blank to the light", -1000, 1000},
     {"vial", "radius_mm", at<&Printer::vial, &Vial::radius_mm>, "outer radius", 0, 1e6, true},
     {"vial", "wall_mm", at<&Printer::vial, &Vial::wall_mm>, "0: glass and resin matched", 0, 1e6},
     {"vial", "index_glass", at<&Printer::vial, &Vial::index_glass>, "refractive index", 1, 4},
@@ -57,6 +58,13 @@ const std::vector<PrinterField> fields{
     {"camera", "exposure_us", at<&Printer::camera, &Camera::exposure_us>, "exposure time", 0, 1e9, true},
     {"camera", "fps", at<&Printer::camera, &Camera::fps>, "frames per second", 0, 1e6, true},
     {"camera", "index_resin", at<&Printer::camera, &Camera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
+    {"camera", "axis_column", at<&Printer::camera, &Camera::axis_column>, "of the rotation axis at the middle row of its pictures; found in the views if absent", -65536, 131072},
+    {"camera", "tilt_deg", at<&Printer::camera, &Camera::tilt_deg>, "of the axis in the pictures, its lower end towards higher columns", -180, 180},
+    {"camera", "flat", at<&Printer::camera, &Camera::flat>, "flat field (EXR), relative to this file; empty: none"},
+    {"calibration", "folder", at<&Printer::calibration, &Calibration::folder>, "of the records, relative to this file; empty: none are used"},
+    {"calibration", "instrument", at<&Printer::calibration, &Calibration::instrument>, "a name of this printer; records of another are refused"},
+    {"calibration", "vial", at<&Printer::calibration, &Calibration::vial>, "the vial in it; vial edges and axes of another are refused"},
+    {"calibration", "valid_hours", at<&Printer::calibration, &Calibration::valid_hours>, "of new records", 0, 1e6, true},
 };
 // clang-format on
 
@@ -100,7 +108,7 @@ std::string objection(const PrinterField& field, const Slot& slot) {
 }
 
 std::string contradiction(const Printer& printer) {
-  const auto& [projector, vial, bath, resin, stage, camera] = printer;
+  const auto& [projector, vial, bath, resin, stage, camera, calibration] = printer;
   if (vial.wall_mm >= vial.radius_mm) {
     return "vial.wall_mm " + mm(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm(vial.radius_mm);
   }

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/calibration_record.hpp"
 #include "io/printer_fields.hpp"
 
 namespace vam::io {
@@ -236,14 +237,20 @@ Printer parse_printer(std::string_view toml, const std::string& subject) {
   return printer;
 }
 
-Printer load_printer(const std::string& file, const std::vector<std::string>& sets) {
+Printer load_printer(const std::string& file, const std::vector<std::string>& sets, Records records) {
   const std::string path = settings_file(file);
   Printer printer;
   if (!path.empty()) {
     printer = read_settings(slurp(path), path);
-    if (std::string& response = printer.projector.response; !response.empty()) {
-      response = (std::filesystem::path(path).parent_path() / response).string();
+    const auto beside = std::filesystem::path(path).parent_path();
+    for (std::string* file_name : {&printer.projector.response, &printer.camera.flat, &printer.calibration.folder}) {
+      if (!file_name->empty()) *file_name = (beside / *file_name).string();
     }
+  }
+  if (records == Records::apply) {
+    Printer settled = printer;  // --set may name the records
+    for (const auto& set : sets) override_one(settled, set);
+    apply_records(printer, settled.calibration, utc_seconds());
   }
   for (const auto& set : sets) override_one(printer, set);
   const bool only_sets = path.empty() && !sets.empty();

@@ -9,12 +9,18 @@
 
 namespace vam::io {
 
+/// Calibration records (calibration_record.hpp) stand above the file and below --set. Whoever makes them must not be
+/// stopped by old ones.
+enum class Records { apply, ignore };
+
 /// The settings in force. Of these the first that exists is read: `file` (when not empty), $VAM_PRINTER,
-/// ./printer.toml, else the embedded default, the printer of [RAY21]. Then each of `sets`, "vial.radius_mm=12",
-/// overrides one setting; a text needs no quotes. A relative projector.response in a file is taken relative to that
-/// file. Throws Error: no_input (file missing), usage (an impossible --set), data (not TOML, unknown key, wrong type,
-/// impossible value; with file, line and the nearest known key).
-[[nodiscard]] model::Printer load_printer(const std::string& file, const std::vector<std::string>& sets);
+/// ./printer.toml, else the embedded default, the printer of [RAY21]. Then come the current calibration records of
+/// calibration.folder, and then each of `sets`, "vial.radius_mm=12", overrides one setting; a text needs no quotes.
+/// Relative files and folders in a file are taken relative to it. Throws Error: no_input (file missing), usage (an
+/// impossible --set), data (not TOML, unknown key, wrong type, impossible value; with file, line and the nearest known
+/// key; a calibration record that is stale or of another instrument).
+[[nodiscard]] model::Printer load_printer(const std::string& file, const std::vector<std::string>& sets,
+                                          Records records = Records::apply);
 
 /// Settings from TOML text, absent ones at their defaults. `subject` begins every message. Throws Fault::data.
 [[nodiscard]] model::Printer parse_printer(std::string_view toml, const std::string& subject);

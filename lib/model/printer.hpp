@@ -23,6 +23,7 @@ struct Projector {
   double axis_column = 511.5;          // where the rotation axis appears
   double axis_row = 383.5;             // the row of z = 0 of a centred part
   std::string orientation = "normal";  // normal, flip-columns, flip-rows, rotate-180
+  double latency_ms = 0;               // from a vertical blank to the light
 };
 
 struct Vial {
@@ -60,7 +61,18 @@ struct Camera {
   int binning = 1;
   double exposure_us = 20000;
   double fps = 10;
-  double index_resin = 1.53;  // at the camera's wavelength
+  double index_resin = 1.53;          // at the camera's wavelength
+  std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent
+  std::optional<double> tilt_deg;     // of the axis in the picture, its lower end towards higher columns
+  std::string flat;                   // flat field (EXR); empty = none
+};
+
+/// Where this instrument's calibration records are, and which of them may be used.
+struct Calibration {
+  std::string folder;       // empty: none are used
+  std::string instrument;   // a name of this printer
+  std::string vial;         // the vial in it, e.g. its number
+  double valid_hours = 24;  // of new records
 };
 
 struct Printer {
@@ -70,6 +82,7 @@ struct Printer {
   Resin resin;
   Stage stage;
   Camera camera;
+  Calibration calibration;
 };
 
 /// Distance from lens to rotation axis in mm, empty when telecentric.

@@ -41,6 +41,7 @@ Session::Session(const cli::App& app, const Options& options)
       for (std::size_t i = 0; i < fields_.flat.size(); ++i) fields_.flat.values[i] -= fields_.dark.values[i];
     }
   }
+  if (options.flat.empty() && !printer_.camera.flat.empty()) fields_.flat = io::read_field(printer_.camera.flat);
   if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
   if (!level_ && (!options.mesh.empty() || !options.until.empty()))
     throw Error{Fault::usage, "--mesh and --until: need the threshold, --level or --resin"};
@@ -116,10 +117,20 @@ std::optional<metrology::Cured> Session::state(const model::Volume& volume) cons
   return metrology::cured(volume, *level_, *reference_);
 }
 
+// What the options say, else the calibrated axis, else what the views show.
+void Session::place_axis(std::span<const metrology::View> views) {
+  std::optional<double> column = options_.axis_column;
+  if (!column && printer_.camera.axis_column) {
+    column = (*printer_.camera.axis_column + 0.5) / options_.binning - 0.5;  // it counts pixels as captured
+  }
+  const std::optional<double> tilt_deg = options_.tilt_deg ? options_.tilt_deg : printer_.camera.tilt_deg;
+  if (!column || !tilt_deg) axis_ = metrology::find_axis(metrology::mean_view(views));
+  if (column) axis_.pose.column = *column;
+  if (tilt_deg) axis_.pose.tilt_rad = *tilt_deg * rad_per_deg;
+}
+
 void Session::set_up(std::span<const metrology::View> views, double stack_pixel_mm) {
-  if (!options_.axis_column || !options_.tilt_deg) axis_ = metrology::find_axis(metrology::mean_view(views));
-  if (options_.axis_column) axis_.pose.column = *options_.axis_column;
-  if (options_.tilt_deg) axis_.pose.tilt_rad = *options_.tilt_deg * rad_per_deg;
+  place_axis(views);
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
   how.refraction = !options_.no_refraction;

@@ -35,6 +35,7 @@ class Session {
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
 
  private:
+  void place_axis(std::span<const metrology::View> views);
   void set_up(std::span<const metrology::View> views, double stack_pixel_mm);
 
   const cli::App& app_;

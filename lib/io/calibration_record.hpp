@@ -1,0 +1,58 @@
+// Calibration records: what a scan measured, one immutable JSON file a scan, and a link to the one in force.
+//   cal-INSTRUMENT-SCAN-UTC.json   never written twice; made read-only
+//   current-SCAN.json              a link to one of them, changed in one step
+// A record holds schema, scan, utc, valid_until, instrument, vial, tool, status (pass, warn, fail) with reasons, values
+// {name: {value, unit, sigma, n, method}}, and what else the scan has to say (settings, devices, files, sha256).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "model/printer.hpp"
+
+namespace vam::io {
+
+/// edges, response, flat, beam, axis, latency.
+[[nodiscard]] const std::vector<std::string>& calibration_scans();
+
+/// Now, in seconds since 1970, UTC.
+[[nodiscard]] double utc_seconds();
+/// "2026-11-21T16:58:00.123Z"
+[[nodiscard]] std::string utc_text(double utc_s);
+/// Throws Fault::data.
+[[nodiscard]] double parse_utc(const std::string& text, const std::string& subject);
+
+/// The path of a new file that belongs to the record, "FOLDER/cal-INSTRUMENT-SCAN-UTC" + ending. Makes the folder.
+/// Throws Fault::usage when calibration.folder is empty, Fault::no_output.
+[[nodiscard]] std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,
+                                      const std::string& ending);
+
+/// Adds the head (schema ... vial) to `facts`, writes the record and, unless its status is "fail", makes it the current
+/// one. Returns its path. Throws Error: no_output (one of this time exists), io.
+std::string write_record(const model::Calibration& calibration, const std::string& scan, const Json& facts,
+                         double utc_s);
+
+struct CalibrationRecord {
+  std::string path;
+  Json json;
+  [[nodiscard]] double value(const std::string& name) const;
+  [[nodiscard]] double sigma(const std::string& name) const;
+};
+
+/// The current record of a scan, unjudged; nothing when there is none. Throws Fault::data for a damaged one.
+[[nodiscard]] std::optional<CalibrationRecord> current_record(const model::Calibration& calibration,
+                                                              const std::string& scan);
+
+/// Why the record must not be used now by this instrument: "is 31 h old, 7 h past its validity; run vam-calibrate";
+/// empty when it may be.
+[[nodiscard]] std::string objection(const CalibrationRecord& record, const model::Calibration& calibration,
+                                    double utc_s);
+
+/// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
+/// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat). The beam is
+/// for people: it is measured in air. Nothing without calibration.folder. Throws Fault::data with the first objection.
+void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s);
+
+}  // namespace vam::io

@@ -1,0 +1,116 @@
+#include "io/calibration_record.hpp"
+
+#include <doctest/doctest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "fault_of.hpp"
+#include "io/printer_file.hpp"
+#include "scratch.hpp"
+
+using namespace vam;
+using namespace vam::io;
+
+namespace {
+
+constexpr double now_s = 1795280280.25;  // 2026-11-21T16:58:00.250Z
+
+Json edges(double column, double radius_mm) {
+  return {{"status", "pass"},
+          {"values", {{"axis_column", {{"value", column}, {"sigma", 0.01}}}, {"radius", {{"value", radius_mm}}}}}};
+}
+
+model::Calibration here(const scratch::Folder& folder) { return {folder / "records", "printer 1", "vial 7", 24}; }
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("times are written and read to the millisecond") {
+  CHECK(utc_text(now_s) == "2026-11-21T16:58:00.250Z");
+  CHECK(parse_utc("2026-11-21T16:58:00.250Z", "r") == now_s);
+  CHECK(fault_of([] { (void)parse_utc("yesterday", "r"); }) == Fault::data);
+  CHECK(fault_of([] { (void)parse_utc("2026-11-21T16:58:00.250Z and more", "r"); }) == Fault::data);
+}
+
+TEST_CASE("a record is immutable, and current is a link to the latest that did not fail") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  CHECK_FALSE(current_record(calibration, "edges"));
+  const std::string first = write_record(calibration, "edges", edges(500, 12), now_s);
+  CHECK(std::filesystem::path(first).filename() == "cal-printer-1-edges-20261121T165800.250Z.json");
+  struct stat about {};
+  REQUIRE(stat(first.c_str(), &about) == 0);
+  CHECK((about.st_mode & 0777U) == 0444);
+  CHECK(fault_of([&] { write_record(calibration, "edges", edges(1, 1), now_s); }) == Fault::no_output);
+  write_record(calibration, "edges", edges(501, 12), now_s + 60);
+  CHECK(current_record(calibration, "edges")->value("axis_column") == 501);
+  Json failed = edges(900, 12);
+  failed["status"] = "fail";
+  write_record(calibration, "edges", failed, now_s + 120);
+  CHECK(current_record(calibration, "edges")->value("axis_column") == 501);
+  CHECK(current_record(calibration, "edges")->sigma("axis_column") == 0.01);
+  int records = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(calibration.folder)) records += !entry.is_symlink();
+  CHECK(records == 3);
+}
+
+TEST_CASE("stale, foreign, future and damaged records are refused with one clear line") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  write_record(calibration, "edges", edges(500, 12), now_s);
+  const auto refusal = [&](const model::Calibration& mine, double when_s) {
+    model::Printer printer;
+    return message_of([&] { apply_records(printer, mine, when_s); });
+  };
+  CHECK(refusal(calibration, now_s + 23.9 * 3600).empty());
+  CHECK(has(refusal(calibration, now_s + 31 * 3600), "current-edges.json: is 31 h old and was valid for 24 h; run"));
+  CHECK(has(refusal(calibration, now_s - 3600), "is 1 h ahead of this machine's clock"));
+  auto other = calibration;
+  other.instrument = "printer 2";
+  CHECK(has(refusal(other, now_s), "is of instrument 'printer 1', this is 'printer 2'"));
+  other = calibration;
+  other.vial = "vial 8";
+  CHECK(has(refusal(other, now_s), "is of vial 'vial 7', this is 'vial 8'"));
+  write_record(other, "latency", {{"status", "pass"}, {"values", {{"latency", {{"value", 8}}}}}}, now_s);
+  other.vial = "vial 7";
+  CHECK(refusal(other, now_s).empty());  // a latency is of no vial
+  std::ofstream(folder / "records/current-beam.json") << "{}";
+  CHECK(has(refusal(calibration, now_s), "current-beam.json: is no vam-calibration/1 record of beam"));
+  std::ofstream(folder / "records/current-beam.json") << "not JSON";
+  CHECK(has(refusal(calibration, now_s), "current-beam.json: is no"));
+  std::filesystem::remove(folder / "records/current-beam.json");
+  write_record(calibration, "axis", {{"status", "pass"}, {"values", Json::object()}}, now_s);
+  CHECK(has(refusal(calibration, now_s), "lacks what a record of axis holds"));
+  auto none = calibration;
+  none.folder.clear();
+  CHECK(refusal(none, now_s).empty());
+  CHECK(fault_of([&] { (void)write_record(none, "edges", edges(1, 1), now_s); }) == Fault::usage);
+}
+
+TEST_CASE("records stand above the printer file and below --set") {
+  const scratch::Folder folder;
+  std::ofstream(folder / "printer.toml") << "[projector]\naxis_column = 400\nlatency_ms = 3\n[vial]\nradius_mm = 11\n"
+                                            "[calibration]\nfolder = \"records\"\ninstrument = \"printer 1\"\n"
+                                            "vial = \"vial 7\"\n";
+  const std::string file = folder / "printer.toml";
+  const auto calibration = here(folder);
+  CHECK(load_printer(file, {}).projector.axis_column == 400);
+  write_record(calibration, "edges", edges(501.25, 12.5), utc_seconds());
+  const std::string table = record_path(calibration, "response", utc_seconds(), ".csv");
+  write_record(calibration, "response",
+               {{"status", "pass"},
+                {"values", Json::object()},
+                {"files", {{"response", std::filesystem::path(table).filename().string()}}}},
+               utc_seconds());
+  const auto printer = load_printer(file, {"vial.radius_mm=10"});
+  CHECK(printer.projector.axis_column == 501.25);
+  CHECK(printer.vial.radius_mm == 10);
+  CHECK(printer.projector.latency_ms == 3);
+  CHECK(printer.projector.response == table);
+  CHECK(load_printer(file, {}, Records::ignore).projector.axis_column == 400);
+  CHECK(load_printer(file, {"calibration.folder="}).projector.axis_column == 400);
+  CHECK(has(message_of([&] { (void)load_printer(file, {"calibration.instrument=other"}); }), "is of instrument"));
+}
