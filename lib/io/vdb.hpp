@@ -1,6 +1,7 @@
 // Volumes as OpenVDB grids in mm, sparse in memory; dense only slab by slab.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -47,6 +48,34 @@ std::vector<SparseVolume> read_volumes(const std::string& path);
 
 /// The grid of that name; the only grid when name is empty. Throws Fault::data naming the grids that are there.
 SparseVolume read_volume(const std::string& path, const std::string& name);
+
+/// What a volume is, before its voxels.
+struct VolumeFacts {
+  std::string name;
+  model::Grid grid;
+  float background = 0;
+  std::vector<std::string> history;
+  std::string units = "relative";
+  std::map<std::string, std::string> metadata;
+};
+
+/// A cube of voxels as OpenVDB stores them. Its corner is voxel (i, j, k); parts of it may lie beyond the volume's box.
+struct VoxelBlock {
+  int i = 0;
+  int j = 0;
+  int k = 0;
+  int edge = 8;                   // voxels a side; more only where all have one value
+  const float* values = nullptr;  // 512 values, x slowest and z fastest; null: every voxel is `value`
+  float value = 0;
+};
+
+/// Passes the blocks of one grid by in one reading, in no useful order, file or pipe; voxels in no block have the
+/// background's value. `begin` is called once before the first block and returns who takes them. Memory: what OpenVDB
+/// holds without the voxels, 130 bytes for each block of 8 x 8 x 8 that is not of one value. Throws what read_volume
+/// throws; by then blocks may have been taken.
+using BlockTaker = std::function<void(const VoxelBlock&)>;
+void read_blocks(const std::string& path, const std::string& name,
+                 const std::function<BlockTaker(const VolumeFacts&)>& begin);
 
 /// Writes one archive. "-" is stdout. A file appears under its final name only when complete.
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes);

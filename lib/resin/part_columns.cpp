@@ -11,6 +11,11 @@ namespace vam::resin {
 namespace {
 
 constexpr std::uint64_t all_ones = ~std::uint64_t{0};
+constexpr int word_bits = 64;
+
+std::uint64_t low_bits(int count) { return count >= word_bits ? all_ones : (std::uint64_t{1} << count) - 1; }
+
+void set(std::uint64_t& word, std::uint64_t mask, std::uint64_t bits) { word = (word & ~mask) | (bits & mask); }
 
 }  // namespace
 
@@ -22,15 +27,52 @@ PartColumns::PartColumns(int width, int height, int slices, Exposure exposure)
       planes_(exposure == Exposure::continuous),
       pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
       stride_(static_cast<std::size_t>(nodes_ + 63) / 64),
-      words_(pixels_ * stride_),
-      staged_(pixels_) {}
+      words_(pixels_ * stride_) {}
+
+void PartColumns::put(std::size_t column, int first, int count, std::uint64_t bits) {
+  std::uint64_t* word = words_.data() + column * stride_ + first / word_bits;
+  const int shift = first % word_bits;
+  const std::uint64_t mask = low_bits(count);
+  set(word[0], mask << shift, bits << shift);
+  if (shift + count > word_bits) set(word[1], mask >> (word_bits - shift), bits >> (word_bits - shift));
+}
+
+void PartColumns::fill(std::size_t column, int first, int count, bool solid) {
+  for (int done = 0; done < count; done += word_bits) {
+    put(column, first + done, std::min(word_bits, count - done), solid ? all_ones : 0);
+  }
+}
+
+// The 64 slices from `first` on; 0 beyond the last.
+std::uint64_t PartColumns::bits(std::size_t column, int first) const {
+  const std::uint64_t* words = column_words(column);
+  const auto index = static_cast<std::size_t>(first / word_bits);
+  const int shift = first % word_bits;
+  const std::uint64_t low = words[index] >> shift;
+  return shift == 0 || index + 1 == stride_ ? low : low | words[index + 1] << (word_bits - shift);
+}
+
+void PartColumns::unpack(int first, int count, float* out) const {
+  parallel_for(height_, [&](int y) {
+    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    std::vector<std::uint64_t> row(static_cast<std::size_t>(width_));
+    for (int done = 0; done < count; done += word_bits) {
+      for (std::size_t x = 0; x < row.size(); ++x) row[x] = bits(start + x, first + done);
+      for (int k = 0; k < std::min(word_bits, count - done); ++k) {
+        float* slice = out + static_cast<std::size_t>(done + k) * pixels_ + start;
+        for (std::size_t x = 0; x < row.size(); ++x) slice[x] = static_cast<float>(row[x] >> k & 1U);
+      }
+    }
+  });
+}
 
 void PartColumns::append(int count, const float* values, float threshold) {
   if (filled_ + count > slices_) throw Error{Fault::bug, "part columns: more slices than announced"};
   const auto row_pixels = static_cast<std::size_t>(width_);
+  staged_.resize(pixels_);
   for (int done = 0; done < count;) {
-    const int bit = filled_ % 64;
-    const int batch = std::min(count - done, 64 - bit);
+    const int bit = filled_ % word_bits;
+    const int batch = std::min(count - done, word_bits - bit);
     parallel_for(height_, [&](int y) {
       const std::size_t start = static_cast<std::size_t>(y) * row_pixels;
       std::uint64_t* word = staged_.data() + start;
@@ -43,7 +85,7 @@ void PartColumns::append(int count, const float* values, float threshold) {
     });
     filled_ += batch;
     done += batch;
-    if (filled_ % 64 == 0 || filled_ == slices_) flush();
+    if (filled_ % word_bits == 0 || filled_ == slices_) flush();
   }
 }
 

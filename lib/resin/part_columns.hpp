@@ -22,8 +22,12 @@ class PartColumns {
  public:
   PartColumns(int width, int height, int slices, Exposure exposure);
 
-  /// The next `count` slices, dense, one after the other: a voxel is in the part where its value reaches `threshold`.
-  /// Throws Fault::bug when more than `slices` come.
+  /// Slices first .. first + count - 1 of a column, at most 64: slice first + b is in the part where bit b is set.
+  void put(std::size_t column, int first, int count, std::uint64_t bits);
+  /// Any number of slices of a column, all in the part or all out of it.
+  void fill(std::size_t column, int first, int count, bool solid);
+  /// The same by the next `count` slices, dense, one after the other: a voxel is in the part where its value reaches
+  /// `threshold`. Throws Fault::bug when more than `slices` come.
   void append(int count, const float* values, float threshold);
 
   [[nodiscard]] int width() const { return width_; }
@@ -31,6 +35,9 @@ class PartColumns {
   [[nodiscard]] int slices() const { return slices_; }
   [[nodiscard]] int nodes() const { return nodes_; }
   [[nodiscard]] std::size_t columns() const { return pixels_; }
+
+  /// Slices first .. first + count - 1 as dense images, 1 in the part and 0 outside.
+  void unpack(int first, int count, float* out) const;
 
   /// Is slice n of this column in the part?
   [[nodiscard]] bool solid(std::size_t column, int n) const {
@@ -42,6 +49,7 @@ class PartColumns {
   [[nodiscard]] int next_slice(std::size_t column, int n, bool solid) const;
 
  private:
+  [[nodiscard]] std::uint64_t bits(std::size_t column, int first) const;
   [[nodiscard]] const std::uint64_t* column_words(std::size_t column) const { return words_.data() + column * stride_; }
   [[nodiscard]] std::uint64_t node_word(const std::uint64_t* words, std::size_t index) const;
   void flush();

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 struct Job {
   Print print;
-  resin::PartColumns columns;
+  Part part;
   resin::PartSurvey survey;
   resin::GapReport gaps;
   model::StackInfo info;
@@ -34,8 +35,8 @@ Json figures(const Correct& options, const Job& job) {
   // JSON has no infinity.
   report["omega_max"] = std::isfinite(options.limit.omega_max) ? Json(options.limit.omega_max) : Json("inf");
   report["strong_base"] = options.limit.strong_base;
-  report["slices"] = job.columns.slices();
-  report["extra_slices"] = job.slices - job.columns.slices();
+  report["slices"] = job.part.columns().slices();
+  report["extra_slices"] = job.slices - job.part.columns().slices();
   report["duration_s"] = seconds;
   report["columns"] = job.survey.columns;
   report["features"] = job.survey.features;
@@ -69,7 +70,7 @@ std::vector<model::ImageInfo> time_stamps(const Job& job) {
 
 // Exact intensities, in printing order.
 void write_exact(const Correct& options, const Job& job, const Frame& frame, io::StackWriter& out) {
-  resin::SliceCorrection correction(job.columns, job.print.limits, options.limit, job.slices);
+  resin::SliceCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices);
   Progress progress("correcting", job.slices);
   Image slice;
   Image placed;
@@ -86,9 +87,9 @@ std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const 
                                   const FolderWriter* folder, const Frame& frame) {
   std::vector<float> steps;
   for (int v = 0; v < levels.count(); ++v) steps.push_back(levels.intensity(v));
-  resin::LevelCorrection correction(job.columns, job.print.limits, options.limit, job.slices, steps);
+  resin::LevelCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices, steps);
   std::vector<GreyImage> kept(options.quantise ? static_cast<std::size_t>(job.slices) : 0);
-  GreyImage slice(job.columns.width(), job.columns.height(), job.print.printer.projector.bits);
+  GreyImage slice(job.part.columns().width(), job.part.columns().height(), job.print.printer.projector.bits);
   Progress progress("correcting", job.slices);
   const auto times = time_stamps(job);
   for (int n = job.slices; n-- > 0;) {
@@ -127,18 +128,20 @@ void warn_of_gaps(const std::string& name, const Job& job) {
 }
 
 Job prepare(const cli::App& root, const Correct& options, bool writes) {
-  const PartSource part(options.part);
-  const Print print = resolve(options.print, part.slice_um());
-  Job job{print, pack(part, print.process.exposure), {}, {}, {}, 0};
-  job.survey = resin::survey(job.columns);
+  Part source(options.part, exposure_of(options.print));
+  const Print print = resolve(options.print, source.slice_um());
+  Job job{print, std::move(source), {}, {}, {}, 0};
+  const Part& part = job.part;
+  job.survey = resin::survey(part.columns());
   if (job.survey.columns == 0) {
     throw Error{Fault::data, part.name() + ": no voxel reaches a coverage of " + format_number(part.threshold()) +
                                  "; there is nothing to print"};
   }
-  if (writes) resin::require_printable(print.limits);
-  job.gaps = resin::judge_gaps(job.columns, print.limits, options.clear);
+  if (writes) resin::require_printable(job.print.limits);
+  job.gaps = resin::judge_gaps(part.columns(), job.print.limits, options.clear);
   if (writes) warn_of_gaps(part.name(), job);
-  job.slices = job.columns.slices() + resin::extra_slices(job.survey.last_slice, job.columns.slices(), print.limits);
+  job.slices =
+      part.columns().slices() + resin::extra_slices(job.survey.last_slice, part.columns().slices(), job.print.limits);
   const model::Grid& grid = part.grid();
   job.info.kind = model::Kind::frames;
   job.info.space = model::Space::projector;
@@ -205,7 +208,7 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
   if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: has a meaning only for a stack; give -o"};
   Job job = prepare(root, options, stack || pictures);
   Json report = figures(options, job);
-  if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.columns);
+  if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.part.columns());
 
   const double darkest = job.print.limits.phi_min / job.print.limits.phi_max;
   const Frame frame(options.full_frame ? &job.print.printer.projector : nullptr, job.info,

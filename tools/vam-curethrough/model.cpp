@@ -23,26 +23,22 @@ constexpr int block = resin::StackDose::block_slices;
 bool is_volume(const std::string& path) { return path == "-" || (path.size() > 4 && path.ends_with(".vdb")); }
 
 // The ordinary slices of a part: full light in it, the least outside.
-Slices plain_slices(const std::shared_ptr<PartSource>& part, float dark) {
+Slices plain_slices(const std::shared_ptr<Part>& part, float dark) {
   const model::Grid& grid = part->grid();
   Slices slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
-  auto slab = std::make_shared<std::vector<float>>();
+  auto slab = std::make_shared<std::vector<float>>(grid.slice_size() * block);
   slices.read = [part, slab, dark](int n, Image& slice) {
     const model::Grid& shape = part->grid();
-    if (n % block == 0) {
-      slab->resize(shape.slice_size() * block);
-      part->read(n, std::min(block, shape.nz - n), slab->data());
-    }
+    if (n % block == 0) part->columns().unpack(n, std::min(block, shape.nz - n), slab->data());
     if (slice.width != shape.nx || slice.height != shape.ny) slice = Image(shape.nx, shape.ny);
-    const float* from = slab->data() + static_cast<std::size_t>(n % block) * shape.slice_size();
-    const auto threshold = static_cast<float>(part->threshold());
-    for (std::size_t p = 0; p < slice.size(); ++p) slice.values[p] = from[p] >= threshold ? 1.0F : dark;
+    const float* solid = slab->data() + static_cast<std::size_t>(n % block) * shape.slice_size();
+    for (std::size_t p = 0; p < slice.size(); ++p) slice.values[p] = std::max(solid[p], dark);
   };
   return slices;
 }
 
 struct Inputs {
-  std::shared_ptr<PartSource> part;  // the design, null without one
+  std::shared_ptr<Part> part;  // the design, null without one
   Slices slices;
   Print print;
 };
@@ -73,7 +69,7 @@ Inputs open_inputs(const cli::App& app, const Model& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
   if (is_volume(options.input)) design.path = options.input;
-  if (!design.path.empty()) in.part = std::make_shared<PartSource>(design);
+  if (!design.path.empty()) in.part = std::make_shared<Part>(design, exposure_of(options.print));
   const bool plain = is_volume(options.input);
   if (!plain) in.slices = open_slices(options.input, in.print.response);
   const PrintOptions print = with_facts(app, options.print, in.slices);
@@ -139,18 +135,12 @@ class Judge {
     return model::centred_grid(in.slices.width, in.slices.height, in.slices.count, in.print.process.slice_um * 1e-3);
   }
 
-  // Coverage as 0 or 1; slices beyond the part are empty.
+  // 1 in the part, 0 outside; slices beyond the part are empty.
   void read_design(int first, int count) {
     if (!in_.part) return;
-    const std::size_t size = grid_.slice_size();
-    design_.assign(size * static_cast<std::size_t>(count), 0.0F);
+    design_.assign(grid_.slice_size() * static_cast<std::size_t>(count), 0.0F);
     const int inside = std::clamp(in_.part->grid().nz - first, 0, count);
-    if (inside > 0) in_.part->read(first, inside, design_.data());
-    const auto threshold = static_cast<float>(in_.part->threshold());
-    parallel_for(count, [&](int i) {
-      float* slice = design_.data() + static_cast<std::size_t>(i) * size;
-      for (std::size_t p = 0; p < size; ++p) slice[p] = slice[p] >= threshold ? 1.0F : 0.0F;
-    });
+    if (inside > 0) in_.part->columns().unpack(first, inside, design_.data());
   }
 
   void keep_plane(int n, const Image& light, const Image& below) {

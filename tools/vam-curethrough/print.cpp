@@ -1,30 +1,12 @@
 #include "vam-curethrough/print.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
-#include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/text.hpp"
 #include "io/response_file.hpp"
 #include "printer.hpp"
 
 namespace vam::curethrough {
-
-namespace {
-
-constexpr int batch = 8;  // slices: one row of OpenVDB leaves
-
-// Reverses the order of `count` slices of `size` values.
-void reverse_slices(float* values, int count, std::size_t size) {
-  for (int low = 0, high = count - 1; low < high; ++low, --high) {
-    std::swap_ranges(values + static_cast<std::size_t>(low) * size, values + static_cast<std::size_t>(low + 1) * size,
-                     values + static_cast<std::size_t>(high) * size);
-  }
-}
-
-}  // namespace
 
 void add_print(cli::App& app, PrintOptions& options) {
   app.group("Print");
@@ -46,6 +28,10 @@ void add_print(cli::App& app, PrintOptions& options) {
   cli::add_printer(app, options.printer);
 }
 
+resin::Exposure exposure_of(const PrintOptions& options) {
+  return options.exposure == "layered" ? resin::Exposure::layered : resin::Exposure::continuous;
+}
+
 Print resolve(const PrintOptions& options, double slice_um) {
   Print print{tool::load_printer(options.printer), {}, {}, resin::Response()};
   model::Projector& projector = print.printer.projector;
@@ -54,7 +40,7 @@ Print resolve(const PrintOptions& options, double slice_um) {
   if (!options.response.empty()) projector.response = options.response;
 
   resin::Process& process = print.process;
-  process.exposure = options.exposure == "layered" ? resin::Exposure::layered : resin::Exposure::continuous;
+  process.exposure = exposure_of(options);
   process.slice_um = slice_um;
   process.speed_mm_h = options.speed_mm_h;
   const model::Resin& resin = print.printer.resin;
@@ -95,58 +81,6 @@ std::map<std::string, std::string> attributes(const resin::Process& process) {
           {"vam:slice_mm", format_number(process.slice_um * 1e-3, 9)},
           {"vam:speed_mm_h", format_number(process.speed_mm_h, 9)},
           {"vam:fps", format_number(frames_per_s(process), 9)}};
-}
-
-void add_part(cli::App& app, PartOptions& options) {
-  app.choice("--platform", options.platform, {"bottom", "top"},
-             "Which end of the volume sticks to the platform and is printed first; the light comes from the other.");
-  app.option("--threshold", "FRACTION", options.threshold, {0, 1, true},
-             "Coverage from which on a voxel belongs to the part.");
-}
-
-PartSource::PartSource(const PartOptions& options)
-    : options_(options),
-      name_(options.path == "-" ? "stdin" : options.path),
-      volume_(io::read_volume(options.path, "target")) {
-  const auto stretch = volume_.metadata.find("vam:stretch_z");
-  const auto factor = stretch == volume_.metadata.end() ? std::nullopt : parse_number(stretch->second);
-  if (factor && std::fabs(*factor - 1) > 1e-6) {
-    warn(name_ + ": stretched along z by " + format_number(*factor) +
-         " for a vial, which this printer does not have; slice with --stretch-z 1");
-  }
-}
-
-void PartSource::read(int first, int count, float* out) const {
-  if (options_.platform == "bottom") return volume_.read_slices(first, count, out);
-  volume_.read_slices(grid().nz - first - count, count, out);
-  reverse_slices(out, count, grid().slice_size());
-}
-
-model::Grid PartSource::extended(int slices) const {
-  model::Grid grid = volume_.grid();
-  if (options_.platform == "top") grid.origin_mm[2] -= (slices - grid.nz) * grid.voxel_mm;
-  grid.nz = slices;
-  return grid;
-}
-
-void PartSource::write(io::SparseVolume& volume, int first, int count, std::vector<float>& slices) const {
-  if (options_.platform == "bottom") return volume.write_slices(first, count, slices.data());
-  reverse_slices(slices.data(), count, grid().slice_size());
-  volume.write_slices(volume.grid().nz - first - count, count, slices.data());
-}
-
-resin::PartColumns pack(const PartSource& part, resin::Exposure exposure) {
-  const model::Grid& grid = part.grid();
-  resin::PartColumns columns(grid.nx, grid.ny, grid.nz, exposure);
-  std::vector<float> slab(grid.slice_size() * static_cast<std::size_t>(std::min(batch, grid.nz)));
-  Progress progress("reading", grid.nz);
-  for (int k = 0; k < grid.nz; k += batch) {
-    const int count = std::min(batch, grid.nz - k);
-    part.read(k, count, slab.data());
-    columns.append(count, slab.data(), static_cast<float>(part.threshold()));
-    progress.tick(count);
-  }
-  return columns;
 }
 
 }  // namespace vam::curethrough

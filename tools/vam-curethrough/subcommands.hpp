@@ -7,6 +7,7 @@
 
 #include "io/exr_stack.hpp"
 #include "resin/target_dose.hpp"
+#include "vam-curethrough/part.hpp"
 #include "vam-curethrough/print.hpp"
 
 namespace vam::curethrough {

@@ -54,6 +54,35 @@ std::vector<float> dense(const SparseVolume& volume) {
   return values;
 }
 
+// The same by the blocks that pass by; the judge is read_volume.
+std::vector<float> by_blocks(const std::string& path, const std::string& name) {
+  std::vector<float> values;
+  std::vector<int> times;  // that a voxel has come
+  read_blocks(path, name, [&](const VolumeFacts& facts) {
+    const model::Grid grid = facts.grid;
+    if (grid.size() > 10'000'000) return BlockTaker([](const VoxelBlock&) {});  // a damaged shape
+    values.assign(grid.size(), facts.background);
+    times.assign(grid.size(), 0);
+    return BlockTaker([&, grid](const VoxelBlock& block) {
+      for (int x = std::max(block.i, 0); x < std::min(block.i + block.edge, grid.nx); ++x) {
+        for (int y = std::max(block.j, 0); y < std::min(block.j + block.edge, grid.ny); ++y) {
+          for (int z = std::max(block.k, 0); z < std::min(block.k + block.edge, grid.nz); ++z) {
+            const auto at =
+                (static_cast<std::size_t>(z) * static_cast<std::size_t>(grid.ny) + static_cast<std::size_t>(y)) *
+                    static_cast<std::size_t>(grid.nx) +
+                static_cast<std::size_t>(x);
+            const int place = ((x - block.i) * 8 + (y - block.j)) * 8 + (z - block.k);
+            values[at] = block.values != nullptr ? block.values[place] : block.value;
+            ++times[at];
+          }
+        }
+      }
+    });
+  });
+  CHECK(std::all_of(times.begin(), times.end(), [](int count) { return count <= 1; }));
+  return values;
+}
+
 // The judge: OpenVDB's own file reader and its accessor, voxel by voxel.
 openvdb::FloatGrid::Ptr by_openvdb(const std::string& path, const std::string& name) {
   openvdb::initialize();
@@ -263,13 +292,80 @@ TEST_CASE("a level set of another program gets its active box, off the index ori
   check(again);
 }
 
+TEST_CASE("blocks that pass by make the volume that is read whole") {
+  const scratch::Folder folder;
+  const auto grid = model::centred_grid(200, 45, 150, 0.065, 0.4);
+  std::vector<SparseVolume> volumes;
+  volumes.push_back(filled("target", grid, ball(grid)));  // with tiles of 8 and of 128 voxels in it
+  volumes.push_back(SparseVolume("insert", grid));
+  volumes.push_back(SparseVolume("weight", grid, 7.5F));
+  const std::vector<float> slice(grid.slice_size(), -1.0F);
+  volumes[2].write_slices(4, 1, slice.data());
+  volumes[2].history = {"a line"};
+  volumes[2].units = "mJ/cm3";
+  volumes[2].metadata["vam:stretch_z"] = "1.037";
+  write_volumes(folder / "file.vdb", volumes);
+  {
+    const scratch::Redirect to(STDOUT_FILENO, folder / "pipe.vdb");
+    write_volumes("-", volumes);
+    write_volume("-", volumes[0]);  // a second archive on the same stream
+  }
+  for (const std::string name : {"target", "insert", "weight"}) {
+    CAPTURE(name);
+    const auto whole = dense(read_volume(folder / "file.vdb", name));
+    CHECK(by_blocks(folder / "file.vdb", name) == whole);
+    CHECK(by_blocks(folder / "pipe.vdb", name) == whole);
+  }
+  read_blocks(folder / "file.vdb", "weight", [&](const VolumeFacts& facts) {
+    CHECK(facts.grid == grid);
+    CHECK(facts.background == 7.5F);
+    CHECK(facts.history == volumes[2].history);
+    CHECK(facts.units == volumes[2].units);
+    CHECK(facts.metadata == volumes[2].metadata);
+    return [](const VoxelBlock&) {};
+  });
+  std::string line;
+  CHECK(status([&] { by_blocks(folder / "file.vdb", "dose"); }, &line) == 65);
+  CHECK(line.ends_with("has no grid 'dose', but target, insert, weight"));
+}
+
+TEST_CASE("blocks of other programs: half floats, all octants, tiles of any size, other grids before") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0F, {0.3F, -0.4F, 0.2F}, 0.25F);
+  sphere->setName("surface");
+  sphere->setSaveFloatAsHalf(true);
+  sphere->tree().addTile(2, {128, 0, 0}, 2.5F, true);
+  const auto before = openvdb::Vec3SGrid::create();
+  before->setName("velocity");
+  before->tree().setValue({1, 2, 3}, {1, 2, 3});
+  write_by_openvdb(folder / "a.vdb", {before, sphere});
+  const auto whole = dense(read_volume(folder / "a.vdb", "surface"));
+  CHECK(std::count(whole.begin(), whole.end(), 2.5F) == 128 * 128 * 128);
+  CHECK(by_blocks(folder / "a.vdb", "surface") == whole);
+  std::string line;
+  CHECK(status([&] { by_blocks(folder / "a.vdb", "velocity"); }, &line) == 65);
+  CHECK(line.ends_with("but velocity (vec3s), surface"));
+  const auto twin = sphere->copy();  // shares the tree
+  twin->setName("twin");
+  write_by_openvdb(folder / "twins.vdb", {sphere, twin});
+  CHECK(status([&] { by_blocks(folder / "twins.vdb", "twin"); }, &line) == 65);
+  CHECK(line.find("shares the voxels of 'surface'") != std::string::npos);
+  CHECK(by_blocks(folder / "twins.vdb", "surface") == whole);
+}
+
 TEST_CASE("what cannot be used is refused with 65 and its reason") {
   const scratch::Folder folder;
   openvdb::initialize();
   std::string line;
   const auto read = [&](const openvdb::GridPtrVec& grids) {
     write_by_openvdb(folder / "a.vdb", grids);
-    return status([&] { read_volumes(folder / "a.vdb"); }, &line);
+    const int whole = status([&] { read_volumes(folder / "a.vdb"); }, &line);
+    for (const auto& grid : grids) grid->setName("target");
+    write_by_openvdb(folder / "a.vdb", grids);
+    std::string ignored;
+    CHECK((status([&] { by_blocks(folder / "a.vdb", "target"); }, &ignored) == 0) == (whole == 0));
+    return whole;
   };
   const auto one_voxel = [](float value) {
     const auto grid = openvdb::FloatGrid::create();
@@ -356,7 +452,12 @@ TEST_CASE("a cut archive is 65 wherever it is cut, and a flipped bit never crash
     std::string line;
     const auto read = [&](const std::string& bytes) {
       spill(folder / "a.vdb", bytes);
-      return status([&] { read_volumes(folder / "a.vdb"); }, &line);
+      const int by_block = status([&] { by_blocks(folder / "a.vdb", "target"); }, &line);
+      CHECK((by_block == 0 || by_block == 65));
+      const int whole_status = status([&] { read_volumes(folder / "a.vdb"); }, &line);
+      // Values of blocks outside the box do not matter to the one, and a damaged name only to the other.
+      if (bytes.size() < whole.size()) CHECK(by_block == whole_status);
+      return whole_status;
     };
     CHECK(read(whole) == 0);
     for (std::size_t length = 0; length < whole.size(); length += 1 + length / 30) {

@@ -88,6 +88,42 @@ TEST_CASE("runs of a column are found from any of their nodes") {
   }
 }
 
+TEST_CASE("columns filled piece by piece, in any order, are those of dense slices") {
+  for (const int slices : {1, 63, 64, 65, 200}) {
+    CAPTURE(slices);
+    const auto values = random_part(slices, static_cast<unsigned>(slices));
+    const resin::PartColumns judge = part_of(values, slices, Exposure::layered, 16);
+    resin::PartColumns part(width, height, slices, Exposure::layered);
+    std::mt19937 random(3);
+    for (int p = 0; p < width * height; ++p) {
+      const auto column = column_of(values, slices, p);
+      part.fill(static_cast<std::size_t>(p), 0, slices, true);  // to be overwritten
+      std::vector<int> starts;
+      for (int n = 0; n < slices; n += 37) starts.push_back(n);
+      std::shuffle(starts.begin(), starts.end(), random);
+      for (const int first : starts) {
+        const int count = std::min(37, slices - first);
+        std::uint64_t bits = ~std::uint64_t{0} << count;  // those beyond `count` do not matter
+        for (int b = 0; b < count; ++b) {
+          bits |= static_cast<std::uint64_t>(column[static_cast<std::size_t>(first + b)]) << b;
+        }
+        part.put(static_cast<std::size_t>(p), first, count, bits);
+      }
+      for (int n = 0; n < slices; ++n) {
+        REQUIRE(part.solid(static_cast<std::size_t>(p), n) == judge.solid(static_cast<std::size_t>(p), n));
+      }
+    }
+    const std::size_t size = width * height;
+    for (const int first : {0, slices / 3}) {
+      std::vector<float> dense(size * static_cast<std::size_t>(slices - first), -1.0F);
+      part.unpack(first, slices - first, dense.data());
+      for (std::size_t i = 0; i < dense.size(); ++i) {
+        REQUIRE(dense[i] == (values[static_cast<std::size_t>(first) * size + i] > 0.5F ? 1.0F : 0.0F));
+      }
+    }
+  }
+}
+
 TEST_CASE("a survey counts features and gaps") {
   const int slices = 150;
   const auto values = random_part(slices, 9);

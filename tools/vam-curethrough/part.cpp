@@ -1,0 +1,106 @@
+#include "vam-curethrough/part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/log.hpp"
+#include "base/text.hpp"
+
+namespace vam::curethrough {
+
+namespace {
+
+// Reverses the order of `count` slices of `size` values.
+void reverse_slices(float* values, int count, std::size_t size) {
+  for (int low = 0, high = count - 1; low < high; ++low, --high) {
+    std::swap_ranges(values + static_cast<std::size_t>(low) * size, values + static_cast<std::size_t>(low + 1) * size,
+                     values + static_cast<std::size_t>(high) * size);
+  }
+}
+
+// The box of a block that lies in the volume.
+struct Box {
+  int x0, x1, y0, y1, z0, z1;  // first and one beyond the last
+  Box(const io::VoxelBlock& block, const model::Grid& grid)
+      : x0(std::max(0, block.i)),
+        x1(std::min(grid.nx, block.i + block.edge)),
+        y0(std::max(0, block.j)),
+        y1(std::min(grid.ny, block.j + block.edge)),
+        z0(std::max(0, block.k)),
+        z1(std::min(grid.nz, block.k + block.edge)) {}
+};
+
+std::uint64_t reversed(std::uint64_t bits, int count) {
+  std::uint64_t turned = 0;
+  for (int b = 0; b < count; ++b) turned |= (bits >> b & 1U) << (count - 1 - b);
+  return turned;
+}
+
+}  // namespace
+
+void add_part(cli::App& app, PartOptions& options) {
+  app.choice("--platform", options.platform, {"bottom", "top"},
+             "Which end of the volume sticks to the platform and is printed first; the light comes from the other.");
+  app.option("--threshold", "FRACTION", options.threshold, {0, 1, true},
+             "Coverage from which on a voxel belongs to the part.");
+}
+
+Part::Part(const PartOptions& options, resin::Exposure exposure)
+    : options_(options),
+      name_(options.path == "-" ? "stdin" : options.path),
+      least_(static_cast<float>(options.threshold)) {
+  io::read_blocks(options.path, "target", [&](const io::VolumeFacts& facts) {
+    facts_ = facts;
+    columns_.emplace(grid().nx, grid().ny, grid().nz, exposure);
+    if (facts.background >= least_) {
+      for (std::size_t p = 0; p < columns_->columns(); ++p) columns_->fill(p, 0, grid().nz, true);
+    }
+    return [this](const io::VoxelBlock& block) { block.values != nullptr ? take_values(block) : fill(block); };
+  });
+  const auto stretch = facts_.metadata.find("vam:stretch_z");
+  const auto factor = stretch == facts_.metadata.end() ? std::nullopt : parse_number(stretch->second);
+  if (factor && std::fabs(*factor - 1) > 1e-6) {
+    warn(name_ + ": stretched along z by " + format_number(*factor) +
+         " for a vial, which this printer does not have; slice with --stretch-z 1");
+  }
+}
+
+void Part::take_values(const io::VoxelBlock& block) {
+  const Box box(block, grid());
+  const int count = box.z1 - box.z0;
+  if (count <= 0) return;
+  const int first = upside_down() ? grid().nz - box.z1 : box.z0;
+  for (int y = box.y0; y < box.y1; ++y) {
+    for (int x = box.x0; x < box.x1; ++x) {
+      const float* column = block.values + ((x - block.i) * 8 + (y - block.j)) * 8 + (box.z0 - block.k);
+      std::uint64_t bits = 0;
+      for (int b = 0; b < count; ++b) bits |= static_cast<std::uint64_t>(column[b] >= least_) << b;
+      columns_->put(pixel(x, y), first, count, upside_down() ? reversed(bits, count) : bits);
+    }
+  }
+}
+
+void Part::fill(const io::VoxelBlock& block) {
+  const Box box(block, grid());
+  if (box.z1 <= box.z0) return;
+  const int first = upside_down() ? grid().nz - box.z1 : box.z0;
+  const bool solid = block.value >= least_;
+  for (int y = box.y0; y < box.y1; ++y) {
+    for (int x = box.x0; x < box.x1; ++x) columns_->fill(pixel(x, y), first, box.z1 - box.z0, solid);
+  }
+}
+
+model::Grid Part::extended(int slices) const {
+  model::Grid grid = facts_.grid;
+  if (upside_down()) grid.origin_mm[2] -= (slices - grid.nz) * grid.voxel_mm;
+  grid.nz = slices;
+  return grid;
+}
+
+void Part::write(io::SparseVolume& volume, int first, int count, std::vector<float>& slices) const {
+  if (!upside_down()) return volume.write_slices(first, count, slices.data());
+  reverse_slices(slices.data(), count, grid().slice_size());
+  volume.write_slices(volume.grid().nz - first - count, count, slices.data());
+}
+
+}  // namespace vam::curethrough
