@@ -1,5 +1,4 @@
 // vam-optimize: projections that print a target.
-#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -10,7 +9,6 @@
 #include "optimize/quantise.hpp"
 #include "optimize/volume.hpp"
 #include "printer.hpp"
-#include "tomo/fbp.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -28,6 +26,11 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.height = scene.turn.angles;
   info.count = scene.grid.nz;
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
+  if (options.geometry == "vial") {
+    info.space = model::Space::projector;
+    info.width = scene.printer.projector.columns;
+    info.pixel_mm = scene.printer.projector.pixel_mm;
+  }
   info.z_start_mm = scene.grid.z_mm(0);
   info.angle_step_deg = 360.0 / scene.turn.angles;
   info.units = "1/rad";
@@ -42,6 +45,7 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
 optimize::VolumeTask make_task(const Scene& scene, const optimize_tool::Inputs& in, const Options& options) {
   optimize::VolumeTask task;
   task.slices = scene.grid.nz;
+  task.circle = scene.circle;
   task.window = options.how.window;
   task.limits = options.limits;
   task.watch = !options.trace.empty();
@@ -106,15 +110,10 @@ void run(const cli::App& app, Options& options) {
   if (!options.init.empty()) io::refuse_same_file(options.init, options.output);
 
   const optimize_tool::Inputs in = optimize_tool::read(options.input);
-  const model::Grid& grid = in.target().grid();
-  model::Circle circle = model::writable_circle(grid, printer);
-  const int columns = options.columns.value_or(optimize::columns_for(circle, grid.nx));
-  circle.radius = std::min(circle.radius, 0.5 * columns);
-  const Scene scene{grid, printer, tomo::full_turn(grid, options.angles, columns)};
+  const Scene scene = make_scene(in.target().grid(), printer, options);
   const model::StackInfo info = stack_info(scene, in.target(), app, options);
 
   optimize::VolumeTask task = make_task(scene, in, options);
-  task.circle = circle;
   std::optional<optimize_tool::Initial> initial;
   if (!options.init.empty()) {
     initial.emplace(options.init, info);

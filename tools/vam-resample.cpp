@@ -138,6 +138,11 @@ void run(const cli::App& app, Options& options) {
 
   io::refuse_same_file(options.input, options.output);
   io::StackReader in(options.input);
+  if (projector && in.info().kind == model::Kind::sinogram && in.info().space == model::Space::projector) {
+    throw Error{Fault::data, (options.input == "-" ? "stdin" : options.input) +
+                                 ": holds the projector's columns already (vam-optimize --geometry vial, or resampled "
+                                 "before); leave vam-resample out"};
+  }
   io::require(options.input, in.info(), model::Kind::sinogram,
               projector ? model::Space::virtual_ : model::Space::camera);
   optics::StackResampling job = projector ? optics::stack_to_projector(printer, options.alignment, in.info(), how)

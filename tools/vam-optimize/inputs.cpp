@@ -25,7 +25,7 @@ Inputs read(const std::string& path) {
 
 Initial::Initial(const std::string& path, const model::StackInfo& want) : path_(path), reader_(path) {
   const auto& is = reader_.info();
-  io::require(path, is, model::Kind::sinogram, model::Space::virtual_);
+  io::require(path, is, model::Kind::sinogram, want.space);
   if (is.width == want.width && is.height == want.height && is.count == want.count) return;
   const auto size = [](const model::StackInfo& s) {
     return std::to_string(s.width) + " columns x " + std::to_string(s.height) + " angles x " + std::to_string(s.count) +

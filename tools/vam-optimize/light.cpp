@@ -1,8 +1,13 @@
 #include "vam-optimize/light.hpp"
 
+#include <algorithm>
+
 #include "optimize/attenuated_operator.hpp"
 #include "optimize/parallel_operator.hpp"
 #include "optimize/shadowed_operator.hpp"
+#include "optimize/vial_operator.hpp"
+#include "optimize/volume.hpp"
+#include "tomo/fbp.hpp"
 
 namespace vam::optimize_tool {
 
@@ -14,9 +19,27 @@ double mu_per_px(const Scene& scene, const Options& options) {
 
 double radius_px(const Scene& scene) { return model::resin_radius_mm(scene.printer.vial) / scene.grid.voxel_mm; }
 
+optimize::VialSetup vial_setup(const Scene& scene, const Options& options) {
+  const double radius_mm = scene.circle.radius * scene.grid.voxel_mm;
+  optimize::VialSetup setup = optimize::vial_setup(scene.printer, scene.grid, scene.turn.angles, radius_mm);
+  if (options.absorption == "none") setup.absorption_per_mm = 0;
+  return setup;
+}
+
 }  // namespace
 
+Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options) {
+  Scene scene{grid, printer, model::writable_circle(grid, printer), {}};
+  const int columns = options.columns.value_or(optimize::columns_for(scene.circle, grid.nx));
+  scene.turn = tomo::full_turn(grid, options.angles, columns);
+  const double seen =
+      options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
+  scene.circle.radius = std::min(scene.circle.radius, seen);
+  return scene;
+}
+
 std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options) {
+  if (options.geometry == "vial") return std::make_unique<optimize::VialOperator>(vial_setup(scene, options));
   const double mu = mu_per_px(scene, options);
   if (mu == 0) return std::make_unique<optimize::ParallelOperator>(scene.turn);
   const auto correction = options.absorption == "disc" ? optimize::Correction::disc : optimize::Correction::exact;
@@ -25,6 +48,7 @@ std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options
 
 std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options,
                                                std::span<const optimize::Slab> inserts) {
+  if (options.geometry == "vial") return std::make_unique<optimize::VialOperator>(vial_setup(scene, options), inserts);
   return std::make_unique<optimize::ShadowedOperator>(scene.turn, mu_per_px(scene, options), radius_px(scene), inserts);
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "optimize/operator.hpp"
@@ -16,10 +17,13 @@ namespace vam::optimize_tool {
 struct Scene {
   model::Grid grid;
   model::Printer printer;
-  tomo::ParallelGeometry turn;
+  model::Circle circle;         // what it reaches
+  tomo::ParallelGeometry turn;  // with --geometry parallel
 };
 
-/// Parallel light; the resin's absorption is in it unless it is to be left out.
+[[nodiscard]] Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options);
+
+/// Parallel light, or the projector's own rays; the resin's absorption is in it unless it is to be left out.
 [[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options);
 /// The same around opaque inserts, a slab for every slab of the pass.
 [[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options,

@@ -16,6 +16,9 @@ void declare(cli::App& app, Options& options) {
       "--method", options.method, methods,
       "How to look for projections; auto is apg, the best of tests/bench/printability, until the part prints with "
       "a process window of 0.05.");
+  app.choice("--geometry", options.geometry, {"parallel", "vial"},
+             "Whose light: parallel makes a virtual sinogram, for vam-resample; vial works with the projector's own "
+             "rays, as lens, bath, glass and resin bend them, and makes a projector sinogram.");
   app.option("--angles", "N", options.angles, {1, 100000}, "Stage angles over 360 degrees.");
   app.option("--columns", "N", options.columns, {1, 65536},
              "Columns, each a voxel wide; without it as many as see the writable circle.");
@@ -73,6 +76,12 @@ void settle_auto(const cli::App& app, Options& options) {
 void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
   if (options.peak && !options.bits) throw Error{Fault::usage, "--peak: has no meaning without --bits"};
+  if (options.geometry == "vial" && options.columns) {
+    throw Error{Fault::usage, "--columns: has no meaning with --geometry vial, the projector has its own"};
+  }
+  if (options.geometry == "vial" && options.absorption == "disc") {
+    throw Error{Fault::usage, "--absorption disc: is for parallel light; --geometry vial knows the exact absorption"};
+  }
   if (options.error_feedback && !options.bits) {
     throw Error{Fault::usage, "--error-feedback: has no meaning without --bits"};
   }

@@ -15,6 +15,7 @@ struct Options {
   std::string input = "-";
   std::string output = "-";
   std::string method = "auto";
+  std::string geometry = "parallel";
   int angles = 360;
   std::optional<int> columns;
   std::optional<int> iterations;
