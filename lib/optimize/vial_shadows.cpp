@@ -21,8 +21,7 @@ VialShadows::VialShadows(const VialRays& rays, std::span<const tomo::Slab> inser
   if (inserts.empty()) return;
   const VialSetup& setup = rays.setup();
   for (int a = 0; a < setup.turn.rows; ++a) {
-    const double theta =
-        setup.direction * (setup.turn.start_rad + a * setup.turn.step_rad) + setup.angle_offset_rad;
+    const double theta = setup.direction * (setup.turn.start_rad + a * setup.turn.step_rad) + setup.angle_offset_rad;
     rows_.push_back({std::cos(theta), std::sin(theta)});
   }
   for (int c = 0; c < stride_; ++c) {

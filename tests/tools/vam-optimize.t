@@ -22,6 +22,19 @@ quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-s
 holds "every voxel of it is right" "$(value handle.json ver) == 0"
 is "all of it can be lit" "$(value handle.json dark_part_voxels)" 0
 
+quiet "in the vial's own light" vam-optimize --geometry vial --angles 180 --method apg --iterations 10 --report vial.json part.vdb -o vial.exr
+quiet "and by way of parallel light" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 part.vdb -o parallel.exr
+vam-resample parallel.exr -o resampled.exr
+for how in vial resampled; do
+  vam-dose $how.exr --like part.vdb -o dose.vdb && vam-score dose.vdb --target part.vdb --report judged-$how.json >table
+done
+is "its print has no error" "$(value judged-vial.json ver)" 0.0
+holds "the judge of chief rays sees what the optimiser saw" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"
+holds "and a wider window than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
+fails 65 'already.*leave vam-resample out' vam-resample vial.exr -o twice.exr
+fails 64 '--columns: has no meaning with --geometry vial' vam-optimize --geometry vial --columns 100 part.vdb -o out.exr
+fails 65 'none of its 1024 columns' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
+
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do
   quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --absorption $how $absorbing part.vdb -o light.exr

@@ -32,8 +32,7 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
   Scene scene{grid, printer, model::writable_circle(grid, printer), {}};
   const int columns = options.columns.value_or(optimize::columns_for(scene.circle, grid.nx));
   scene.turn = tomo::full_turn(grid, options.angles, columns);
-  const double seen =
-      options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
+  const double seen = options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
   scene.circle.radius = std::min(scene.circle.radius, seen);
   return scene;
 }

@@ -10,7 +10,10 @@ cli::Manual manual() {
        "the "
        "target (VDB, coverage 0...1) and looks for non-negative projections whose dose separates part from void, so "
        "that a resin with a threshold prints the part. It writes a virtual (parallel-beam) sinogram stack, one image a "
-       "slice; vam-resample takes it to a real projector.",
+       "slice; vam-resample takes it to a real projector. With --geometry vial it works with the projector's own chief "
+       "rays, "
+       "diverging from the lens and refracted on their way, and writes a projector's stack: no resampling blurs it "
+       "afterwards.",
        "Methods: fbp is filtered back-projection with negative light set to 0. dose-norm raises the void to a "
        "background and divides the target once by the dose that it gets: quick and good. cal descends the gradient of "
        "the print's error with the resin's threshold inside the loop. osmo corrects a model of the part by the dose's "
