@@ -1,14 +1,45 @@
 #include "io/frame_sink.hpp"
 
 #include <filesystem>
+#include <vector>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "io/frame_folder.hpp"
 #include "io/video.hpp"
 
 namespace vam::io {
 
 namespace {
+
+model::ImageInfo about(const ProjectorFrame& frame) {
+  model::ImageInfo info;
+  info.angle_deg = frame.angle_deg;
+  info.has_angle = true;
+  info.time_s = frame.time_s;
+  info.has_time = true;
+  return info;
+}
+
+class FolderSink : public FrameSink {
+ public:
+  FolderSink(const std::string& path, const FrameSinkOptions& options)
+      : folder_(path), text_{{"Comment", join(options.info.history, "\n")}} {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    const int first = static_cast<int>(shown_.size());
+    parallel_for(static_cast<int>(frames.size()),
+                 [&](int i) { folder_.write(first + i, frames[static_cast<std::size_t>(i)].levels, text_); });
+    for (const auto& frame : frames) shown_.push_back(about(frame));
+  }
+  void commit() override { folder_.commit(shown_); }
+
+ private:
+  FrameFolder folder_;
+  PictureText text_;
+  std::vector<model::ImageInfo> shown_;
+};
 
 class StackSink : public FrameSink {
  public:
@@ -17,13 +48,9 @@ class StackSink : public FrameSink {
 
   void write(std::span<const ProjectorFrame> frames) override {
     for (const auto& frame : frames) {
-      model::ImageInfo about;
-      about.z_mm = z_start_mm_;  // of row 0
-      about.angle_deg = frame.angle_deg;
-      about.has_angle = true;
-      about.time_s = frame.time_s;
-      about.has_time = true;
-      writer_.write(frame.intensity, about);
+      model::ImageInfo info = about(frame);
+      info.z_mm = z_start_mm_;  // of row 0
+      writer_.write(frame.intensity, info);
     }
   }
   void commit() override { writer_.commit(); }
@@ -66,7 +93,7 @@ std::unique_ptr<FrameSink> open_frame_sink(const std::string& path, const FrameS
     case FrameOutput::video:
       return std::make_unique<VideoSink>(path, options);
     default:
-      return open_frame_folder(path, options);
+      return std::make_unique<FolderSink>(path, options);
   }
 }
 

@@ -46,9 +46,7 @@ struct FrameSinkOptions {
   StackOptions stack;
 };
 
-/// A folder gets 00000.png, 00001.png, ... and frames.csv (file,time_s,angle_deg). An existing folder is replaced when
-/// it is empty or holds nothing but such frames. Throws Error: no_output.
+/// A folder is a FrameFolder. Throws Error: no_output.
 [[nodiscard]] std::unique_ptr<FrameSink> open_frame_sink(const std::string& path, const FrameSinkOptions& options);
-[[nodiscard]] std::unique_ptr<FrameSink> open_frame_folder(const std::string& path, const FrameSinkOptions& options);
 
 }  // namespace vam::io

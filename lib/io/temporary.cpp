@@ -1,6 +1,9 @@
 #include "io/temporary.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <array>
@@ -24,9 +27,32 @@ struct Listed {
 };
 std::array<Listed, 64> list;  // NOLINT: one per process, like the signal dispositions it serves
 
+// Without opendir(), which allocates.
+void empty_folder(const char* path) {
+  alignas(dirent64) static char entries[1 << 15];
+  const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  long bytes = 0;
+  while ((bytes = syscall(SYS_getdents64, folder, entries, sizeof entries)) > 0) {
+    for (long at = 0; at < bytes;) {
+      const auto* entry = reinterpret_cast<const dirent64*>(entries + at);  // the kernel's linux_dirent64
+      unlinkat(folder, entry->d_name, 0);                                   // refuses "." and "..", as folders
+      at += entry->d_reclen;
+    }
+  }
+  close(folder);
+}
+
+// Other threads may go on writing into a folder until the process ends.
+void remove_listed(const char* path) {
+  if (unlink(path) == 0 || errno != EISDIR) return;
+  constexpr int attempts = 100;
+  for (int i = 0; i < attempts && rmdir(path) != 0 && errno == ENOTEMPTY; ++i) empty_folder(path);
+}
+
 extern "C" void remove_and_die(int signal_number) {
   for (Listed& item : list) {
-    if (item.live.load()) unlink(item.path);
+    if (item.live.load()) remove_listed(item.path);
   }
   // The disposition is the default again (SA_RESETHAND); once the handler returns the signal ends the process, and the
   // parent sees why.
@@ -95,6 +121,10 @@ int with_new_name(const std::string& target, std::string& name, int& slot,
 int create_temporary(const std::string& target, std::string& name, int& slot) {
   return with_new_name(target, name, slot,
                        [](const char* path) { return open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+}
+
+int create_temporary_folder(const std::string& target, std::string& name, int& slot) {
+  return with_new_name(target, name, slot, [](const char* path) { return mkdir(path, 0777); });
 }
 
 int name_temporary(int descriptor, const std::string& target, std::string& name, int& slot) {

@@ -1,4 +1,4 @@
-// Private to output_file.cpp: temporary names that vanish when the process is interrupted.
+// Private to output_file.cpp and output_folder.cpp: temporary names that vanish when the process is interrupted.
 #pragma once
 
 #include <string>
@@ -13,6 +13,9 @@ int create_temporary(const std::string& target, std::string& name, int& slot);
 /// Gives the unnamed file behind `descriptor` a temporary name beside `target`, listed in the same way. Returns 0, or
 /// -1 with errno set.
 int name_temporary(int descriptor, const std::string& target, std::string& name, int& slot);
+
+/// The same for a folder that will hold files, no folders. Returns 0, or -1 with errno set.
+int create_temporary_folder(const std::string& target, std::string& name, int& slot);
 
 /// The name is no longer temporary.
 void forget_temporary(int slot);

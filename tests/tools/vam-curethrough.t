@@ -100,7 +100,8 @@ fails 65 "no column 'exposure_mj_cm2'" vam-curethrough working-curve names.csv
 fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr
 fails 65 'do not belong to' vam-curethrough model full.exr --part ladder.vdb $light
 fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
-fails 73 'exists and is not an empty folder' vam-curethrough correct ladder.vdb $light --png slices
+mkdir letters; echo hello >letters/letter.txt
+fails 73 'letter.txt, which is no frame' vam-curethrough correct ladder.vdb $light --png letters
 fails 64 'the table goes to standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
 quiet "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb

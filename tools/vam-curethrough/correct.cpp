@@ -6,13 +6,13 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "io/frame_folder.hpp"
 #include "io/picture.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
 #include "resin/gaps.hpp"
 #include "resin/slice_correction.hpp"
 #include "vam-curethrough/catalogue.hpp"
-#include "vam-curethrough/folder.hpp"
 #include "vam-curethrough/frame.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
@@ -84,7 +84,7 @@ void write_exact(const Correct& options, const Job& job, const Frame& frame, io:
 
 // Grey levels, chosen from the last slice up; all are kept until the stack can be written from the first down.
 std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
-                                  const FolderWriter* folder, const Frame& frame) {
+                                  const io::FrameFolder* folder, const Frame& frame) {
   std::vector<float> steps;
   for (int v = 0; v < levels.count(); ++v) steps.push_back(levels.intensity(v));
   resin::LevelCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices, steps);
@@ -216,7 +216,7 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
   frame.apply(job.info);
   std::optional<io::StackWriter> out;
   if (stack) out.emplace(options.output, job.info, time_stamps(job), options.stack);
-  std::optional<FolderWriter> folder;
+  std::optional<io::FrameFolder> folder;
   if (pictures) folder.emplace(options.png);
   if (pictures || options.quantise) {
     const resin::GreyLevels levels(job.print.response, job.print.printer.projector.bits);

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <thread>
 
+#include "io/output_folder.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam::io;
@@ -130,8 +131,10 @@ TEST_CASE("a signal removes named temporary files and still kills") {
       for (const int each : {SIGINT, SIGTERM, SIGHUP}) std::signal(each, SIG_DFL);
       OutputFile one(folder / "a", Content::binary, Temporary::named);
       OutputFile two(folder / "b", Content::binary, Temporary::unnamed);
+      const OutputFolder three(folder / "c", [](const std::filesystem::path&) { return true; });
       one.write("half");
-      if (folder.count() != 1) _exit(2);  // one has a name now, two has none
+      for (int i = 0; i < 3000; ++i) three.write(std::to_string(i), "");  // more than one getdents64
+      if (folder.count() != 2) _exit(2);                                  // two has no name yet
       raise(number);
       _exit(3);
     }
