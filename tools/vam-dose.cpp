@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/report.hpp"
 #include "io/response_file.hpp"
 #include "io/stream.hpp"

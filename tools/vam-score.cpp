@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr_stack.hpp"

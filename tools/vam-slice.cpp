@@ -11,6 +11,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/mesh_file.hpp"

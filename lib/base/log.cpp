@@ -22,12 +22,6 @@ void note(const std::string& line) {
   if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-std::string format_number(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
-
 Progress::Progress(std::string what, long total)
     : what_(std::move(what)),
       total_(total),

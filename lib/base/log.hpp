@@ -5,6 +5,8 @@
 #include <chrono>
 #include <string>
 
+#include "base/text.hpp"
+
 namespace vam {
 
 /// The name that begins every line on stderr ("vam-slice: ..."); set once by cli::App.
@@ -15,9 +17,6 @@ void warn(const std::string& line);
 
 /// One line on stderr, only when stderr is a terminal: a summary for the person who watches.
 void note(const std::string& line);
-
-/// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
-[[nodiscard]] std::string format_number(double value, int digits = 6);
 
 /// A progress bar on stderr, only when stderr is a terminal and the work lasts longer than half a second.
 /// tick() may be called from any thread.

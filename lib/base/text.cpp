@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <numeric>
 
 namespace vam {
@@ -87,6 +88,12 @@ std::string wrap(std::string_view text, int width, int indent) {
   }
   if (!line.empty()) lines += margin + line + '\n';
   return lines;
+}
+
+std::string format_number(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
 }
 
 }  // namespace vam

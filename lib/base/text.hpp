@@ -26,4 +26,7 @@ namespace vam {
 /// `text` broken at blanks into lines of at most `width` bytes, `indent` blanks before each.
 [[nodiscard]] std::string wrap(std::string_view text, int width, int indent);
 
+/// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
+[[nodiscard]] std::string format_number(double value, int digits = 6);
+
 }  // namespace vam

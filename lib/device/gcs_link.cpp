@@ -6,7 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam::device {

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "device/spin.hpp"
 #include "device/stop_on_exit.hpp"
 

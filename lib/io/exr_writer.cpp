@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "io/exr_attributes.hpp"
 #include "io/exr_format.hpp"
 #include "io/exr_stack.hpp"

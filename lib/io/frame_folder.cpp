@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace vam::io {
 

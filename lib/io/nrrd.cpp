@@ -4,7 +4,7 @@
 #include <bit>
 #include <vector>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/stream.hpp"
 
 namespace vam::io {

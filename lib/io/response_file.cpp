@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam::io {

@@ -6,8 +6,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "optics/resample.hpp"
 #include "optics/vial.hpp"
 #include "tomo/filter.hpp"

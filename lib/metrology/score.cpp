@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "model/figures.hpp"
 
 namespace vam::metrology {

@@ -8,8 +8,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "optics/trace.hpp"
 #include "tomo/radon.hpp"
 

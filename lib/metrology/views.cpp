@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace vam::metrology {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace vam::model {
 

@@ -10,9 +10,9 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
+#include "base/text.hpp"
 #include "optics/trace_kernel.hpp"
 
 namespace vam::optics {

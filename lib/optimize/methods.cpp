@@ -1,5 +1,5 @@
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "optimize/method.hpp"
 
 namespace vam::optimize {

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "optimize/schedule.hpp"
 #include "optimize/slice_figures.hpp"
 

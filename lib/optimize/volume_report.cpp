@@ -1,7 +1,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "model/figures.hpp"
 #include "optimize/slice_figures.hpp"
 #include "optimize/volume.hpp"

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
+#include "base/text.hpp"
 #include "resin/correction_kernel.hpp"
 
 namespace vam::resin {

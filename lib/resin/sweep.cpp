@@ -4,8 +4,8 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "resin/target_dose.hpp"
 
 namespace vam::resin {

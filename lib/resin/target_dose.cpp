@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace vam::resin {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "resin/student.hpp"
 
 namespace vam::resin {

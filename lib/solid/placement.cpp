@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 
 namespace vam::solid {
 

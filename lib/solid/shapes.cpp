@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 #include "solid/shape_builders.hpp"
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 
 namespace vam::tomo {
 

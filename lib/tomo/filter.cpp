@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "tomo/fft.hpp"
 
 namespace vam::tomo {

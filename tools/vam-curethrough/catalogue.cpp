@@ -2,7 +2,7 @@
 
 #include <cstdio>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/csv_table.hpp"
 #include "io/stream.hpp"
 #include "resin/gaps.hpp"

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/frame_folder.hpp"
 #include "io/picture.hpp"
 #include "io/report.hpp"

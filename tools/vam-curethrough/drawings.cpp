@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/canvas.hpp"
 #include "io/picture.hpp"
 #include "io/plot.hpp"

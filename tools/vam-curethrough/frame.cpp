@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 
 namespace vam::curethrough {
 

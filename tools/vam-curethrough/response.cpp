@@ -1,7 +1,7 @@
 // The projector's grey response from photodiode readings.
 #include <cmath>
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/csv_table.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"

@@ -1,7 +1,7 @@
 // A resin's absorbance height and gelation dose from cured thicknesses.
 #include "resin/working_curve.hpp"
 
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/csv_table.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"

@@ -3,6 +3,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/image_figure.hpp"
 #include "io/mesh_file.hpp"
 #include "io/picture.hpp"
