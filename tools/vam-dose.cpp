@@ -234,6 +234,7 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
   const int first = metrology::first_slice(place.grid, info);
   const metrology::Simulation simulation(printer, options.alignment, info, place.grid);
   io::SparseVolume volume = empty_volume(app, place, info);
+  volume.metadata["vam:printer"] = io::printer_settings(printer);
   Sink sink(volume, place.target, first);
   const double sigma_mm = blur_mm(options, printer);
   const metrology::Light light{projector && !options.keep_negative, options.full_scale,

@@ -240,6 +240,7 @@ void run(const cli::App& app, Options& options) {
   if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
   for (io::SparseVolume& volume : volumes) {
     volume.history.push_back(app.history());
+    volume.metadata["vam:printer"] = io::printer_settings(printer);
     volume.metadata["vam:stretch_z"] = format_number(placement.stretch_z, 9);
   }
   io::write_volumes(options.output, volumes);

@@ -274,4 +274,15 @@ std::string printer_toml(const Printer& given) {
   return text.str();
 }
 
+std::string printer_settings(const Printer& given) {
+  Printer printer = given;
+  Printer standard;
+  std::vector<std::string> settings;
+  for (const auto& field : printer_fields()) {
+    const std::string value = std::visit(Print{}, field.slot(printer));
+    if (value != std::visit(Print{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
+  }
+  return settings.empty() ? "default" : join(settings, " ");
+}
+
 }  // namespace vam::io

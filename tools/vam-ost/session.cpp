@@ -74,6 +74,7 @@ void Session::write(const model::Volume& volume, const std::string& path,
   io::SparseVolume sparse("scatter", volume.grid);
   sparse.history = history;
   sparse.history.push_back(app_.history());
+  sparse.metadata["vam:printer"] = io::printer_settings(printer_);
   sparse.units = "view units per mm";
   sparse.write_slices(0, volume.grid.nz, volume.values.data());
   io::write_volume(path, sparse);

@@ -15,6 +15,7 @@ using vam::Error;
 using vam::Fault;
 using vam::io::load_printer;
 using vam::io::parse_printer;
+using vam::io::printer_settings;
 using vam::io::printer_toml;
 
 namespace {
@@ -126,6 +127,13 @@ TEST_CASE("--set overrides, takes text with or without quotes, and is a usage er
   CHECK(has(set_refusal("vial.radius_mm=1\nx=2"), "is not a value"));
   CHECK(has(set_refusal("vial.radius_mm=-4"), "-4 is not between"));
   CHECK(has(set_refusal("vial.wall_mm=40"), "leaves no room"));
+}
+
+TEST_CASE("settings apart from the default can be given to --set again") {
+  CHECK(printer_settings(load_printer("", {})) == "default");
+  const auto changed = load_printer("", {"vial.radius_mm=10", "resin.name=resin2"});
+  CHECK(printer_settings(changed) == "vial.radius_mm=10.0 resin.name=\"resin2\"");
+  CHECK(printer_toml(load_printer("", {"vial.radius_mm=10.0", "resin.name=\"resin2\""})) == printer_toml(changed));
 }
 
 TEST_CASE("the named file wins over $VAM_PRINTER; a response is relative to the file") {
