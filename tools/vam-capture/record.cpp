@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/sha256.hpp"
+#include "base/text.hpp"
+#include "io/calibration_record.hpp"
+#include "io/stream.hpp"
+#include "vam-capture/scan.hpp"
+
+namespace vam::capture_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string hash_file(const std::string& path) {
+  io::InputFile file(path);
+  Sha256 hash;
+  for (auto bytes = file.peek(); !bytes.empty(); bytes = file.peek()) {
+    hash.add(bytes.data(), bytes.size());
+    file.skip(bytes.size());
+  }
+  return hash.digest();
+}
+
+// A file as sha256sum prints it; of a folder the hash of what "sha256sum *" prints there.
+std::string hash_of(const std::string& path) {
+  if (!fs::is_directory(path)) return hash_file(path);
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(path)) {
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  Sha256 hash;
+  for (const auto& file : files) {
+    const std::string line = hash_file(file) + "  " + file.filename().string() + "\n";
+    hash.add(line.data(), line.size());
+  }
+  return hash.digest();
+}
+
+Json hashes(const ScanOptions& options) {
+  Json json = Json::object();
+  for (const auto& path : {options.from, options.flips, options.dark}) {
+    if (!path.empty() && path != "-") json[fs::path(path).filename().string()] = hash_of(path);
+  }
+  return json;
+}
+
+}  // namespace
+
+void Finding::value(const std::string& name, const metrology::Measured& measured, const std::string& unit,
+                    const std::string& method) {
+  if (measured.n == 0) return;
+  values_[name] = {
+      {"value", measured.value}, {"unit", unit}, {"sigma", measured.sigma}, {"n", measured.n}, {"method", method}};
+}
+
+void Finding::warn_because(const std::string& reason) { warnings_.push_back(reason); }
+void Finding::fail_because(const std::string& reason) { failures_.push_back(reason); }
+
+void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
+          const std::string& scan, Finding finding) {
+  std::vector<std::string> reasons = finding.failures_;
+  reasons.insert(reasons.end(), finding.warnings_.begin(), finding.warnings_.end());
+  Json facts{{"tool", app.history()},
+             {"status", !finding.failures_.empty()  ? "fail"
+                        : finding.warnings_.empty() ? "pass"
+                                                    : "warn"},
+             {"reasons", reasons},
+             {"values", finding.values_}};
+  facts.update(finding.facts);
+  facts["sha256"] = hashes(options);
+  if (calibration.folder.empty()) {
+    io::write_text("-", facts.dump(2) + "\n");
+  } else {
+    const double now_s = io::utc_seconds();
+    for (const auto& product : finding.products) {
+      const std::string path = io::record_path(calibration, scan, now_s, product.ending);
+      product.write(path);
+      facts["files"][product.name] = fs::path(path).filename().string();
+      facts["sha256"][fs::path(path).filename().string()] = hash_file(path);
+    }
+    io::write_record(calibration, scan, facts, now_s);
+  }
+  if (!finding.failures_.empty()) {
+    throw Error{Fault::judged, scan + ": " + join(finding.failures_, "; ") + "; not made current"};
+  }
+  for (const auto& reason : finding.warnings_) warn(scan + ": " + reason);
+}
+
+void check_records(const ScanOptions& options, const model::Calibration& calibration) {
+  if (calibration.folder.empty()) throw Error{Fault::usage, "no calibration.folder in the printer settings"};
+  const auto& scans = io::calibration_scans();
+  for (const auto& name : options.needed) {
+    if (std::find(scans.begin(), scans.end(), name) == scans.end()) {
+      throw Error{Fault::usage, "--need " + name + ": is none of " + join(scans, ", ")};
+    }
+  }
+  Json report = Json::object();
+  std::string first;
+  for (const auto& scan : scans) {
+    const bool needed = std::find(options.needed.begin(), options.needed.end(), scan) != options.needed.end();
+    const auto record = io::current_record(calibration, scan);
+    std::string why;
+    if (record) {
+      why = io::objection(*record, calibration, io::utc_seconds());
+      const std::string path = (fs::path(record->path).parent_path() / fs::read_symlink(record->path)).string();
+      report[scan] = {{"record", path},
+                      {"sha256", hash_file(path)},
+                      {"utc", record->json.value("utc", "")},
+                      {"valid_until", record->json.value("valid_until", "")},
+                      {"status", record->json.value("status", "")},
+                      {"usable", why.empty()}};
+      if (!why.empty()) why = record->path + ": " + why;
+    } else if (needed) {
+      why = calibration.folder + ": has no record of " + scan + "; run vam-calibrate";
+    }
+    if (first.empty() && !why.empty()) first = why;
+  }
+  io::write_text("-", report.dump(2) + "\n");
+  if (!first.empty()) throw Error{Fault::data, first};
+}
+
+}  // namespace vam::capture_tool

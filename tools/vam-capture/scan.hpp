@@ -1,0 +1,95 @@
+// The calibration scans of vam-capture: captured frames in, a calibration record out.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "cli/common.hpp"
+#include "metrology/curve_fit.hpp"
+#include "model/printer.hpp"
+
+namespace vam::capture_tool {
+
+struct ScanOptions {
+  std::string command;
+  std::string from;   // the frames
+  std::string flips;  // log of vam-project while they were taken
+  std::string dark;
+  bool accept = false;
+  int bands = 5;
+  int pitch_px = 4, width_px = 2, steps = 17;      // of the pattern
+  double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
+  double step_deg = 0;                             // axis: frames without angles
+  std::vector<std::string> needed;                 // check
+  cli::PrinterOptions printer;
+};
+
+/// Declares edges, response, flat, beam, axis, latency and check; `chosen` is set when the user names one.
+void add_scans(cli::App& app, ScanOptions& options, std::string& chosen);
+[[nodiscard]] bool is_scan(const std::string& command);
+/// Throws as the scan does, Fault::judged when its result must not be used.
+void run_scan(const cli::App& app, const ScanOptions& options, const std::string& command);
+
+// ---- scan_frames.cpp: which frame shows what
+
+struct ScanFrame {
+  Image image;
+  double time_s = 0;  // middle of the exposure
+  double angle_deg = 0;
+  int shown =
+      0;  // the pattern's frame that was on during the whole exposure: by the flips, else the frame's own number
+};
+
+/// Calls `take` for every frame, in order; with flips only for those during which one picture of the pattern was on.
+/// Throws Error: no_input, data, usage (flips, but frames without times).
+void each_frame(const ScanOptions& options, const model::Printer& printer,
+                const std::function<void(const ScanFrame&)>& take);
+
+/// One picture of the pattern and when it came on.
+struct Showing {
+  double t_s = 0;
+  int frame = -1;  // -1: black
+};
+/// The changes of picture in a log of vam-project. Throws Error: no_input, data.
+[[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
+
+// ---- record.cpp: what becomes of the result
+
+/// What a scan found.
+class Finding {
+ public:
+  void value(const std::string& name, const metrology::Measured& measured, const std::string& unit,
+             const std::string& method);
+  /// The result is used, and the reason told.
+  void warn_because(const std::string& reason);
+  /// The result must not be used.
+  void fail_because(const std::string& reason);
+
+  Json facts = Json::object();  // beside values and status
+  /// Contents of a file that belongs to the record: its name in "files", its ending, and what writes it.
+  struct Product {
+    std::string name;
+    std::string ending;
+    std::function<void(const std::string& path)> write;
+  };
+  std::vector<Product> products;
+
+ private:
+  friend void keep(const cli::App&, const ScanOptions&, const model::Calibration&, const std::string&, Finding);
+  Json values_ = Json::object();
+  std::vector<std::string> warnings_, failures_;
+};
+
+/// Writes the record with the hashes of the frames into calibration.folder; without a folder to stdout, products left
+/// out. Throws Fault::judged when it failed.
+void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
+          const std::string& scan, Finding finding);
+
+/// Prints the current records and what is wrong with them as JSON. Throws Fault::data when a needed one is missing,
+/// stale or foreign.
+void check_records(const ScanOptions& options, const model::Calibration& calibration);
+
+}  // namespace vam::capture_tool

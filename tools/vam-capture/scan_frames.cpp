@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/stream.hpp"
+#include "io/view_source.hpp"
+#include "vam-capture/scan.hpp"
+
+namespace vam::capture_tool {
+
+namespace {
+
+constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
+
+// The picture that was on from begin to end; nothing when it changed meanwhile or was black.
+int shown_between(const std::vector<Showing>& flips, double begin_s, double end_s) {
+  const auto later = [](double t_s, const Showing& showing) { return t_s < showing.t_s; };
+  const auto first = std::upper_bound(flips.begin(), flips.end(), begin_s, later);
+  const auto last = std::upper_bound(flips.begin(), flips.end(), end_s, later);
+  return first == flips.begin() || first != last ? -1 : (first - 1)->frame;
+}
+
+}  // namespace
+
+std::vector<Showing> read_flips(const std::string& path) {
+  std::vector<Showing> flips;
+  int number = 0;
+  for (const auto& line : split(io::read_all(path), '\n')) {
+    ++number;
+    if (line.empty()) continue;
+    const Json event = Json::parse(line, nullptr, false);
+    if (!event.is_object()) {
+      throw Error{Fault::data, path + ":" + std::to_string(number) + ": is no line of a log of vam-project"};
+    }
+    if (event.value("event", "") != "flip") continue;
+    if (!event.contains("t_monotonic_s") || !event.contains("frame")) {
+      throw Error{Fault::data, path + ":" + std::to_string(number) + ": a flip without time or frame"};
+    }
+    const Showing showing{event["t_monotonic_s"].get<double>(), event["frame"].get<int>()};
+    if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
+  }
+  if (flips.empty()) throw Error{Fault::data, path + ": holds no flips; give the log of vam-project"};
+  return flips;
+}
+
+void each_frame(const ScanOptions& options, const model::Printer& printer,
+                const std::function<void(const ScanFrame&)>& take) {
+  const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
+  const double half_s = 0.5e-6 * printer.camera.exposure_us;
+  const double latency_s = 1e-3 * printer.projector.latency_ms;
+  // A folder of pictures asks for angles, which only the scan `axis` needs.
+  const bool needs_angles = options.command == "axis";
+  io::ViewSource source(options.from, needs_angles ? options.step_deg : 1);
+  io::CameraFrame frame;
+  for (int n = 0; source.next(frame); ++n) {
+    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, n};
+    if (!flips.empty()) {
+      if (frame.time_s == 0) {
+        throw Error{Fault::usage, frame.name + ": has no time, which --flips needs; capture with vam-capture"};
+      }
+      scan.shown = shown_between(flips, frame.time_s - latency_s - half_s - margin_s,
+                                 frame.time_s - latency_s + half_s + margin_s);
+      if (scan.shown < 0 && options.command != "latency") continue;
+    }
+    take(scan);
+  }
+}
+
+}  // namespace vam::capture_tool
