@@ -2,7 +2,8 @@
 usage: screen.py FILE now                 prints "black" or the number of lit pixels
        screen.py FILE watch SECONDS IDLE  prints each new picture as hex of its grey bytes; ends after SECONDS, or when
                                           the screen was lit once and then black for IDLE seconds
-       screen.py FILE compare FOLDER SEEN prints "exact" or "different", and how many of the folder's PNGs were seen"""
+       screen.py FILE compare FRAMES SEEN prints "exact" or "different", and how many of the frames (a folder of PNGs or
+                                          a lossless video) were seen"""
 
 import mmap
 import pathlib
@@ -57,13 +58,18 @@ def watch(screen, seconds, idle):
         time.sleep(0.004)
 
 
-def compare(folder, seen_path):
-    frames = {}
-    for path in sorted(pathlib.Path(folder).glob("*.png")):
-        raw = subprocess.run(["ffmpeg", "-v", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray", "-"],
-                             check=True, capture_output=True).stdout
-        frames[raw] = path.name
+def raw_grey(path):
+    return subprocess.run(["ffmpeg", "-v", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "gray", "-"],
+                          check=True, capture_output=True).stdout
+
+
+def compare(path, seen_path):
     seen = [bytes.fromhex(line) for line in open(seen_path)]
+    if pathlib.Path(path).is_dir():
+        frames = {raw_grey(file) for file in pathlib.Path(path).glob("*.png")}
+    else:
+        video, size = raw_grey(path), len(seen[0])
+        frames = {video[at:at + size] for at in range(0, len(video), size)}
     lit = [picture for picture in seen if any(picture)]
     known = [picture for picture in lit if picture in frames]
     print("exact" if lit and len(known) == len(lit) else "different", len(known), len(lit), len(frames))

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/calibration_record.hpp"
 #include "io/exr_stack.hpp"
 #include "io/printer_file.hpp"

@@ -1,0 +1,48 @@
+"""How far the frames shown were from the angle of the table, by the simulator's own log.
+usage: print_judge.py TRUTH FLIPS; frames are those of 3600 a turn at 60 Hz and 25 deg/s. Prints JSON."""
+
+import bisect
+import json
+import sys
+
+FRAMES, HZ, SPEED = 3600, 60, 25
+
+
+def p99(errors):
+    return sorted(errors)[int(0.99 * len(errors))]
+
+
+def apart(a, b):
+    return abs((a - b + 180) % 360 - 180)
+
+
+def main():
+    truth = []
+    for line in map(json.loads, open(sys.argv[1])):
+        if line["event"] == "zeroed":
+            truth = []  # what comes after counts from the new zero
+        if line["event"] == "angle":
+            truth.append((line["t_monotonic_s"], line["angle_deg"]))
+    times = [t for t, _ in truth]
+
+    def angle(t):
+        i = bisect.bisect_right(times, t)
+        (t0, a0), (t1, a1) = truth[i - 1], truth[i]
+        return a0 + (a1 - a0) * (t - t0) / (t1 - t0)
+
+    zero = next(t0 - a0 * (t1 - t0) / (a1 - a0) for (t0, a0), (t1, a1) in zip(truth, truth[1:]) if a1 >= 0)
+    followed, elapsed, late = [], [], 0
+    for line in map(json.loads, open(sys.argv[2])):
+        if line["event"] != "flip" or line["frame"] < 0:
+            continue
+        if line.get("missed"):
+            late += 1  # a missed blank is counted by itself
+            continue
+        middle = line["t_monotonic_s"] + 0.5 / HZ
+        followed.append(apart(360 * line["frame"] / FRAMES, angle(middle)))
+        elapsed.append(apart(SPEED * (middle - zero), angle(middle)))
+    print(json.dumps({"flips": len(followed), "late": late, "p99_deg": round(p99(followed), 4),
+                      "worst_deg": round(max(followed), 4), "elapsed_p99_deg": round(p99(elapsed), 3)}))
+
+
+main()
