@@ -36,6 +36,8 @@ void set_handlers(void (*handler)(int)) {
 
 int interrupt_fd() { return waker[0]; }
 
+bool interrupted() { return noted != 0; }
+
 void check_interrupted() {
   const int signal = noted.exchange(0);
   if (signal == 0) return;

@@ -15,6 +15,9 @@ struct Interrupted {
 /// of it (a shell sees 130 or 143). Errors pass through.
 void interruptible(const std::function<void()>& body);
 
+/// A signal is noted and check_interrupted() has not thrown yet.
+[[nodiscard]] bool interrupted();
+
 /// Throws Interrupted once after a signal; later calls do nothing, so that the way to the safe state is not cut short.
 void check_interrupted();
 

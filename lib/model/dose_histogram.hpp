@@ -18,6 +18,17 @@ class DoseHistogram {
 
   void add(float dose) { ++bin(key_of(dose)); }
   void merge(const DoseHistogram& other, int times = 1);
+  /// Hands over every field: fields(count) for each, to be written or read.
+  template <class Fields>
+  void exchange(Fields& fields) {
+    fields(below_);
+    for (auto& page : pages_) {
+      int there = page ? 1 : 0;
+      fields(there);
+      if (there != 0 && !page) page = std::make_unique<Page>();
+      if (there != 0) fields(*page);
+    }
+  }
 
   [[nodiscard]] std::int64_t total() const;
   /// How many values lie in the bin of `dose` or above it.

@@ -60,6 +60,18 @@ class DoseStatistics {
   /// Adds another's, as often as its slice occurs.
   void merge(const DoseStatistics& other, int times = 1);
 
+  /// Hands over every sum: fields(value) for each, to be written or read. Extremes only where there are any.
+  template <class Fields>
+  void exchange(Fields& fields) {
+    for (std::int64_t* count : {&part_, &void_, &part_cured_, &void_cured_}) fields(*count);
+    if (part_ > 0) fields(min_part_);
+    if (part_ > 0) fields(max_part_);
+    if (void_ > 0) fields(max_void_);
+    for (double* sum : {&sum_, &sum_squares_}) fields(*sum);
+    part_histogram_.exchange(fields);
+    void_histogram_.exchange(fields);
+  }
+
   /// Metrics of everything added. Extremes are exact; VER and IoU resolve the dose to 2^-12 of its value, and VER
   /// counts void voxels in the bin of min_G as errors unless the extremes prove otherwise.
   [[nodiscard]] DoseMetrics metrics(bool relative = true) const;

@@ -1,12 +1,15 @@
 // Projected gradient with the resin's threshold inside the loop: computed axial lithography [CAL17 fig 2, CAL19 eq 4].
 #include <algorithm>
-#include <cmath>
 
 #include "optimize/method.hpp"
+#include "optimize/safeguard.hpp"
 
 namespace vam::optimize {
 
 namespace {
+
+constexpr float shorter = 0.5F;
+constexpr float longer = 1.2F;
 
 class Cal final : public Method {
  public:
@@ -14,45 +17,71 @@ class Cal final : public Method {
 
   void start(const Problem& problem, const Operator& light, Iterate& iterate) override {
     Method::start(problem, light, iterate);
-    normalise(problem, iterate);
+    prepare(problem, iterate);
   }
 
   void resume(const Problem& problem, const Operator& light, Iterate& iterate) override {
     Method::resume(problem, light, iterate);
-    normalise(problem, iterate);
+    prepare(problem, iterate);
   }
 
-  /// x = A* g / max, s = sigmoid((x - d_h) / gamma), g <- max(0, g - lambda filter(A (s - f))) [CAL19 eq 4]. The
-  /// threshold of s is the middle of the window. Surface voxels are neither part nor void and ask for nothing.
+  /// x = A* g / max, s = M(x), g <- max(0, g - lambda filter(A w (s - f))) [CAL19 eq 4], s - f being the slope of the
+  /// loss of prepare(). lambda is found by line search: longer while that loss falls, else back and shorter.
   void step(const Problem& problem, const Operator& light, Iterate& iterate) override {
-    std::vector<Slab>& residual = iterate.dose;
-    const auto threshold = static_cast<float>(options_.window.threshold());
-    const auto softness = static_cast<float>(options_.softness);
-    for_values(residual, [&](std::size_t s, std::size_t first, std::size_t last) {
+    if (update_.empty()) {
+      update_ = iterate.g;
+      before_ = iterate;
+    }
+    for_values(iterate.dose, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        const Label label = problem.labels[s][i];
-        const float x = residual[s].values[i];
-        const float print = options_.thresholding ? 1.0F / (1.0F + std::exp((threshold - x) / softness)) : x;
-        const bool asks = label == Label::part || label == Label::void_;
-        residual[s].values[i] = asks ? print - problem.target[s].values[i] : 0.0F;
+        const float print = problem.demands.curve.response(iterate.dose[s].values[i]);
+        const bool asks = asked(problem.labels[s][i]);
+        before_.dose[s].values[i] = asks ? problem.weight_at(s, i) * (print - problem.target[s].values[i]) : 0.0F;
       }
     });
-    if (update_.empty()) update_ = slabs(iterate.g.size(), light.sinogram().width, light.sinogram().height);
-    light.forward(residual, update_);
+    light.forward(before_.dose, update_);
     light.filter(update_);
-    const auto step = static_cast<float>(options_.step);
+    const float peak = largest_light(options_, light);
     for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        iterate.g[s].values[i] = std::max(0.0F, iterate.g[s].values[i] - step * update_[s].values[i]);
+        float& now = iterate.g[s].values[i];
+        before_.g[s].values[i] = now;
+        now = std::clamp(now - length_[s][i % lanes] * update_[s].values[i], 0.0F, peak);
       }
     });
+    std::swap(iterate.dose, before_.dose);
     light.adjoint(iterate.g, iterate.dose);
     normalise(problem, iterate);
+    const PerSlice back = go_back(iterate, before_, loss_, losses(problem, iterate));
+    for (std::size_t s = 0; s < back.size(); ++s) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) length_[s][lane] *= back[s][lane] != 0.0F ? shorter : longer;
+    }
+  }
+
+  void exchange(Archive& archive) override {
+    archive(length_);
+    archive(loss_);
   }
 
   [[nodiscard]] int usual_iterations() const override { return 30; }
 
  private:
+  /// The line search begins with Newton's step for a resin whose response is the dose: filter is about (A A*)^-1.
+  void prepare(const Problem& problem, Iterate& iterate) {
+    normalise(problem, iterate);
+    length_ = constant(iterate.g.size(), 1.0F);
+    loss_ = losses(problem, iterate);
+  }
+
+  /// Sum of w (integral of M up to x - f x).
+  static PerSlice losses(const Problem& problem, const Iterate& iterate) {
+    return summed(iterate.dose, [&](std::size_t s, std::size_t i) {
+      if (!asked(problem.labels[s][i])) return 0.0F;
+      const float x = iterate.dose[s].values[i];
+      return problem.weight_at(s, i) * (problem.demands.curve.area(x) - problem.target[s].values[i] * x);
+    });
+  }
+
   /// The largest dose of every slice becomes 1.
   static void normalise(const Problem& problem, Iterate& iterate) {
     const PerSlice factor = reciprocal(maxima(iterate.dose, problem));
@@ -60,7 +89,9 @@ class Cal final : public Method {
     scale(iterate.dose, factor);
   }
 
+  Iterate before_;
   std::vector<Slab> update_;
+  PerSlice length_, loss_;
 };
 
 }  // namespace

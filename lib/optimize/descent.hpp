@@ -14,23 +14,26 @@ class Descent : public Method {
   void start(const Problem& problem, const Operator& light, Iterate& iterate) override;
   void resume(const Problem& problem, const Operator& light, Iterate& iterate) override;
   void step(const Problem& problem, const Operator& light, Iterate& iterate) override;
+  void exchange(Archive& archive) override;
+  [[nodiscard]] bool keeps_scale() const override { return true; }
+  [[nodiscard]] bool takes_grey() const override { return true; }
   [[nodiscard]] int usual_iterations() const override { return 60; }
 
  protected:
-  /// The loss of one voxel, and its derivative by the dose.
-  [[nodiscard]] virtual float loss(float dose, float target, Label label) const = 0;
-  [[nodiscard]] virtual float slope(float dose, float target, Label label) const = 0;
+  /// The loss of one voxel of slab s, and its derivative by the dose.
+  [[nodiscard]] virtual float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const = 0;
+  [[nodiscard]] virtual float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const = 0;
 
  private:
   void prepare(const Problem& problem, const Operator& light, const Iterate& iterate);
-  void slopes(const Problem& problem, const std::vector<Slab>& dose, std::vector<Slab>& to) const;
-  [[nodiscard]] PerSlice losses(const Problem& problem, const std::vector<Slab>& dose) const;
-  void judge(const Problem& problem, Iterate& iterate);
+  /// gradient = A (slopes at the iterate); the dose before is used up.
+  void differentiate(const Problem& problem, const Operator& light, const Iterate& iterate);
+  [[nodiscard]] PerSlice losses(const Problem& problem, const Operator& light, const std::vector<Slab>& dose) const;
+  void judge(const Problem& problem, const Operator& light, Iterate& iterate);
 
   Iterate before_;
-  std::vector<Slab> gradient_, slope_, slope_before_;
+  std::vector<Slab> gradient_;
   PerSlice length_, loss_;
-  float peak_ = 0;
 };
 
 }  // namespace vam::optimize

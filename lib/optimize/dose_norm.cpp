@@ -17,15 +17,11 @@ class DoseNorm final : public Method {
 
   /// I_0 = max(f, B) inside the writable circle; S_0 = filter(A I_0), floored; D_0 = A* S_0.
   void start(const Problem& problem, const Operator& light, Iterate& iterate) override {
-    goal_ = problem.target;
-    const auto background = static_cast<float>(options_.background);
-    for_values(goal_, [&](std::size_t s, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; ++i) {
-        if (problem.labels[s][i] != Label::outside) goal_[s].values[i] = std::max(goal_[s].values[i], background);
-      }
+    asked_ = problem.target;
+    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) asked_[s].values[i] = goal(problem, s, i);
     });
-    goal_sums_ = sums(goal_, problem);
-    asked_ = goal_;
+    goal_sums_ = sums(asked_, problem);
     project(problem, light, iterate);
   }
 
@@ -43,25 +39,36 @@ class DoseNorm final : public Method {
     for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const float sum = dose_sums[s][i % lanes];
-        const float goal = goal_[s].values[i];
-        if (sum <= 0 || goal <= 0) continue;
-        const float ratio = iterate.dose[s].values[i] * (goal_sums_[s][i % lanes] / sum) / goal;
+        const float wanted = goal(problem, s, i);
+        if (sum <= 0 || wanted <= 0) continue;
+        const float ratio = iterate.dose[s].values[i] * (goal_sums_[s][i % lanes] / sum) / wanted;
         asked_[s].values[i] /= std::max(ratio, least_ratio);
       }
     });
     project(problem, light, iterate);
   }
 
+  void exchange(Archive& archive) override {
+    archive(asked_);
+    archive(goal_sums_);
+  }
+
   [[nodiscard]] int usual_iterations() const override { return 1; }
 
  private:
+  /// I_0 = max(f, B).
+  [[nodiscard]] float goal(const Problem& problem, std::size_t s, std::size_t i) const {
+    const float target = problem.target[s].values[i];
+    return problem.labels[s][i] == Label::outside ? target : std::max(target, static_cast<float>(options_.background));
+  }
+
   void project(const Problem& problem, const Operator& light, Iterate& iterate) {
     filtered_projections(light, asked_, iterate.g);
     clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
     Method::resume(problem, light, iterate);
   }
 
-  std::vector<Slab> goal_, asked_;  // I_0, I_k
+  std::vector<Slab> asked_;  // I_k
   PerSlice goal_sums_;
 };
 

@@ -16,17 +16,17 @@ void exclude(Problem& problem, std::span<const Slab> inserts) {
   });
 }
 
-long exclude_dark(Problem& problem, const Operator& light) {
+std::vector<std::int64_t> exclude_dark(Problem& problem, const Operator& light) {
   std::vector<Slab> all = slabs(problem.target.size(), light.sinogram().width, light.sinogram().height);
   for (Slab& slab : all) std::fill(slab.values.begin(), slab.values.end(), 1.0F);
   std::vector<Slab> dose = slabs(problem.target.size(), light.object().width, light.object().height);
   light.adjoint(all, dose);
-  long dark = 0;
+  std::vector<std::int64_t> dark(dose.size() * lanes, 0);
   for (std::size_t s = 0; s < dose.size(); ++s) {
     for (std::size_t i = 0; i < dose[s].values.size(); ++i) {
       Label& label = problem.labels[s][i];
       if (label == Label::outside || dose[s].values[i] > 0) continue;
-      if (label == Label::part) ++dark;
+      if (label == Label::part) ++dark[s * lanes + i % lanes];
       label = Label::outside;
     }
   }

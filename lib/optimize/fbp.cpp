@@ -23,6 +23,7 @@ class Fbp final : public Method {
   }
 
   void step(const Problem& /*problem*/, const Operator& /*light*/, Iterate& /*iterate*/) override {}
+  void exchange(Archive& /*archive*/) override {}
   [[nodiscard]] int usual_iterations() const override { return 0; }
 
  private:

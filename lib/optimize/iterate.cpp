@@ -1,7 +1,5 @@
 #include "optimize/iterate.hpp"
 
-#include <limits>
-
 #include "model/figures.hpp"
 #include "optimize/slice_figures.hpp"
 
@@ -29,45 +27,49 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
   return model::unmet(until, [&](const std::string& name) { return model::figure(m, name); }).empty();
 }
 
-/// Notices when nothing has improved for `patience` iterations.
-class Patience {
- public:
-  explicit Patience(const Limits& limits) : limits_(limits) {}
-  bool lost(int iteration, double merit) {
-    if (merit > best_ + limits_.least_gain) {
-      best_ = merit;
-      best_at_ = iteration;
-    }
-    return limits_.patience > 0 && iteration - best_at_ >= limits_.patience;
+/// Nothing has improved for `patience` iterations.
+bool lost_patience(Course& course, const Limits& limits, double merit) {
+  if (merit > course.best + limits.least_gain) {
+    course.best = merit;
+    course.best_at = course.iteration;
   }
+  return limits.patience > 0 && course.iteration - course.best_at >= limits.patience;
+}
 
- private:
-  const Limits& limits_;
-  double best_ = -std::numeric_limits<double>::infinity();
-  int best_at_ = 0;
-};
+/// Why to stop at this iterate; empty = go on.
+std::string look(const Problem& problem, const Limits& limits, const Iterate& state, Course& course,
+                 const Watch& watch) {
+  const bool last = course.iteration == limits.iterations;
+  if (watch || !last) {  // looking costs little, but a plain fbp need not be looked at
+    const auto slices = metrics(state.dose, problem);
+    if (watch) watch(course.iteration, slices);
+    if (reached(limits.until, slices)) return "goal";
+    if (!last && lost_patience(course, limits, merit(slices))) return "no progress";
+  }
+  return last ? "iterations" : "";
+}
 
 }  // namespace
 
 Outcome iterate(Method& method, const Problem& problem, const Operator& light, const Limits& limits, Iterate& state,
-                const Watch& watch) {
-  if (state.g.empty()) {
-    method.start(problem, light, state);
-  } else {
-    method.resume(problem, light, state);
+                Course& course, const Watch& watch, const Pause& pause) {
+  bool looked = course.iteration >= 0;
+  if (!looked) {
+    state.g.empty() ? method.start(problem, light, state) : method.resume(problem, light, state);
+    course.iteration = 0;
   }
-  Patience patience(limits);
-  for (int i = 0;; ++i) {
-    const bool last = i == limits.iterations;
-    if (watch || !last) {  // looking costs little, but a plain fbp need not be looked at
-      const auto slices = metrics(state.dose, problem);
-      if (watch) watch(i, slices);
-      if (reached(limits.until, slices)) return {i, "goal"};
-      if (!last && patience.lost(i, merit(slices))) return {i, "no progress"};
-    }
-    if (last) return {i, "iterations"};
+  for (;; ++course.iteration) {
+    const std::string reason = looked ? "" : look(problem, limits, state, course, watch);
+    if (!reason.empty()) return {course.iteration, reason};
+    if (pause && pause()) return {course.iteration, "interrupted"};
     method.step(problem, light, state);
+    looked = false;
   }
+}
+
+Outcome iterate(Method& method, const Problem& problem, const Operator& light, const Limits& limits, Iterate& state) {
+  Course course;
+  return iterate(method, problem, light, limits, state, course);
 }
 
 }  // namespace vam::optimize

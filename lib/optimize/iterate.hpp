@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,26 @@ struct Limits {
 
 struct Outcome {
   int iterations = 0;
-  std::string reason;  // "iterations", "goal" or "no progress"
+  std::string reason;  // "iterations", "goal", "no progress" or "interrupted"
 };
 
 /// Called with iteration 0 (the start) and after every step; one entry per slice of the pass.
 using Watch = std::function<void(int iteration, const std::vector<model::DoseMetrics>& slices)>;
+/// Asked after every complete iterate whether to break off there.
+using Pause = std::function<bool()>;
 
-/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from.
+/// Where a run stands: after `iteration` complete steps, the best merit so far and when it was reached.
+struct Course {
+  int iteration = -1;  // not begun
+  double best = std::numeric_limits<double>::lowest();
+  int best_at = 0;
+};
+
+/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a course that has begun
+/// goes on from where it was broken off (method and iterate as they were), as if it never had been.
 Outcome iterate(Method& method, const Problem& problem, const Operator& light, const Limits& limits, Iterate& iterate,
-                const Watch& watch = {});
+                Course& course, const Watch& watch = {}, const Pause& pause = {});
+/// From the start to the end.
+Outcome iterate(Method& method, const Problem& problem, const Operator& light, const Limits& limits, Iterate& iterate);
 
 }  // namespace vam::optimize

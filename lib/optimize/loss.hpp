@@ -1,17 +1,30 @@
-// The one-sided loss: void should stay below d_l, part should reach d_h, and nothing else is asked [physics section 6].
+// The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics section 6].
 #pragma once
 
 #include "optimize/pass.hpp"
 
 namespace vam::optimize {
 
-/// Slope of (1/2) max(0, D - d_l)^2 in the void and (1/2) max(0, d_h - D)^2 in the part.
-inline float slope(float dose, Label label, const Window& window) {
-  const auto low = static_cast<float>(window.low);
-  const auto high = static_cast<float>(window.high);
-  if (label == Label::void_) return dose > low ? dose - low : 0.0F;
-  if (label == Label::part) return dose < high ? dose - high : 0.0F;
-  return 0.0F;
+/// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
+/// response is within its tolerance of the target.
+inline Bounds bounds(const Problem& problem, const Window& window, std::size_t s, std::size_t i) {
+  constexpr float without_limit = std::numeric_limits<float>::infinity();
+  const Label label = problem.labels[s][i];
+  if (!asked(label)) return {-without_limit, without_limit};
+  if (problem.demands.grey) return problem.demands.curve.doses(problem.target[s].values[i], problem.tolerance_at(s, i));
+  if (label == Label::void_) return {-without_limit, static_cast<float>(window.low)};
+  return {static_cast<float>(window.high), without_limit};
+}
+
+/// Slope of (w/2) miss(D)^2, w the voxel's weight.
+inline float slope(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+  return problem.weight_at(s, i) * bounds(problem, window, s, i).miss(dose);
+}
+
+/// The loss of a voxel, (w/2) miss(D)^2.
+inline float loss(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+  const float miss = bounds(problem, window, s, i).miss(dose);
+  return 0.5F * problem.weight_at(s, i) * miss * miss;
 }
 
 /// The loss of each slice: the sum over its voxels.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "optimize/archive.hpp"
 #include "optimize/operator.hpp"
 #include "optimize/pass.hpp"
 
@@ -18,16 +19,11 @@ struct Iterate {
 
 /// Defaults are the ones the manual shows. A method reads those it needs.
 struct MethodOptions {
-  Window window;
-  double background = 0.5;   // dose-norm: B, 0...1
-  double floor = 0;          // fbp, dose-norm: projections are not let below it (fluence)
-  bool offset = false;       // fbp: raise all projections by the lowest value instead of clipping
-  bool thresholding = true;  // cal: the sigmoid inside the loop
-  double softness = 0.05;    // cal: gamma of the sigmoid, in units of the largest dose
-  double step = 0.5;         // cal: lambda
-  double peak = 0;           // largest fluence, 0 = any: apg, pm, bclp
-  double power = 2;          // pm, bclp: p of the norm, at least 1
-  double band = 0.1;         // bclp: epsilon, how far the response may be from the target
+  double background = 0.5;  // dose-norm: B, 0...1
+  double floor = 0;         // fbp, dose-norm: projections are not let below it (fluence)
+  bool offset = false;      // fbp: raise all projections by the lowest value instead of clipping
+  double peak = 0;          // largest fluence, 0 = any: cal, osmo, apg, pm, bclp
+  double power = 2;         // pm, bclp: p of the norm, at least 1
 };
 
 class Method {
@@ -43,6 +39,12 @@ class Method {
   virtual void resume(const Problem& problem, const Operator& light, Iterate& iterate);
   /// One iteration.
   virtual void step(const Problem& problem, const Operator& light, Iterate& iterate) = 0;
+  /// Writes or reads what the next step needs beside the iterate, so that a run can be broken off and go on.
+  virtual void exchange(Archive& archive) = 0;
+  /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
+  [[nodiscard]] virtual bool keeps_scale() const { return false; }
+  /// Responses of a grey target can be met.
+  [[nodiscard]] virtual bool takes_grey() const { return false; }
   /// How many iterations are usual.
   [[nodiscard]] virtual int usual_iterations() const = 0;
 
@@ -52,8 +54,11 @@ class Method {
 
 /// Names in the order of the manual.
 [[nodiscard]] const std::vector<std::string>& method_names();
-/// Throws Fault::usage for an unknown name or contradictory thresholds.
+/// Throws Fault::usage for an unknown name.
 [[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name, const MethodOptions& options);
+
+/// Scales each slice to the common threshold.
+void start_at_threshold(const Problem& problem, const Operator& light, Iterate& iterate);
 
 /// g = filter(A f): may be negative, and A* g is about f.
 void filtered_projections(const Operator& light, std::span<const Slab> object, std::vector<Slab>& g);

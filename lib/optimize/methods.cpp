@@ -1,5 +1,4 @@
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "optimize/method.hpp"
 
 namespace vam::optimize {
@@ -26,14 +25,6 @@ const std::vector<Entry>& entries() {
   return all;
 }
 
-void check(const MethodOptions& options) {
-  const Window& w = options.window;
-  if (!(w.low >= 0 && w.low < w.high)) {
-    throw Error{Fault::usage, "--dose-low " + format_number(w.low) + " is not below --dose-high " +
-                                  format_number(w.high) + "; the void's limit must lie below the part's"};
-  }
-}
-
 }  // namespace
 
 const std::vector<std::string>& method_names() {
@@ -46,7 +37,6 @@ const std::vector<std::string>& method_names() {
 }
 
 std::unique_ptr<Method> make_method(const std::string& name, const MethodOptions& options) {
-  check(options);
   for (const auto& entry : entries()) {
     if (entry.name == name) return entry.make(options);
   }
@@ -64,6 +54,16 @@ void Method::start(const Problem& problem, const Operator& light, Iterate& itera
 void Method::resume(const Problem& /*problem*/, const Operator& light, Iterate& iterate) {
   if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
   light.adjoint(iterate.g, iterate.dose);
+}
+
+void start_at_threshold(const Problem& problem, const Operator& light, Iterate& iterate) {
+  const PerSlice factor = to_common_threshold(metrics(iterate.dose, problem), problem);
+  scale(iterate.g, factor);
+  if (light.couples_slices()) {
+    light.adjoint(iterate.g, iterate.dose);
+  } else {
+    scale(iterate.dose, factor);
+  }
 }
 
 void filtered_projections(const Operator& light, std::span<const Slab> object, std::vector<Slab>& g) {

@@ -1,7 +1,10 @@
 // Object-space model optimisation, Rackson et al. 2021 [OSMO21].
 #include <algorithm>
+#include <limits>
 
+#include "optimize/loss.hpp"
 #include "optimize/method.hpp"
+#include "optimize/safeguard.hpp"
 
 namespace vam::optimize {
 
@@ -26,21 +29,23 @@ class Osmo final : public Method {
     project(problem, light, iterate);
   }
 
-  /// m_V -= max(0, x - d_l), then m_G += max(0, d_h - x), each followed by g = max(0, A m / max), x = A* g / max
-  /// [OSMO21, the two steps of the algorithm]. Doses are relative to the largest.
+  /// m_V -= w max(0, x - d_l), then m_G += w max(0, d_h - x), each followed by g = max(0, A m / max), x = A* g / max
+  /// [OSMO21, the two steps of the algorithm; weights w 1 there]. Doses are relative to the largest.
   void step(const Problem& problem, const Operator& light, Iterate& iterate) override {
-    const auto low = static_cast<float>(options_.window.low);
-    const auto high = static_cast<float>(options_.window.high);
     for (const Label half : {Label::void_, Label::part}) {
       for_values(model_, [&](std::size_t s, std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
           if (problem.labels[s][i] != half) continue;
-          const float x = iterate.dose[s].values[i];
-          model_[s].values[i] += half == Label::void_ ? -std::max(0.0F, x - low) : std::max(0.0F, high - x);
+          model_[s].values[i] -= slope(problem, problem.demands.window, s, i, iterate.dose[s].values[i]);
         }
       });
       project(problem, light, iterate);
     }
+  }
+
+  void exchange(Archive& archive) override {
+    archive(model_);
+    archive(unit_);
   }
 
   [[nodiscard]] int usual_iterations() const override { return 30; }
@@ -60,14 +65,26 @@ class Osmo final : public Method {
 
   void project(const Problem& problem, const Operator& light, Iterate& iterate) {
     light.forward(model_, iterate.g);
-    clip_below(iterate.g, 0.0F);
+    bound(iterate.g, largest_light(options_, light));
     if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
     light.adjoint(iterate.g, iterate.dose);
-    const PerSlice unit = reciprocal(maxima(iterate.dose, problem));
-    scale(iterate.g, unit);
-    scale(iterate.dose, unit);
+    unit_ = reciprocal(maxima(iterate.dose, problem));
+    scale(iterate.g, unit_);
+    scale(iterate.dose, unit_);
   }
 
+  /// 0 <= g <= g_max. The scale that g will have is not known yet; the last one is near.
+  void bound(std::vector<Slab>& g, float peak) const {
+    for_values(g, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const float unit = unit_.empty() ? 0.0F : unit_[s][i % lanes];
+        const float most = unit > 0 ? peak / unit : std::numeric_limits<float>::max();
+        g[s].values[i] = std::clamp(g[s].values[i], 0.0F, most);
+      }
+    });
+  }
+
+  PerSlice unit_;  // what the last projections were scaled by
   std::vector<Slab> model_;
 };
 

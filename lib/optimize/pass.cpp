@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "optimize/loss.hpp"
 
 namespace vam::optimize {
@@ -50,7 +52,89 @@ void settle_thin(Slab& slab, std::size_t lane, std::vector<Label>& labels) {
   }
 }
 
+Label label_of(float value, const Demands& demands) {
+  const Label label = model::label_of(value);
+  if (demands.grey) return label == Label::surface ? Label::part : label;
+  if (demands.surface && label == Label::surface) return value >= 0.5F ? Label::part : Label::void_;
+  return label;
+}
+
+/// The labels of a slab, whose values outside the circle become 0.
+std::vector<Label> labelled(Slab& slab, int used, const Circle& circle, const Demands& demands) {
+  std::vector<Label> labels(slab.values.size(), Label::outside);
+  parallel_for(slab.height, [&](int y) {
+    for (int x = 0; x < slab.width; ++x) {
+      const auto at = static_cast<std::size_t>(slab.at(x, y) - slab.values.data());
+      if (!circle.contains(x, y)) {
+        std::fill_n(slab.at(x, y), lanes, 0.0F);
+        continue;
+      }
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
+        labels[at + lane] = label_of(slab.values[at + lane], demands);
+      }
+    }
+  });
+  if (!demands.grey) {
+    parallel_for(used, [&](int lane) { settle_thin(slab, static_cast<std::size_t>(lane), labels); });
+  }
+  return labels;
+}
+
+/// Weights relative to the slice's largest; voxels without any are asked for nothing.
+void free_weightless(Slab& weight, std::vector<Label>& labels) {
+  std::array<float, lanes> most{};
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (asked(labels[i])) most[i % lanes] = std::max(most[i % lanes], weight.values[i]);
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    float& w = weight.values[i];
+    w = most[i % lanes] > 0 ? w / most[i % lanes] : 0.0F;
+    if (w <= 0 && asked(labels[i])) labels[i] = Label::surface;
+  }
+}
+
 constexpr auto larger = [](float& a, float b) { a = std::max(a, b); };
+
+/// pass.hpp, metrics(): the figures of a grey slice.
+model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& problem, std::size_t slice) {
+  const std::size_t s = slice / lanes;
+  model::DoseMetrics m;
+  double squares = 0;
+  double outside = 0;
+  double worst = -std::numeric_limits<double>::infinity();
+  m.min_part = std::numeric_limits<double>::infinity();
+  for (std::size_t i = slice % lanes; i < dose[s].values.size(); i += lanes) {
+    if (!asked(problem.labels[s][i])) continue;
+    const float d = dose[s].values[i];
+    const auto error = static_cast<double>(std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]));
+    const double excess = error - static_cast<double>(problem.tolerance_at(s, i));
+    ++m.part;
+    squares += error * error;
+    outside += excess > 0 ? 1 : 0;
+    worst = std::max(worst, excess);
+    m.ipdr = std::max(m.ipdr, error);
+    m.min_part = std::min(m.min_part, static_cast<double>(d));
+    m.max_part = std::max(m.max_part, static_cast<double>(d));
+    m.mean_part += static_cast<double>(d);
+  }
+  if (m.part == 0) return {};
+  const auto count = static_cast<double>(m.part);
+  m.ver = outside / count;
+  m.iou = 1 - m.ver;
+  m.pw = -worst;
+  m.cv = std::sqrt(squares / count);
+  m.mean_part /= count;
+  m.max_dose = m.max_part;
+  return m;
+}
+
+std::vector<model::DoseMetrics> grey_metrics(std::span<const Slab> dose, const Problem& problem) {
+  std::vector<model::DoseMetrics> result(static_cast<std::size_t>(problem.slices));
+  parallel_for(problem.slices, [&](int s) {
+    result[static_cast<std::size_t>(s)] = grey_figures(dose, problem, static_cast<std::size_t>(s));
+  });
+  return result;
+}
 
 }  // namespace
 
@@ -58,30 +142,40 @@ std::vector<Slab> slabs(std::size_t count, int width, int height) {
   return std::vector<Slab>(count, Slab(width, height));
 }
 
-Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
-                     const Window& window) {
-  Problem problem{.slices = count, .target = {}, .labels = {}, .window = window};
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  for (int first = 0; first < count; first += lanes) {
-    const int used = std::min(lanes, count - first);
+void check(const Demands& demands) {
+  const Window& w = demands.window;
+  if (w.low >= 0 && w.low < w.high) return;
+  throw Error{Fault::usage, "--dose-low " + format_number(w.low) + " is not below --dose-high " +
+                                format_number(w.high) + "; the void's limit must lie below the part's"};
+}
+
+void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle) {
+  const auto packed = [&](const float* images) {
     Slab slab(width, height);
-    tomo::pack(slices + static_cast<std::size_t>(first) * pixels, used, slab);
-    std::vector<Label> labels(slab.values.size(), Label::outside);
-    parallel_for(height, [&](int y) {
-      for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::size_t>(slab.at(x, y) - slab.values.data());
-        if (!circle.contains(x, y)) {
-          std::fill_n(slab.at(x, y), lanes, 0.0F);
-          continue;
-        }
-        for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
-          labels[at + lane] = model::label_of(slab.values[at + lane]);
-        }
-      }
-    });
-    parallel_for(used, [&](int lane) { settle_thin(slab, static_cast<std::size_t>(lane), labels); });
-    problem.target.push_back(std::move(slab));
-    problem.labels.push_back(std::move(labels));
+    tomo::pack(images, count, slab);
+    return slab;
+  };
+  problem.slices += count;
+  problem.target.push_back(packed(slices.target));
+  problem.labels.push_back(labelled(problem.target.back(), count, circle, problem.demands));
+  if (slices.weight != nullptr) {
+    problem.weight.push_back(packed(slices.weight));
+    free_weightless(problem.weight.back(), problem.labels.back());
+  }
+  if (slices.tolerance != nullptr) problem.tolerance.push_back(packed(slices.tolerance));
+}
+
+Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
+                     const Demands& demands, const float* weight, const float* tolerance) {
+  check(demands);
+  Problem problem{.slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const auto from = [&](const float* images, int first) {
+    return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
+  };
+  for (int first = 0; first < count; first += lanes) {
+    append(problem, {from(slices, first), from(weight, first), from(tolerance, first)}, std::min(lanes, count - first),
+           width, height, circle);
   }
   return problem;
 }
@@ -103,6 +197,12 @@ PerSlice minima(std::span<const Slab> images) {
       images, highest, [&](float& a, std::size_t s, std::size_t i) { lower(a, images[s].values[i]); }, lower);
 }
 
+PerSlice largest(std::span<const Slab> images) {
+  constexpr float lowest = std::numeric_limits<float>::lowest();
+  return reduce(
+      images, lowest, [&](float& a, std::size_t s, std::size_t i) { larger(a, images[s].values[i]); }, larger);
+}
+
 PerSlice maxima(std::span<const Slab> images, const Problem& problem) {
   return reduce(
       images, 0.0F,
@@ -120,8 +220,7 @@ PerSlice sums(std::span<const Slab> images, const Problem& problem) {
 
 PerSlice loss(std::span<const Slab> dose, const Problem& problem) {
   return summed(dose, [&](std::size_t s, std::size_t i) {
-    const float d = slope(dose[s].values[i], problem.labels[s][i], problem.window);
-    return 0.5F * d * d;
+    return loss(problem, problem.demands.window, s, i, dose[s].values[i]);
   });
 }
 
@@ -177,6 +276,7 @@ std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const 
 }
 
 std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem) {
+  if (problem.demands.grey) return grey_metrics(dose, problem);
   const auto slices = statistics(dose, problem);
   std::vector<model::DoseMetrics> result(slices.size());
   parallel_for(static_cast<int>(slices.size()),
@@ -186,12 +286,14 @@ std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Proble
 
 PerSlice to_common_threshold(const std::vector<model::DoseMetrics>& slices, const Problem& problem) {
   PerSlice factor(problem.target.size());
-  for (auto& lane : factor) lane.fill(0.0F);
+  for (auto& lane : factor) lane.fill(problem.demands.grey ? 1.0F : 0.0F);
+  if (problem.demands.grey) return factor;
+  const Window& window = problem.demands.window;
   for (std::size_t s = 0; s < slices.size(); ++s) {
     const auto& m = slices[s];
     if (m.part == 0 || m.iou_threshold <= 0) continue;
-    double f = problem.window.threshold() / m.iou_threshold;
-    if (m.max_void < m.min_part) f = std::min(f, problem.window.high / m.min_part);
+    double f = window.threshold() / m.iou_threshold;
+    if (m.max_void < m.min_part) f = std::min(f, window.high / m.min_part);
     factor[s / lanes][s % lanes] = static_cast<float>(f);
   }
   return factor;

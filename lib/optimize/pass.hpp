@@ -9,6 +9,7 @@
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
+#include "optimize/cure_curve.hpp"
 #include "tomo/slab.hpp"
 
 namespace vam::optimize {
@@ -30,27 +31,64 @@ struct Window {
   [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
 };
 
-struct Problem {
-  int slices = 0;                          // lanes in use, from the first
-  std::vector<Slab> target;                // coverage 0...1, zero outside the circle
-  std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values
+/// What is asked of all slices.
+struct Demands {
   Window window;
+  bool surface = false;  // voxels that the part's surface cuts are asked too: part from half coverage on, else void
+  bool grey = false;     // the target is a response for every voxel, to be met within its tolerance
+  CureCurve curve = CureCurve::logistic(Window{}.threshold(), 0.05);  // of the losses that look at the response
+  double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
 };
 
-/// `count` row-major slices of width x height, one after the other. What lies outside the circle is left out (check
-/// with reach()). A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the
-/// part: if its largest coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at
-/// least half of it for part; otherwise it stays dark.
+/// Throws Fault::usage for contradictory thresholds.
+void check(const Demands& demands);
+
+/// Whether anything is asked of such a voxel.
+[[nodiscard]] constexpr bool asked(Label label) { return label == Label::part || label == Label::void_; }
+
+struct Problem {
+  int slices = 0;                          // lanes in use, from the first
+  std::vector<Slab> target;                // coverage 0...1 or response, zero outside the circle
+  std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values; grey: part where the target is not 0
+  Demands demands;
+  std::vector<Slab> weight;     // what an error of this voxel costs, the largest of a slice 1; empty: all 1
+  std::vector<Slab> tolerance;  // epsilon of this voxel; empty: demands.band
+
+  [[nodiscard]] float weight_at(std::size_t s, std::size_t i) const {
+    return weight.empty() ? 1.0F : weight[s].values[i];
+  }
+  [[nodiscard]] float tolerance_at(std::size_t s, std::size_t i) const {
+    return tolerance.empty() ? static_cast<float>(demands.band) : tolerance[s].values[i];
+  }
+};
+
+/// Row-major slices, one after the other, in every array. Nullptr: none.
+struct Slices {
+  const float* target;
+  const float* weight = nullptr;     // >= 0, relative to each other; a voxel of weight 0 is asked for nothing
+  const float* tolerance = nullptr;  // >= 0
+};
+
+/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out (check with reach()). A slice
+/// without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its largest
+/// coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it for
+/// part; otherwise it stays dark.
+void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
+
+/// `count` row-major slices of width x height, one after the other, and weights and tolerances for them if there are
+/// any. Throws Fault::usage for contradictory thresholds.
 [[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
-                                   const Window& window);
+                                   const Demands& demands, const float* weight = nullptr,
+                                   const float* tolerance = nullptr);
 
 /// Voxels that an insert fills to a half or more are neither part nor void.
 void exclude(Problem& problem, std::span<const Slab> inserts);
 
 class Operator;
 
-/// Voxels of part or void that no light can reach are left out too; returns how many of the part's there were.
-[[nodiscard]] long exclude_dark(Problem& problem, const Operator& light);
+/// Voxels of part or void that no light can reach are left out too; returns how many of the part's there were in each
+/// slice.
+[[nodiscard]] std::vector<std::int64_t> exclude_dark(Problem& problem, const Operator& light);
 
 /// Distance from the axis to the farthest voxel centre with coverage, in voxels; -1 for an empty slice.
 [[nodiscard]] double reach(const float* slice, int width, int height, double axis_x, double axis_y);
@@ -106,6 +144,8 @@ void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerS
 
 /// Smallest value of each slice.
 [[nodiscard]] PerSlice minima(std::span<const Slab> images);
+/// Largest value of each slice.
+[[nodiscard]] PerSlice largest(std::span<const Slab> images);
 /// Largest value of each slice inside the circle, at least 0.
 [[nodiscard]] PerSlice maxima(std::span<const Slab> images, const Problem& problem);
 /// Sum of each slice's values inside the circle.
@@ -118,11 +158,14 @@ void clip_below(std::span<Slab> images, float floor);
 /// Dose statistics of each slice in use.
 [[nodiscard]] std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem);
 
+/// Figures of each slice in use. Of a grey target: ver = share of the voxels whose response is outside its tolerance,
+/// pw = the least margin that any has to the edge of it, negative when outside, ipdr = largest error, cv = root mean
+/// square error, iou = 1 - ver.
 [[nodiscard]] std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem);
 
 /// The factor for each slice that puts window.threshold() in the middle of the slice's own process window or, where
 /// that window is wider than needed, its least part dose on window.high; 0 for a slice without part. This is what makes
-/// one threshold dose print all slices.
+/// one threshold dose print all slices. Grey targets are doses already: 1.
 [[nodiscard]] PerSlice to_common_threshold(const std::vector<model::DoseMetrics>& slices, const Problem& problem);
 
 }  // namespace vam::optimize

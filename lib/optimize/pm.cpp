@@ -8,20 +8,26 @@ namespace vam::optimize {
 
 namespace {
 
-/// Sum over V of max(0, D - d_l)^p + sum over G of max(0, d_h - D)^p [PM21, the penalty function], weights rho equal.
+/// Sum over V of max(0, D - d_l)^p + sum over G of max(0, d_h - D)^p [PM21, the penalty function], weights rho those of
+/// the voxels.
 class Pm final : public Descent {
  public:
   using Descent::Descent;
 
  protected:
-  [[nodiscard]] float loss(float dose, float /*target*/, Label label) const override {
-    const float d = std::abs(optimize::slope(dose, label, options_.window));
-    return d > 0 ? std::pow(d, static_cast<float>(options_.power)) : 0.0F;
+  [[nodiscard]] float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
+    const float d = std::abs(miss(problem, s, i, dose));
+    return d > 0 ? problem.weight_at(s, i) * std::pow(d, static_cast<float>(options_.power)) : 0.0F;
   }
-  [[nodiscard]] float slope(float dose, float /*target*/, Label label) const override {
+  [[nodiscard]] float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
     const auto p = static_cast<float>(options_.power);
-    const float d = optimize::slope(dose, label, options_.window);
-    return d == 0 ? 0.0F : std::copysign(p * std::pow(std::abs(d), p - 1), d);
+    const float d = miss(problem, s, i, dose);
+    return d == 0 ? 0.0F : problem.weight_at(s, i) * std::copysign(p * std::pow(std::abs(d), p - 1), d);
+  }
+
+ private:
+  static float miss(const Problem& problem, std::size_t s, std::size_t i, float dose) {
+    return bounds(problem, problem.demands.window, s, i).miss(dose);
   }
 };
 

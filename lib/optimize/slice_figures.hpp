@@ -16,6 +16,12 @@ class SliceFigures {
   void add(const SliceFigures& other);
   [[nodiscard]] model::DoseMetrics mean() const;
 
+  /// Hands over every field, for Archive.
+  template <class Fields>
+  void exchange(Fields& fields) {
+    for (double* field : {&part_, &counted_, &errors_, &iou_, &cv_, &pw_, &ipdr_}) fields(*field);
+  }
+
   /// ver, pw, ipdr, cv, iou
   static const std::vector<std::string>& names();
 

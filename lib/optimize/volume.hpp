@@ -10,37 +10,48 @@
 #include "base/image.hpp"
 #include "base/json.hpp"
 #include "optimize/iterate.hpp"
+#include "optimize/slice_reader.hpp"
 
 namespace vam::optimize {
 
+/// How a run can be broken off and go on. What goes out through `to` is all that `from` needs to go on as if nothing
+/// had happened; a finished run leaves nothing of use there.
+struct Interruption {
+  Pause pause;              // may be empty
+  Archive* to = nullptr;    // where the state goes; none: nothing is kept
+  Archive* from = nullptr;  // the state to go on from; none: from the start
+  std::string job;          // what the state must be of: method, options, light
+};
+
 struct VolumeTask {
-  int slices = 0;
+  VolumeSource source;
   Circle circle;
-  Window window;
+  Demands demands;
   Limits limits;
-  bool watch = false;                                      // fill the trace
-  std::size_t keep_bytes = std::size_t{512} << 20U;        // finished projections held for identical slices to come
-  std::function<void(int k, int count, float* out)> read;  // `count` row-major slices from k on
-  std::function<void(int k, int count, float* out)> read_insert;           // coverage of an opaque insert; may be empty
+  double max_light = 0;  // largest fluence; 0 = any
+  double blur_px = 0;    // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
+  bool watch = false;    // fill the trace
+  std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<Operator>(std::span<const Slab>)> around;  // the operator of a pass with these inserts
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>()> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
-  std::function<void(int slices)> progress;              // so many more slices are done; may be empty
+  Interruption interruption;
 };
 
 struct VolumeOutcome {
   int jobs = 0;                           // distinct slices computed
   int iterations = 0;                     // most of any pass
-  std::string reason;                     // of the pass with most iterations
+  std::string reason;                     // of the pass with most iterations; "interrupted": there is no result
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
   double efficiency = 0;
-  long dark_part_voxels = 0;  // of the part, behind the insert from everywhere
+  std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere
 };
 
 /// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
-/// the circle.
+/// the circle, and when the state to go on from is of another job; Fault::usage when a blur is to be made up for by a
+/// method that does not keep doses to scale.
 VolumeOutcome optimise(const VolumeTask& task, const Operator& light);
 
 /// The fewest columns that see the circle, odd or even as nx, so that the columns of angle 0 are voxels.

@@ -58,6 +58,52 @@ quiet "until a goal" vam-optimize --method cal --angles 90 --until 'iou>=0.5' --
 is "stops there" "$(value goal.json stopped_by)" goal
 quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --error-feedback part.vdb -o grey.exr
 
+# Interrupted again and again, later each time, until it is through: the same bytes as in one go.
+vam-optimize --angles 90 --iterations 60 --patience 0 --trace whole.csv --report whole.json part.vdb -o whole.exr
+attempt() { timeout -s INT "$1" vam-optimize --angles 90 --iterations 60 --patience 0 --trace parts.csv \
+  --report parts.json --checkpoint run.state part.vdb -o parts.exr; }
+for seconds in 0.2 0.3 0.4 0.6 0.9 1.5 3 10 60; do
+  attempt $seconds && break
+  [ -e parts.exr ] && break
+done
+history() { sed 's/vam-optimize 0[^"]*//' "$1"; }
+is "the pixels of an interrupted run" "$(tail -c 20000 parts.exr | cksum)" "$(tail -c 20000 whole.exr | cksum)"
+same "its trace" parts.csv whole.csv
+same "its report" parts.json whole.json
+is "its state is removed in the end" "$(ls run.state 2>/dev/null)" ""
+sh -c 'trap "" TERM; exec timeout -s INT 0.5 vam-optimize --iterations 100000 --patience 0 --checkpoint run.state part.vdb -o never.exr'
+is "broken off, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
+fails 65 'of another job' vam-optimize --angles 90 --checkpoint run.state part.vdb -o out.exr
+python3 - <<'EOF'
+bytes = bytearray(open("run.state", "rb").read())
+bytes[-400:-396] = b"\x00\x00\xc0\x7f"
+open("nan.state", "wb").write(bytes)
+open("cut.state", "wb").write(bytes[:3000])
+EOF
+fails 65 'nan.state: .*(NaN|damaged)' vam-optimize --iterations 100000 --patience 0 --checkpoint nan.state part.vdb -o out.exr
+fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
+fails 65 'not a state' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
+
+quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
+quiet "surface voxels asked too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
+holds "the more is asked, the narrower the window" "$(value band.json pw) > $(value surface.json pw)"
+quiet "weights of a file" vam-optimize --angles 90 --iterations 5 --weights part.vdb part.vdb -o weights.exr
+printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
+quiet "a measured response" vam-optimize --method bclp --response cure.csv --angles 90 --iterations 20 --report cure.json part.vdb -o cure.exr
+holds "its window's middle is the threshold" "$(value cure.json threshold_dose) > 0.79 && $(value cure.json threshold_dose) < 0.81"
+quiet "a step" vam-optimize --method bclp --response step --angles 90 --iterations 5 part.vdb -o step.exr
+quiet "doses for every voxel" vam-optimize --grey --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
+holds "most are within their band" "$(value grey.json ver) < 0.05"
+printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
+fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --response falls.csv part.vdb -o out.exr
+fails 66 'none.csv' vam-optimize --method bclp --response none.csv part.vdb -o out.exr
+fails 64 'knows part and void only' vam-optimize --grey --method osmo part.vdb -o out.exr
+fails 64 'no-blur' vam-optimize --method cal --set resin.psf_mm=0.1 part.vdb -o out.exr
+vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
+fails 65 "grid of 'target' is not" vam-optimize --weights other.vdb part.vdb -o out.exr
+vam-slice --shape handle --insert-shape cylinder:diameter=14,height=30 --voxel 0.4 -o overlap.vdb 2>/dev/null
+fails 65 'part and insert share' vam-optimize overlap.vdb -o out.exr
+
 fails 64 'no method is called|not among|magic' vam-optimize --method magic part.vdb -o out.exr
 fails 64 '0.9 is not below --dose-high 0.8' vam-optimize --dose-low 0.9 --dose-high 0.8 part.vdb -o out.exr
 fails 64 "no figure is called 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr

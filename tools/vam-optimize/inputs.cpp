@@ -1,24 +1,44 @@
 #include "vam-optimize/inputs.hpp"
 
+#include <utility>
+
 #include "base/error.hpp"
 
 namespace vam::optimize_tool {
 
-Inputs read(const std::string& path) {
-  Inputs in{io::read_volumes(path), 0, std::nullopt};
-  const auto find = [&](const std::string& name) -> std::optional<std::size_t> {
-    for (std::size_t i = 0; i < in.volumes.size(); ++i) {
-      if (in.volumes[i].name() == name) return i;
-    }
-    return std::nullopt;
-  };
-  const auto target = find("target");
-  if (!target) throw Error{Fault::data, path + ": has no grid 'target'; vam-slice makes one"};
-  in.target_at = *target;
-  in.insert_at = find("insert");
-  if (in.insert() != nullptr && !(in.insert()->grid() == in.target().grid())) {
-    throw Error{Fault::data,
-                path + ": the insert's grid is not the target's; slice both together (vam-slice --insert)"};
+namespace {
+
+/// The grid of that name, or the only one.
+io::SparseVolume read_own(const std::string& path, const std::string& name) {
+  std::vector<io::SparseVolume> volumes = io::read_volumes(path);
+  for (io::SparseVolume& volume : volumes) {
+    if (volume.name() == name || volumes.size() == 1) return std::move(volume);
+  }
+  throw Error{Fault::data, path + ": has several grids, but none is called '" + name + "'"};
+}
+
+}  // namespace
+
+Inputs read(const Options& options) {
+  Inputs in;
+  for (io::SparseVolume& volume : io::read_volumes(options.input)) {
+    if (volume.name() == "target")
+      in.target.push_back(std::move(volume));
+    else if (volume.name() == "insert")
+      in.insert.push_back(std::move(volume));
+    else if (volume.name() == "weight" && options.weights.empty())
+      in.weight.push_back(std::move(volume));
+    else if (volume.name() == "tolerance" && options.tolerances.empty())
+      in.tolerance.push_back(std::move(volume));
+  }
+  if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice makes one"};
+  if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
+  if (!options.tolerances.empty()) in.tolerance.push_back(read_own(options.tolerances, "tolerance"));
+  for (const auto* volumes : {&in.insert, &in.weight, &in.tolerance}) {
+    if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
+    throw Error{Fault::data, options.input + ": the grid of '" + volumes->front().name() +
+                                 "' is not the target's; slice both together (vam-slice --insert) or with the same "
+                                 "--voxel and size"};
   }
   return in;
 }
@@ -36,13 +56,15 @@ Initial::Initial(const std::string& path, const model::StackInfo& want) : path_(
 }
 
 Image Initial::operator()(int k) {
-  Image image;
+  constexpr int kept = 64;
   model::ImageInfo about;
-  while (next_ <= k) {
+  for (; next_ <= k; ++next_) {
+    Image image;
     if (!reader_.next(image, about)) throw Error{Fault::data, path_ + ": ends at slice " + std::to_string(next_)};
-    ++next_;
+    recent_.emplace(next_, std::move(image));
+    recent_.erase(next_ - kept);
   }
-  return image;
+  return recent_.at(k);
 }
 
 }  // namespace vam::optimize_tool

@@ -1,7 +1,7 @@
 // What vam-optimize reads: the volumes, and projections to start from.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,22 +9,22 @@
 #include "io/exr_stack.hpp"
 #include "io/vdb.hpp"
 #include "model/stack.hpp"
+#include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
+/// The volumes of a job, all on one grid; those after the target may be missing.
 struct Inputs {
-  std::vector<io::SparseVolume> volumes;
-  std::size_t target_at = 0;
-  std::optional<std::size_t> insert_at;
+  std::vector<io::SparseVolume> target, insert, weight, tolerance;  // at most one each
 
-  [[nodiscard]] const io::SparseVolume& target() const { return volumes[target_at]; }
-  [[nodiscard]] const io::SparseVolume* insert() const { return insert_at ? &volumes[*insert_at] : nullptr; }
+  [[nodiscard]] const model::Grid& grid() const { return target.front().grid(); }
 };
 
-/// Throws Fault::data when there is no target, or an insert on another grid.
-[[nodiscard]] Inputs read(const std::string& path);
+/// Target, insert, weight and tolerance of the target's file; the latter two may have files of their own. Throws
+/// Fault::data when there is no target, or another volume is on another grid.
+[[nodiscard]] Inputs read(const Options& options);
 
-/// Reads a stack slice after slice; slices in between are skipped.
+/// Reads a stack slice after slice, the last 64 of which may be asked for again; slices in between are skipped.
 class Initial {
  public:
   /// Throws Fault::data unless the stack has the size of `want`.
@@ -34,6 +34,7 @@ class Initial {
  private:
   std::string path_;
   io::StackReader reader_;
+  std::map<int, Image> recent_;  // passes that share dose overlap, and come back to some slices
   int next_ = 0;
 };
 

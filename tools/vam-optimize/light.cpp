@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "optics/blur.hpp"
 #include "optimize/attenuated_operator.hpp"
 #include "optimize/parallel_operator.hpp"
 #include "optimize/shadowed_operator.hpp"
@@ -35,6 +36,14 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
   const double seen = options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
   scene.circle.radius = std::min(scene.circle.radius, seen);
   return scene;
+}
+
+double blur_px(const Scene& scene, const Options& options) {
+  if (options.no_blur) return 0;
+  const model::Stage& stage = scene.printer.stage;
+  const double seconds = options.seconds.value_or(stage.turns * 360 / stage.speed_deg_s);
+  const model::Resin& resin = scene.printer.resin;
+  return optics::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
 }
 
 std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options) {

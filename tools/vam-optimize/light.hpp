@@ -23,6 +23,9 @@ struct Scene {
 
 [[nodiscard]] Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options);
 
+/// Standard deviation in voxels of what beam and resin smear; 0 when it is to be left out.
+[[nodiscard]] double blur_px(const Scene& scene, const Options& options);
+
 /// Parallel light, or the projector's own rays; the resin's absorption is in it unless it is to be left out.
 [[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options);
 /// The same around opaque inserts, a slab for every slab of the pass.

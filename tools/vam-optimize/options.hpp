@@ -18,26 +18,38 @@ struct Options {
   std::string geometry = "parallel";
   int angles = 360;
   std::optional<int> columns;
-  std::optional<int> iterations;
+  optimize::Demands demands;  // what is asked of the print
+  double tolerance_mm = 0;
+  std::string weights, tolerances;
+  std::string response = "logistic";
+  double softness = 0.05;
+  std::optional<int> iterations;  // when to stop
   optimize::Limits limits;
   std::string until;
   std::string init;
+  std::string checkpoint;
   std::string trace;
-  std::string report;
+  optimize::MethodOptions how;
   std::string negative = "clip";
   std::string absorption = "exact";
-  bool no_threshold = false;
-  optimize::MethodOptions how;
-  std::optional<int> bits;
+  bool no_blur = false;
+  std::optional<double> seconds;
+  std::optional<int> bits;  // the projector's grey levels
   std::optional<double> peak;
   bool error_feedback = false;
   cli::PrinterOptions printer;
+  std::string report;
   io::StackOptions stack;
 };
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
-/// Fills in what follows from other options. Throws Fault::usage for options that contradict each other.
+/// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
+/// other.
 void settle(const cli::App& app, Options& options);
+/// The response curve of --response, and the window that a table of it gives. Throws Error when it cannot be read.
+void settle_response(const cli::App& app, Options& options);
+/// Everything that decides which projections come out, as text: a state is only good for the same.
+[[nodiscard]] std::string job(const Options& options, const std::string& printer);
 
 }  // namespace vam::optimize_tool

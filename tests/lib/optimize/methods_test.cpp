@@ -35,10 +35,10 @@ TEST_CASE("OST22 fig S6: the process window widens with a background and again w
 
 TEST_CASE("CAL19 fig S7: the resin's threshold in the loop") {
   const auto parts = some_parts();
-  MethodOptions linear;
-  linear.thresholding = false;
+  Demands linear;
+  linear.curve = CureCurve::linear();
   const auto with = parts::run(parts, size, 360, "cal", {}, 20);
-  const auto without = parts::run(parts, size, 360, "cal", linear, 20);
+  const auto without = parts::run(parts, size, 360, "cal", {}, 20, linear);
   for (std::size_t s = 0; s < parts.size(); ++s) {
     CAPTURE(s);
     CHECK(with[s].pw > without[s].pw);
@@ -148,9 +148,9 @@ TEST_CASE("offset projections keep the shape of the filtered ones") {
 }
 
 TEST_CASE("contradictory thresholds and unknown methods are refused") {
-  MethodOptions options;
-  options.window = {0.9, 0.7};
-  CHECK_THROWS_WITH_AS(make_method("cal", options), doctest::Contains("0.9 is not below --dose-high 0.7"), vam::Error);
+  Demands demands;
+  demands.window = {0.9, 0.7};
+  CHECK_THROWS_WITH_AS(check(demands), doctest::Contains("0.9 is not below --dose-high 0.7"), vam::Error);
   CHECK_THROWS_WITH_AS(make_method("magic", {}),
                        doctest::Contains("there are fbp, dose-norm, cal, osmo, pm, bclp, apg"), vam::Error);
 }

@@ -27,11 +27,11 @@ inline std::vector<float> stacked(const std::vector<std::vector<float>>& slices)
 /// Figures of each slice after so many iterations; nothing stops them early.
 inline std::vector<vam::model::DoseMetrics> run(const std::vector<std::vector<float>>& slices, int size, int angles,
                                                 const std::string& name, const vam::optimize::MethodOptions& options,
-                                                int iterations) {
+                                                int iterations, const vam::optimize::Demands& demands = {}) {
   const vam::optimize::ParallelOperator light(turn(size, angles));
   const auto all = stacked(slices);
-  const auto problem = vam::optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size,
-                                                   circle(size), options.window);
+  const auto problem =
+      vam::optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, circle(size), demands);
   const auto method = vam::optimize::make_method(name, options);
   vam::optimize::Iterate state;
   vam::optimize::iterate(*method, problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);

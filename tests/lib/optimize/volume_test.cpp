@@ -26,9 +26,9 @@ struct Written {
 Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {}) {
   const ParallelOperator light(parts::turn(size, angles));
   Written result;
-  task.slices = static_cast<int>(slices.size());
+  task.source.slices = static_cast<int>(slices.size());
   if (task.circle.radius == 0) task.circle = parts::circle(size);
-  task.read = [&](int k, int count, float* out) {
+  task.source.target = [&](int k, int count, float* out) {
     for (int i = 0; i < count; ++i)
       out = std::copy(slices[static_cast<std::size_t>(k + i)].begin(), slices[static_cast<std::size_t>(k + i)].end(),
                       out);
@@ -85,9 +85,10 @@ TEST_CASE("one threshold dose prints all slices: the middle of the window, in ev
         statistics.add(dose[i], vam::model::label_of(slices[s][i]));
     }
     const auto m = statistics.metrics();
-    CHECK(m.min_part > task.window.threshold() * 0.9);
-    const bool middle = std::abs(m.iou_threshold - task.window.threshold()) < 1e-3;
-    const bool wide = std::abs(m.min_part - task.window.high) < 1e-3 && m.max_void < task.window.threshold();
+    CHECK(m.min_part > task.demands.window.threshold() * 0.9);
+    const bool middle = std::abs(m.iou_threshold - task.demands.window.threshold()) < 1e-3;
+    const bool wide =
+        std::abs(m.min_part - task.demands.window.high) < 1e-3 && m.max_void < task.demands.window.threshold();
     CHECK((middle || wide));
   }
 }
@@ -152,11 +153,11 @@ TEST_CASE("an insert that overlaps the part is refused; one that hides part of i
     return std::hypot(x, y) < 10 || (std::hypot(x, y) > 19 && std::hypot(x, y) < 24);
   });
   VolumeTask task;
-  task.read_insert = [&](int, int count, float* out) {
+  task.source.insert = [&](int, int count, float* out) {
     for (int i = 0; i < count; ++i) out = std::copy(disc.begin(), disc.end(), out);
   };
   CHECK_THROWS_WITH_AS(run({disc}, task), doctest::Contains("part and insert share"), vam::Error);
-  task.read_insert = [&](int, int count, float* out) {
+  task.source.insert = [&](int, int count, float* out) {
     for (int i = 0; i < count; ++i) out = std::copy(ring.begin(), ring.end(), out);
   };
   task.around = [](std::span<const Slab> inserts) {

@@ -1,0 +1,36 @@
+// --checkpoint: where a run that was interrupted goes on from.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/stream.hpp"
+#include "optimize/volume.hpp"
+
+namespace vam::optimize_tool {
+
+/// Finished slices and, when a signal comes, the last iterate go to a file without a name; keep() gives it one.
+class Checkpoint {
+ public:
+  /// Opens the file if it is there. Throws Error: no_input, no_output.
+  explicit Checkpoint(const std::string& path);
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// For the task, as long as this lives; the signals must be noted (device::interruptible).
+  [[nodiscard]] optimize::Interruption interruption(const std::string& job);
+  /// The state appears under its name.
+  void keep() { out_.commit(); }
+  /// The run is done; the state that it began with is of no more use.
+  void remove() const;
+
+ private:
+  void take(void* bytes, std::size_t size);
+  std::string path_;
+  std::optional<io::InputFile> in_;
+  io::OutputFile out_;
+  std::optional<optimize::Archive> from_;
+  optimize::Archive to_;
+};
+
+}  // namespace vam::optimize_tool
