@@ -1,17 +1,24 @@
 // The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics section 6].
 #pragma once
 
+#include <limits>
+
 #include "optimize/pass.hpp"
 
 namespace vam::optimize {
 
+/// How much of its band a grey voxel is asked to stay in: a penalty leaves most misses just outside of what it asks.
+inline constexpr float aim = 0.8F;
+
 /// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
-/// response is within its tolerance of the target.
+/// response is well within its tolerance of the target.
 inline Bounds bounds(const Problem& problem, const Window& window, std::size_t s, std::size_t i) {
   constexpr float without_limit = std::numeric_limits<float>::infinity();
   const Label label = problem.labels[s][i];
   if (!asked(label)) return {-without_limit, without_limit};
-  if (problem.demands.grey) return problem.demands.curve.doses(problem.target[s].values[i], problem.tolerance_at(s, i));
+  if (problem.demands.grey) {
+    return problem.demands.curve.doses(problem.target[s].values[i], aim * problem.tolerance_at(s, i));
+  }
   if (label == Label::void_) return {-without_limit, static_cast<float>(window.low)};
   return {static_cast<float>(window.high), without_limit};
 }
