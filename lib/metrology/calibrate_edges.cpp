@@ -1,6 +1,7 @@
 #include "metrology/calibrate_edges.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -35,54 +36,58 @@ double column_of_impact_mm(const optics::View& view, double impact) {
   return 0.5 * (low + high);
 }
 
-// Fluorescence along the ray of column q * R_e, 0 beyond the edge, as the running integral over q: a line that has a
-// width is a difference of two integrals, exactly, however steep the edge.
+// What the camera gets of the light of a sheet depends on how the sheet lies, that is on the turn delta of its ray,
+// which near grazing changes with the root of the depth below the edge, and on where it lies. So the share is a
+// polynomial in t, the turn that is missing to that at the edge plus the depth as a part of R_e.
+constexpr std::size_t powers = 3;
+using Terms = std::array<double, powers>;
+
+// Fluorescence along the ray of column q * R_e times 1, t, t^2; 0 beyond the edge. As running integrals over q: a line
+// that has a width is a difference of two integrals, exactly, however steep the edge.
 class EdgeShape {
  public:
-  EdgeShape(const model::Printer& printer, double edge_mm) {
+  EdgeShape(const model::Printer& printer, double edge_mm) : integral_{Terms{}} {
     const optics::View view = optics::projector_view(printer);
-    const double radius_mm = optics::resin_radius_mm(view);
-    double sum = 0;
-    double before = 0;
-    for (int i = 0; i <= cells; ++i) {
-      // Midpoints, denser towards the edge: q = 1 - s^2.
-      const double s = 1 - static_cast<double>(i) / cells;
-      const double q = 1 - s * s * (1 - low);
-      if (i > 0) sum += (q - before) * brightness(printer, view, radius_mm, 0.5 * (q + before) * edge_mm);
+    const double most_rad = optics::chief_ray(view, edge_mm * (1 - 1e-9)).delta_rad;
+    for (std::size_t i = 1; i <= cells; ++i) {
+      const double q = 0.5 * (node(i - 1) + node(i));
+      const auto ray = optics::chief_ray(view, q * edge_mm);
+      const double t = most_rad - ray.delta_rad + 1 - q;
+      double cell = (node(i) - node(i - 1)) * brightness(printer, view, ray);
+      Terms sum = integral_.back();
+      for (std::size_t k = 0; k < powers; ++k, cell *= t) sum[k] += cell;
       integral_.push_back(sum);
-      before = q;
     }
   }
-  /// Integral from `low` to q; below `low` the curve goes on level.
-  [[nodiscard]] double integral(double q) const {
+  /// Integrals from `low` to q; below `low` the curves go on level.
+  [[nodiscard]] Terms integral(double q) const {
     if (q >= 1) return integral_.back();
-    if (q <= low) return (q - low) * (integral_[1] - integral_[0]) / width_of_first();
-    const double place = (1 - std::sqrt((1 - q) / (1 - low))) * cells;
-    const auto cell = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(cells - 1));
-    // Linear in q between the nodes.
-    const auto node = [](std::size_t i) {
-      const double s = 1 - static_cast<double>(i) / cells;
-      return 1 - s * s * (1 - low);
-    };
-    const double part = (q - node(cell)) / (node(cell + 1) - node(cell));
-    return integral_[cell] + part * (integral_[cell + 1] - integral_[cell]);
+    const double place = q <= low ? 0 : (1 - std::sqrt((1 - q) / (1 - low))) * static_cast<double>(cells);
+    const auto cell = std::min(static_cast<std::size_t>(place), cells - 1);
+    const double part = (q - node(cell)) / (node(cell + 1) - node(cell));  // linear in q between the nodes
+    Terms out{};
+    for (std::size_t k = 0; k < powers; ++k) {
+      out[k] = integral_[cell][k] + part * (integral_[cell + 1][k] - integral_[cell][k]);
+    }
+    return out;
   }
 
  private:
-  static double brightness(const model::Printer& printer, const optics::View& view, double radius_mm, double x_mm) {
-    const auto ray = optics::chief_ray(view, x_mm);
+  static double brightness(const model::Printer& printer, const optics::View& view, const optics::ChiefRay& ray) {
     if (!ray.hits) return 0;
+    const double radius_mm = optics::resin_radius_mm(view);
     const double path_mm = 2 * std::sqrt(std::max(radius_mm * radius_mm - ray.x_v_mm * ray.x_v_mm, 0.0));
     const double mu = printer.resin.absorption_per_mm;
     return ray.transmittance * (mu > 0 ? -std::expm1(-mu * path_mm) / (mu * radius_mm) : path_mm / radius_mm);
   }
-  static double width_of_first() {
-    const double s = 1 - 1.0 / cells;
-    return (1 - s * s) * (1 - low);
+  // Denser towards the edge.
+  static double node(std::size_t i) {
+    const double r = 1 - static_cast<double>(i) / static_cast<double>(cells);
+    return 1 - r * r * (1 - low);
   }
-  static constexpr int cells = 1000;
+  static constexpr std::size_t cells = 1000;
   static constexpr double low = 1 - 2 * window;
-  std::vector<double> integral_;
+  std::vector<Terms> integral_;
 };
 
 // Columns of the two steepest changes, smoothed over three frames, and the smoothed signal's range.
@@ -118,8 +123,16 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
   return edges;
 }
 
-// Parameters: centre, R_e, blur, background, brightness and its slope at the low and at the high edge.
-enum : std::size_t { centre, edge, blur, ground, low_0, low_1, high_0, high_1, count };
+// Parameters: centre, R_e, blur, background, and the camera's share at the low and at the high edge.
+enum : std::size_t {
+  centre,
+  edge,
+  blur,
+  ground,
+  low_share,
+  high_share = low_share + powers,
+  count = high_share + powers
+};
 
 class BandModel {
  public:
@@ -138,31 +151,33 @@ class BandModel {
   [[nodiscard]] std::vector<double> residuals(const std::vector<double>& p) const {
     std::vector<double> out(signal_.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const bool right = column_[i] > p[centre];
-      const double u = (std::abs(column_[i] - p[centre]) - p[edge]) / (window * p[edge]);
-      const double bright = right ? p[high_0] + p[high_1] * u : p[low_0] + p[low_1] * u;
-      out[i] = signal_[i] - p[ground] - bright * blurred(std::abs(column_[i] - p[centre]), p[edge], p[blur]);
+      const std::size_t share = column_[i] > p[centre] ? high_share : low_share;
+      const Terms light = blurred(std::abs(column_[i] - p[centre]), p[edge], p[blur]);
+      out[i] = signal_[i] - p[ground];
+      for (std::size_t k = 0; k < powers; ++k) out[i] -= p[share + k] * light[k];
     }
     return out;
   }
 
  private:
   // Mean over the line's width and a Gaussian, in R_e's units.
-  [[nodiscard]] double blurred(double x_px, double edge_px, double blur_px) const {
-    constexpr int half_nodes = 9;
-    constexpr double reach = 3.2;
+  [[nodiscard]] Terms blurred(double x_px, double edge_px, double blur_px) const {
+    constexpr int half_nodes = 6;
+    constexpr double reach = 3;
     const double sigma = std::max(std::abs(blur_px), 1e-3);
-    double sum = 0;
+    Terms sum{};
     double weights = 0;
-    for (int k = -half_nodes; k <= half_nodes; ++k) {
-      const double z = reach * k / half_nodes;
+    for (int n = -half_nodes; n <= half_nodes; ++n) {
+      const double z = reach * n / half_nodes;
       const double weight = std::exp(-0.5 * z * z);
       const double x = x_px + sigma * z;
+      const Terms beyond = shape_.integral((x + 0.5 * width_px_) / edge_px);
+      const Terms before = shape_.integral((x - 0.5 * width_px_) / edge_px);
       weights += weight;
-      sum += weight *
-             (shape_.integral((x + 0.5 * width_px_) / edge_px) - shape_.integral((x - 0.5 * width_px_) / edge_px));
+      for (std::size_t k = 0; k < powers; ++k) sum[k] += weight * (beyond[k] - before[k]);
     }
-    return sum / weights * edge_px / width_px_;
+    for (double& term : sum) term *= edge_px / width_px_ / weights;
+    return sum;
   }
 
   const EdgeShape& shape_;
@@ -185,7 +200,7 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
   start[edge] = 0.5 * (first.fall - first.rise) + 1;
   start[blur] = 1.5;
   start[ground] = *low;
-  start[low_0] = start[high_0] = height;
+  start[low_share] = start[high_share] = height;
   std::vector<double> step(count, 1e-3 * height);
   step[centre] = step[edge] = step[blur] = 0.01;
   const auto fit =

@@ -33,9 +33,9 @@ struct VialEdges {
 };
 
 /// Fits both edges of every band with the fluorescence that the optics lets expect near grazing incidence
-/// (transmittance times path in resin), blurred by the line's width and a Gaussian, and a brightness of its own at
-/// either edge. `printer` gives projector, wall, indices and absorption; its vial radius and axis_column are not used.
-/// Throws Fault::data: no band shows two edges, or the line's columns do not reach beyond both.
+/// (transmittance times path in resin), blurred by the line's width and a Gaussian, and at either edge a share of it
+/// that reaches the camera. `printer` gives projector, wall, indices and absorption; its vial radius and axis_column
+/// are not used. Throws Fault::data: no band shows two edges, or the line's columns do not reach beyond both.
 [[nodiscard]] VialEdges find_edges(const SweepScan& scan, const model::Printer& printer);
 
 }  // namespace vam::metrology

@@ -13,7 +13,7 @@ constexpr double step_px = 0.05;
 
 double noisy(double value, double read_noise, Random& random) {
   std::normal_distribution<double> unit;
-  constexpr double electrons = 5;  // a unit of light
+  constexpr double electrons = 10;  // a unit of light
   return value + std::sqrt(read_noise * read_noise + std::max(value, 0.0) / electrons) * unit(random);
 }
 
@@ -43,7 +43,11 @@ double SweepBench::fluorescence(double x_px) const {
   const auto i = static_cast<std::size_t>(place);
   if (i + 1 >= table_.size()) return 0;
   const double part = place - std::floor(place);
-  const double gain = 1 + 0.5 * truth_.slope * x_px * truth_.pixel_mm / truth_.radius_mm;
+  // The camera gets more of a sheet that turns towards it: the turn is asin(b / R) - asin(b / n R), b the distance
+  // of the ray from the axis.
+  const double x_mm = x_px * truth_.pixel_mm;
+  const double b = std::clamp(x_mm / std::hypot(1, x_mm / truth_.lens_mm) / truth_.radius_mm, -1.0, 1.0);
+  const double gain = 1 + truth_.slope * (std::asin(b) - std::asin(b / truth_.resin_index));
   return gain * ((1 - part) * table_[i] + part * table_[i + 1]);
 }
 

@@ -23,8 +23,8 @@ struct SweepTruth {
   double axis_column = 511.5;  // at height 0
   double tilt_rad = 0;         // upper end towards higher columns
   double blur_px = 1.5;        // Gaussian sigma of the line
-  double slope = 0;            // relative brightness from the low to the high side of the vial
-  double noise = 3;            // of a pixel; the brightest are about 100, with shot noise on top
+  double slope = 0;            // of the camera's share, per radian that the light turns in the vial
+  double noise = 2;            // of a pixel; the brightest are about 100, with shot noise on top
 };
 
 /// What the camera sees of a lit line of width_px columns; rows have their middles at height_mm, top first.

@@ -313,8 +313,13 @@ bool is_scan(const std::string& command) { return command == "check" || scans().
 void run_scan(const cli::App& app, const ScanOptions& given, const std::string& command) {
   ScanOptions options = given;
   options.command = command;
-  const model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   if (command == "check") return check_records(options, printer.calibration);
+  // A latency that was measured before helps to tell which picture a frame shows.
+  const auto known = io::current_record(printer.calibration, "latency");
+  if (known && command != "latency" && io::objection(*known, printer.calibration, io::utc_seconds()).empty()) {
+    printer.projector.latency_ms = known->value("latency");
+  }
   if (options.from.empty()) throw Error{Fault::usage, command + ": no frames; name them with --from"};
   keep(app, options, printer.calibration, command, scans().at(command)(options, printer));
 }

@@ -20,7 +20,7 @@ struct ScanOptions {
   std::string dark;
   bool accept = false;
   int bands = 5;
-  int pitch_px = 4, width_px = 2, steps = 17;      // of the pattern
+  int pitch_px = 4, width_px = 4, steps = 17;      // of the pattern
   double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
   double step_deg = 0;                             // axis: frames without angles
   std::vector<std::string> needed;                 // check

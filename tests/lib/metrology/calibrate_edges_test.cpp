@@ -57,7 +57,7 @@ TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, ra
     truth.axis_column = 490 + 40 * part(random);
     truth.tilt_rad = (part(random) - 0.5) * 0.03;
     truth.blur_px = 0.5 + 2 * part(random);
-    truth.slope = 0.4 * (part(random) - 0.5);
+    truth.slope = (part(random) - 0.5);
     const double reach = 1.25 * truth.radius_mm / truth.pixel_mm;
     const auto scan = swept(truth, 2, std::floor(truth.axis_column - reach), truth.axis_column + reach, random);
     const VialEdges found = find_edges(scan, printer_of(truth));
