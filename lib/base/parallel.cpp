@@ -5,19 +5,39 @@
 
 #include <memory>
 
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace vam {
 
 namespace {
 std::unique_ptr<tbb::global_control> limit;  // NOLINT: one per process, like the thread pool it limits
+
+// ThreadSanitizer sees nothing of oneTBB's own synchronisation, as the library is not instrumented. It is told that
+// what was done before a loop is seen by its items, and what these did by what follows.
+#ifdef __SANITIZE_THREAD__
+void hand_over(char& mark) { __tsan_release(&mark); }
+void take_over(char& mark) { __tsan_acquire(&mark); }
+#else
+void hand_over(char&) {}
+void take_over(char&) {}
+#endif
 }  // namespace
 
 void parallel_for(int count, const std::function<void(int)>& work) {
+  char begun = 0;
+  char done = 0;
+  hand_over(begun);
   tbb::parallel_for(
       tbb::blocked_range<int>(0, count, 1),
       [&](const tbb::blocked_range<int>& range) {
+        take_over(begun);
         for (int i = range.begin(); i != range.end(); ++i) work(i);
+        hand_over(done);
       },
       tbb::simple_partitioner{});
+  take_over(done);
 }
 
 void set_threads(int count) {

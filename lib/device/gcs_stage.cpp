@@ -7,8 +7,8 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "device/guardian_actions.hpp"
 #include "device/serial_port.hpp"
+#include "device/stop_order.hpp"
 
 namespace vam::device {
 
@@ -34,10 +34,10 @@ std::string decimal(double value) {
 class GcsStage final : public Stage {
  public:
   GcsStage(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings, std::string axis, Guardian* guardian)
-      : link_(std::move(port), clock, settings), axis_(std::move(axis)), guardian_(guardian) {}
+      : link_(std::move(port), clock, settings), axis_(std::move(axis)), stop_order_(guardian) {}
 
   ~GcsStage() override {
-    if (!watched_) return;
+    if (!stop_order_.standing()) return;
     try {
       link_.halt_now();
     } catch (...) {
@@ -54,7 +54,7 @@ class GcsStage final : public Stage {
     about["firmware"] = trimmed(parts[3]);
     about["axis"] = axis_;
     about["unit"] = unit();
-    beat();
+    stop_order_.beat();
     return about;
   }
 
@@ -64,7 +64,7 @@ class GcsStage final : public Stage {
     caps.max_deg = value("TMX?");
     if (has("ACC?")) caps.acceleration_deg_s2 = value("ACC?");
     if (has("SPA?")) caps.max_speed_deg_s = link_.ask_number("SPA? " + axis_ + " 0xA");  // maximum closed-loop velocity
-    beat();
+    stop_order_.beat();
     return caps;
   }
 
@@ -85,12 +85,12 @@ class GcsStage final : public Stage {
 
   bool homed() override {
     const bool ready = link_.ready();
-    beat();
+    stop_order_.beat();
     if (!ready) return false;
     if (const auto problem = fault())
       throw Error{Fault::protocol, link_.port().name() + ": homing failed with error " + *problem};
     if (value("FRF?") != 1) throw Error{Fault::protocol, link_.port().name() + ": homing ended without a reference"};
-    forget();
+    stop_order_.withdraw();
     return true;
   }
 
@@ -109,19 +109,20 @@ class GcsStage final : public Stage {
   StageSample sample() override {
     StageSample now;
     now.angle_deg = link_.ask_number("POS? " + axis_, &now.t0_s, &now.t1_s);
-    beat();
+    stop_order_.beat();
     return now;
   }
 
   bool moving() override {
     const bool moves = (link_.motion_bits() & 1U) != 0;
-    beat();
-    if (!moves) forget();
+    stop_order_.beat();
+    if (!moves) stop_order_.withdraw();
     return moves;
   }
 
   void stop(Stop how) override {
-    beat();  // what follows is bounded; the guardian shall not cut it short after an answer that did not come
+    // What follows is bounded; the guardian shall not cut it short after an answer that did not come.
+    stop_order_.beat();
     if (how == Stop::smooth) {
       link_.order("HLT " + axis_, stopped_by_command);
     } else {
@@ -131,12 +132,12 @@ class GcsStage final : public Stage {
         throw Error{Fault::protocol, link_.port().name() + ": stopped with error " + gcs_error_text(code)};
       }
     }
-    beat();
+    stop_order_.beat();
   }
 
   std::optional<std::string> fault() override {
     const int code = link_.take_error();
-    beat();
+    stop_order_.beat();
     return code == 0 ? std::nullopt : std::optional(gcs_error_text(code));
   }
 
@@ -145,7 +146,7 @@ class GcsStage final : public Stage {
 
   void order(const std::string& text) {
     link_.order(text);
-    beat();
+    stop_order_.beat();
   }
 
   // HLP? lists the commands, one "NAME - what" a line; asked once.
@@ -162,33 +163,12 @@ class GcsStage final : public Stage {
     return line.substr(line.find('=') + 1);
   }
 
-  void watch() {
-    if (guardian_ == nullptr || watched_) {
-      watched_ = true;
-      return;
-    }
-    watched_ = true;
-    if (link_.port().handle() < 0) return;
-    const Json action{{"do", "write"}, {"order", 1}, {"name", "stage"}, {"hex", to_hex(stop_bytes)}};
-    action_ = guardian_->add(action, link_.port().handle());
-  }
-
-  void forget() {
-    watched_ = false;
-    if (action_) guardian_->forget(*action_);
-    action_.reset();
-  }
-
-  void beat() {
-    if (guardian_ != nullptr) guardian_->beat();
-  }
+  void watch() { stop_order_.give(stop_bytes, link_.port().handle()); }
 
   GcsLink link_;
   std::string axis_;
-  Guardian* guardian_;
+  StopOrder stop_order_;
   std::string commands_;
-  bool watched_ = false;  // told to move and not yet known to stand
-  std::optional<int> action_;
 };
 
 }  // namespace

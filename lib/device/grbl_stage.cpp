@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "device/guardian_actions.hpp"
+#include "device/stop_order.hpp"
 
 namespace vam::device {
 
@@ -22,12 +22,12 @@ const std::string soft_reset = "\x18";
 class GrblStage final : public Stage {
  public:
   GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian)
-      : port_(std::move(port)), clock_(clock), axis_(axis), guardian_(guardian) {
+      : port_(std::move(port)), clock_(clock), axis_(axis), stop_order_(guardian) {
     greet();
   }
 
   ~GrblStage() override {
-    if (!watched_) return;
+    if (!stop_order_.standing()) return;
     try {
       port_->write(jog_cancel);
     } catch (...) {
@@ -61,13 +61,13 @@ class GrblStage final : public Stage {
   // "$H" answers ok only when it is done, and status reports pause meanwhile.
   bool homed() override {
     if (!homing_) return true;
-    beat();
+    stop_order_.beat();
     const std::string line = next_line(0.05, false);
     if (line.empty()) return false;
     homing_ = false;
     require_ok("$H", line);
     offset_deg_ = -sample().angle_deg;
-    forget();
+    stop_order_.withdraw();
     return true;
   }
 
@@ -99,14 +99,14 @@ class GrblStage final : public Stage {
     const std::string state = report.substr(1, report.find_first_of("|>:") - 1);
     if (state == "Alarm") throw Error{Fault::protocol, port_->name() + ": is in alarm; home it, or unlock it with $X"};
     const bool moves = state != "Idle";
-    if (!moves) forget();
+    if (!moves) stop_order_.withdraw();
     return moves;
   }
 
   // Both stops are the cancelling of the jog, at the axis' acceleration: a reset would stop harder, but lose the
   // position.
   void stop(Stop) override {
-    beat();
+    stop_order_.beat();
     port_->write(jog_cancel);
   }
 
@@ -200,7 +200,7 @@ class GrblStage final : public Stage {
     std::string answer = next_line(timeout_s, true);
     while (answer.front() == '[') answer = next_line(timeout_s, true);  // "[MSG:Caution: Unlocked]"
     require_ok(line, answer);
-    beat();
+    stop_order_.beat();
   }
 
   // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
@@ -209,7 +209,7 @@ class GrblStage final : public Stage {
     std::string line = next_line(timeout_s, true);
     while (line == "ok") line = next_line(timeout_s, true);
     if (line.front() != '<' || line.back() != '>') throw nonsense("?", line);
-    beat();
+    stop_order_.beat();
     return line;
   }
 
@@ -227,37 +227,22 @@ class GrblStage final : public Stage {
   }
 
   void watch() {
-    watched_ = true;
-    if (guardian_ == nullptr || action_ || port_->handle() < 0) return;
     // Cancels the jog; the LF ends half a line of the dead tool, and the second cancel what that may have started. The
     // reset stops whatever is left.
     const std::string bytes = jog_cancel + "\n" + jog_cancel + "!" + soft_reset;
-    action_ =
-        guardian_->add({{"do", "write"}, {"order", 1}, {"name", "stage"}, {"hex", to_hex(bytes)}}, port_->handle());
-  }
-
-  void forget() {
-    watched_ = false;
-    if (action_) guardian_->forget(*action_);
-    action_.reset();
-  }
-
-  void beat() {
-    if (guardian_ != nullptr) guardian_->beat();
+    stop_order_.give(bytes, port_->handle());
   }
 
   std::unique_ptr<Port> port_;
   Clock& clock_;
   int axis_;
-  Guardian* guardian_;
+  StopOrder stop_order_;
   std::string greeting_ = "Grbl";
   std::string buffer_;
   std::map<std::string, double> settings_;
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;
   bool homing_ = false;
-  bool watched_ = false;
-  std::optional<int> action_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "device/guardian_child.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -68,15 +69,18 @@ void hurry() {
 }
 
 // Terminal signals reach the whole group, and a closing terminal the whole session: leave both, and ignore the rest.
-// Standard input and output belong to the tool's pipes, whose other ends must see them closed when the tool dies.
+// Standard input and output belong to the tool's pipes, whose other ends must see them closed when the tool dies. Their
+// numbers stay taken: as 0 or 1 a device's handle would get whatever a library prints.
 void detach(int socket) {
   setsid();
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP, SIGUSR1, SIGUSR2}) {
     std::signal(signal, SIG_IGN);
   }
   const auto low = static_cast<unsigned>(socket);
-  close(STDIN_FILENO);
-  close(STDOUT_FILENO);
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO}) {
+    if (number != socket) dup2(nowhere, number);
+  }
   if (low > 3) close_range(3, low - 1, 0);
   close_range(low + 1, ~0U, 0);
 }

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "device/stop_order.hpp"
 
 namespace vam::device {
 
@@ -53,10 +54,10 @@ const std::array<const char*, 11> error_names{"intentionally de-energized",
 class TicStage final : public Stage {
  public:
   TicStage(std::unique_ptr<UsbLink> link, Clock& clock, double steps_per_deg, Guardian* guardian)
-      : link_(std::move(link)), clock_(clock), steps_per_deg_(steps_per_deg), guardian_(guardian) {}
+      : link_(std::move(link)), clock_(clock), steps_per_deg_(steps_per_deg), stop_order_(guardian) {}
 
   ~TicStage() override {
-    if (!watched_) return;
+    if (!stop_order_.standing()) return;
     try {
       link_->control_out(halt_and_hold, 0, 0);
     } catch (...) {
@@ -96,7 +97,7 @@ class TicStage final : public Stage {
     if (const auto problem = fault()) throw Error{Fault::protocol, link_->name() + ": homing failed: " + *problem};
     if ((flags & position_uncertain) != 0)
       throw Error{Fault::protocol, link_->name() + ": homing ended without a limit switch"};
-    forget();
+    stop_order_.withdraw();
     return true;
   }
 
@@ -127,7 +128,7 @@ class TicStage final : public Stage {
   bool moving() override {
     order(reset_command_timeout, 0);
     const bool moves = variable(current_velocity) != 0 || variable(target_position) != variable(current_position);
-    if (!moves) forget();
+    if (!moves) stop_order_.withdraw();
     return moves;
   }
 
@@ -140,7 +141,7 @@ class TicStage final : public Stage {
   std::optional<std::string> fault() override {
     const std::string bytes = link_->control_in(get_variable, 0, error_status, 2);
     const int bits = static_cast<unsigned char>(bytes[0]) | static_cast<unsigned char>(bytes[1]) << 8;
-    beat();
+    stop_order_.beat();
     std::vector<std::string> names;
     for (std::size_t bit = 0; bit < 11; ++bit) {
       if ((bits >> bit & 1) != 0) names.emplace_back(error_names[bit]);
@@ -157,11 +158,11 @@ class TicStage final : public Stage {
   void order(Request request, std::int32_t argument) {
     const auto bits = static_cast<std::uint32_t>(argument);
     link_->control_out(request, static_cast<int>(bits & 0xFFFFU), static_cast<int>(bits >> 16U));
-    beat();
+    stop_order_.beat();
   }
   void order_short(Request request, int argument) {
     link_->control_out(request, argument, 0);
-    beat();
+    stop_order_.beat();
   }
 
   std::int32_t variable(Offset offset) {
@@ -169,44 +170,30 @@ class TicStage final : public Stage {
     std::uint32_t value = 0;
     for (std::size_t i = 0; i < 4; ++i)
       value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << 8 * i;
-    beat();
+    stop_order_.beat();
     return static_cast<std::int32_t>(value);
   }
 
   int flags_now() {
-    beat();
+    stop_order_.beat();
     return static_cast<unsigned char>(link_->control_in(get_variable, 0, misc_flags, 1)[0]);
   }
 
   void watch() {
-    watched_ = true;
-    if (guardian_ == nullptr || action_) return;
     const Json about = link_->about();
-    action_ = guardian_->add({{"do", "usb"},
-                              {"order", 1},
-                              {"name", "stage"},
-                              {"usb_id", about["usb_id"]},
-                              {"serial", about["serial"]},
-                              {"interface", -1},
-                              {"control", Json::array({Json::array({halt_and_hold, 0, 0})})}});
-  }
-
-  void forget() {
-    watched_ = false;
-    if (action_) guardian_->forget(*action_);
-    action_.reset();
-  }
-
-  void beat() {
-    if (guardian_ != nullptr) guardian_->beat();
+    stop_order_.give({{"do", "usb"},
+                      {"order", 1},
+                      {"name", "stage"},
+                      {"usb_id", about["usb_id"]},
+                      {"serial", about["serial"]},
+                      {"interface", -1},
+                      {"control", Json::array({Json::array({halt_and_hold, 0, 0})})}});
   }
 
   std::unique_ptr<UsbLink> link_;
   Clock& clock_;
   double steps_per_deg_;
-  Guardian* guardian_;
-  bool watched_ = false;
-  std::optional<int> action_;
+  StopOrder stop_order_;
 };
 
 }  // namespace

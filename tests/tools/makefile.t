@@ -2,30 +2,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 cp "$VAM_SOURCE/Makefile.example" Makefile
-cat >box.off <<'MESH'
-OFF
-8 12 0
--2 -2 0
-2 -2 0
-2 2 0
--2 2 0
--2 -2 1
-2 -2 1
-2 2 1
--2 2 1
-3 0 2 1
-3 0 3 2
-3 4 5 6
-3 4 6 7
-3 0 1 5
-3 0 5 4
-3 1 2 6
-3 1 6 5
-3 2 3 7
-3 2 7 6
-3 3 0 4
-3 3 4 7
-MESH
+box 4 4 1 >box.off
 cp box.off other.off
 ok 'builds all, two at once' make -j2 VOXEL=0.1
 for part in box other; do

@@ -65,6 +65,19 @@ for key in sys.argv[2].split("."): value=value[int(key)] if isinstance(value,lis
 print(str(value).lower() if isinstance(value,bool) else value)' "$1" "$2"
 }
 
+box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through its middle, standing on z = 0
+  x=$(awk "BEGIN { print $1 / 2 }"); y=$(awk "BEGIN { print $2 / 2 }")
+  printf 'OFF\n8 12 0\n'
+  for z in 0 "$3"; do printf '%s\n' "-$x -$y $z" "$x -$y $z" "$x $y $z" "-$x $y $z"; done
+  for corners in '0 2 1' '0 3 2' '4 5 6' '4 6 7' '0 1 5' '0 5 4' '1 2 6' '1 6 5' '2 3 7' '2 7 6' '3 0 4' '3 4 7'; do
+    echo "3 $corners"
+  done
+)
+
+small_printer() {  # a projector of 64 x 8 pixels of 0.26 mm; 36 frames a turn at 1 frame per second and 10 deg/s
+  printf '%s\n' '[projector]' 'columns = 64' 'rows = 8' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 5' 'fps = 1'
+}
+
 done_testing() {
   echo "1..$number"
   [ "$number" -gt 0 ] && [ "$failures" -eq 0 ]

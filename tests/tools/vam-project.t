@@ -3,16 +3,7 @@
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 png="python3 $VAM_SOURCE/tests/tools/png.py"
 
-# A small projector: 64 x 8 pixels of 0.26 mm; 36 frames a turn at 1 frame per second and 10 deg/s.
-cat >printer.toml <<'TOML'
-[projector]
-columns = 64
-rows = 8
-pixel_mm = 0.26
-axis_column = 31.5
-axis_row = 5
-fps = 1
-TOML
+small_printer >printer.toml
 $exr make part.exr space=projector width=64 height=36 count=3   # slices at z = 0, 0.26, 0.52 mm, brightest 1, 2, 3
 
 # Forms

@@ -1,30 +1,7 @@
 # vam-sdf: meshes and volumes against each other, verdicts, and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
-cat >box.off <<'MESH'
-OFF
-8 12 0
--2 -3 0
-2 -3 0
-2 3 0
--2 3 0
--2 -3 1
-2 -3 1
-2 3 1
--2 3 1
-3 0 2 1
-3 0 3 2
-3 4 5 6
-3 4 6 7
-3 0 1 5
-3 0 5 4
-3 1 2 6
-3 1 6 5
-3 2 3 7
-3 2 7 6
-3 3 0 4
-3 3 4 7
-MESH
+box 4 6 1 >box.off
 # The same box, turned by 90 degrees about z (x -> y, y -> -x), moved by 10, 20, 30 and grown by 1 %.
 awk 'NR < 3 { print; next } NF == 3 { print -1.01 * $2 + 10, 1.01 * $1 + 20, 1.01 * $3 + 30; next } { print }' box.off >moved.off
 

@@ -27,15 +27,7 @@ is "columns to the right, angles down" "$($png get slice.png 44 0) $($png get sl
 is "from a pipe" "$(vam-view --at 0.52 --plain --colours grey <sino.exr >piped.png; $png sum piped.png)" "$($png sum slice.png)"
 
 # Frames of a projector, as EXR, pictures and video: the same pixels
-cat >printer.toml <<'TOML'
-[projector]
-columns = 64
-rows = 8
-pixel_mm = 0.26
-axis_column = 31.5
-axis_row = 5
-fps = 1
-TOML
+small_printer >printer.toml
 $exr make projector.exr space=projector width=64 height=36 count=3
 vam-project projector.exr --bits 8 -o frames.exr; vam-project projector.exr -o frames/; vam-project projector.exr -o frames.mkv
 for file in frames.exr frames frames.mkv; do
