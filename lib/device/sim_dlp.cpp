@@ -32,13 +32,14 @@ class SimDlp final : public UsbLink {
   }
 
   void write_report(const std::string& report) override {
-    answer_.clear();
+    late_ = std::exchange(answer_, "");
     ++reports_;
+    if (spoils("unplug")) throw Error{Fault::absent, name_ + ": is gone (LIBUSB_ERROR_NO_DEVICE)"};
     const auto at = [&](std::size_t i) { return i < report.size() ? static_cast<unsigned char>(report[i]) : 0; };
     const int command = at(5) << 8 | at(4);
     const int length = at(2) | at(3) << 8;
     const bool reading = (at(0) & 0x80) != 0;
-    const bool known = registers_.contains(command) && command != settings_.refuse && length >= 2;
+    const bool known = registers_.contains(command) && command != settings_.refuse && length >= 2 && !spoils("error");
     if (known && !reading) write(command, report.substr(6, static_cast<std::size_t>(length - 2)));
     if ((at(0) & 0x40) == 0) return;
     const std::string data = known && reading ? registers_[command] : "";
@@ -51,10 +52,13 @@ class SimDlp final : public UsbLink {
   }
 
   std::string read_report() override {
-    if (answer_.empty() || reports_ > settings_.silent_after)
-      throw Error{Fault::busy, name_ + ": sent no report (LIBUSB_ERROR_TIMEOUT)"};
-    if (reports_ > settings_.garble_after) return std::string(64, '\x5A');
-    return answer_;
+    if (spoils("unplug")) throw Error{Fault::absent, name_ + ": is gone (LIBUSB_ERROR_NO_DEVICE)"};
+    std::string answer = spoils("late") ? std::exchange(late_, "") : answer_;
+    if (answer.empty() || spoils("silent")) throw Error{Fault::busy, name_ + ": sent no report (LIBUSB_ERROR_TIMEOUT)"};
+    if (spoils("garbage")) return std::string(64, '\x5A');
+    if (spoils("truncated")) return answer.substr(0, 3);
+    if (spoils("wrong-sender")) answer[1] = static_cast<char>(answer[1] + 100);
+    return answer;
   }
 
   const std::string& name() const override { return name_; }
@@ -63,6 +67,9 @@ class SimDlp final : public UsbLink {
   }
 
  private:
+  [[nodiscard]] bool spoils(const char* fault) const {
+    return settings_.fault == fault && reports_ > settings_.fault_after;
+  }
   void write(int command, const std::string& data) {
     if (command == 0x1A0E && settings_.stuck_gamma) return;
     const std::string before = std::exchange(registers_[command], data);
@@ -76,7 +83,7 @@ class SimDlp final : public UsbLink {
   SimDlpSettings settings_;
   SimLog log_;
   std::map<int, std::string> registers_;
-  std::string answer_;
+  std::string answer_, late_;
   int reports_ = 0;
   std::string name_ = "usb:0451:6401:LCR4500";
 };

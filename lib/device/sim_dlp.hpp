@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "device/sim_options.hpp"
 #include "device/usb_link.hpp"
@@ -10,10 +11,12 @@ namespace vam::device {
 
 struct SimDlpSettings {
   int current = 40;
-  bool stuck_gamma = false;    // keeps its gamma on, whatever it is told
-  int refuse = 0;              // command (CMD2 << 8 | CMD3) that gets a NACK
-  int silent_after = 1 << 30;  // reports, then no more answers
-  int garble_after = 1 << 30;  // reports, then answers of noise
+  bool stuck_gamma = false;  // keeps its gamma on, whatever it is told
+  int refuse = 0;            // command (CMD2 << 8 | CMD3) that gets a NACK
+  // What spoils every answer from the n-th report (from 0) on: silent · late (the answer comes with the next question)
+  // · garbage · truncated (three bytes) · wrong-sender (an answer to another question) · error (NACK) · unplug.
+  std::string fault;
+  int fault_after = 0;
 };
 
 /// Its log has a line for every change of what shines: {"event": "leds", "bits": 4}.

@@ -19,6 +19,7 @@ class SimTic final : public UsbLink {
 
   void control_out(int request, int value, int index) override {
     advance();
+    refuse_if_spoilt();
     heard_s_ = clock_.now_s();
     const auto argument =
         static_cast<std::int32_t>(static_cast<std::uint32_t>(index) << 16U | static_cast<std::uint32_t>(value));
@@ -56,8 +57,11 @@ class SimTic final : public UsbLink {
   std::string control_in(int request, int, int index, int length) override {
     advance();
     if (request != 0xA1) throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
+    refuse_if_spoilt();
     heard_s_ = clock_.now_s();
-    return packed(variable(index), length);
+    const std::string answer = packed(variable(index), length);
+    if (spoils("garbage")) return std::string(answer.size(), '\x5A');
+    return spoils("truncated") ? answer.substr(0, answer.size() / 2) : answer;
   }
 
   void write_report(const std::string&) override { throw Error{Fault::protocol, name_ + ": has no reports"}; }
@@ -68,6 +72,19 @@ class SimTic final : public UsbLink {
   }
 
  private:
+  [[nodiscard]] bool spoils(const char* fault) const {
+    return settings_.fault == fault && transfers_ > settings_.fault_after;
+  }
+
+  void refuse_if_spoilt() {
+    ++transfers_;
+    if (spoils("unplug")) throw Error{Fault::absent, name_ + ": is gone (LIBUSB_ERROR_NO_DEVICE)"};
+    if (spoils("error")) throw Error{Fault::protocol, name_ + ": refused the request (LIBUSB_ERROR_PIPE)"};
+    if (!spoils("silent")) return;
+    clock_.sleep_until(clock_.now_s() + 0.25);
+    throw Error{Fault::busy, name_ + ": no answer (LIBUSB_ERROR_TIMEOUT)"};
+  }
+
   double angle(std::int32_t steps) const { return steps / settings_.steps_per_deg; }
 
   void go(double angle_deg) {
@@ -119,6 +136,7 @@ class SimTic final : public UsbLink {
   SimLog log_;
   SimMotor motor_;
   double heard_s_ = 0;
+  int transfers_ = 0;
   bool energized_ = false;
   bool safe_start_ = true;
   bool uncertain_ = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "device/clock.hpp"
 #include "device/sim_device.hpp"
@@ -15,6 +16,10 @@ struct SimTicSettings {
   double steps_per_deg = 100;
   double command_timeout_s = 1;  // without a word for so long it decelerates to a stop
   int error_bits = 0;            // of the error status; 8 is the kill switch
+  // What spoils every transfer from the n-th (from 0) on: silent (time-out) · error (stall) · garbage · truncated ·
+  // unplug.
+  std::string fault;
+  int fault_after = 0;
 };
 
 [[nodiscard]] std::unique_ptr<UsbLink> make_sim_tic(const SimTicSettings& settings, Clock& clock, SimLog log);

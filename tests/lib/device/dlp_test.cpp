@@ -1,6 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <functional>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -79,16 +82,28 @@ TEST_CASE("A gamma that stays on is found by reading back") {
 }
 
 TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and never light") {
-  for (int after = 0; after < 12; ++after) {
-    CAPTURE(after);
-    SimDlpSettings silent;
-    silent.silent_after = after;
-    LightLab quiet(silent);
-    CHECK(fault_of([&] { quiet.light->prepare(); }) == Fault::busy);
-    SimDlpSettings noise;
-    noise.garble_after = after;
-    LightLab noisy(noise);
-    CHECK(fault_of([&] { noisy.light->prepare(); }) == Fault::protocol);
+  const std::vector<std::pair<const char*, Fault>> cases{
+      {"silent", Fault::busy},           {"late", Fault::busy},
+      {"garbage", Fault::protocol},      {"truncated", Fault::protocol},
+      {"wrong-sender", Fault::protocol}, {"error", Fault::protocol},
+      {"unplug", Fault::absent}};
+  for (const auto& [kind, fault] : cases) {
+    for (int after = 0; after < 12; ++after) {
+      CAPTURE(kind);
+      CAPTURE(after);
+      LightLab lab({.fault = kind, .fault_after = after});
+      CHECK(fault_of([&] { lab.light->prepare(); }) == fault);
+      CHECK((lab.log.empty() || lab.shining() == 0));
+    }
+    // In the middle of a print: the first answer that is wrong ends it, and the order to darken is given all the same.
+    LightLab lit({.fault = kind, .fault_after = 40});
+    lit.light->prepare();
+    lit.light->on();
+    std::optional<Fault> found;
+    for (int i = 0; i < 40 && !found; ++i) found = fault_of([&] { (void)lit.light->identify(); });
+    CHECK(found == fault);
+    CHECK(fault_of([&] { lit.light->dark(); }).has_value());
+    if (kind != std::string("unplug") && kind != std::string("error")) CHECK(lit.shining() == 0);  // it heard the order
   }
   for (const int command : {0x0200, 0x1A07, 0x1A1B, 0x1A00, 0x1A0E, 0x1A0A, 0x0B01}) {
     SimDlpSettings sim;
@@ -96,17 +111,4 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
     LightLab lab(sim);
     CHECK(message_of([&] { lab.light->prepare(); }).find("refused") != std::string::npos);
   }
-}
-
-TEST_CASE("A lamp that cannot be darkened any more is an error, and the order is given all the same") {
-  SimDlpSettings sim;
-  sim.silent_after = 40;
-  LightLab lab(sim);
-  lab.light->prepare();
-  lab.light->on();
-  std::optional<Fault> fault;
-  for (int i = 0; i < 40 && !fault; ++i) fault = fault_of([&] { (void)lab.light->identify(); });
-  CHECK(fault == Fault::busy);
-  CHECK(fault_of([&] { lab.light->dark(); }) == Fault::busy);
-  CHECK(lab.shining() == 0);  // it heard the order; only its answer was lost
 }

@@ -1,6 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -16,10 +19,13 @@ namespace {
 
 struct TicLab {
   explicit TicLab(const SimTicSettings& sim = {}, double steps_per_deg = 100)
-      : stage(make_tic_stage(make_sim_tic(sim, clock, [this](const Json& line) { log.push_back(line); }), clock,
-                             steps_per_deg, nullptr)) {}
+      : device(make_sim_tic(sim, clock, [this](const Json& line) { log.push_back(line); })),
+        link(device.get()),
+        stage(make_tic_stage(std::move(device), clock, steps_per_deg, nullptr)) {}
   VirtualClock clock;
   std::vector<Json> log;
+  std::unique_ptr<UsbLink> device;
+  UsbLink* link;  // the stage's
   std::unique_ptr<Stage> stage;
 };
 
@@ -57,6 +63,39 @@ TEST_CASE("The Tic's errors are named and stop the start") {
   TicLab lab(sim);
   CHECK(message_of([&] { lab.stage->enable(); }).find("kill switch") != std::string::npos);
   CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
+}
+
+TEST_CASE("Each answer of a Tic wrong in turn: the right fault, in time, and the table stands") {
+  const std::vector<std::pair<const char*, Fault>> cases{{"silent", Fault::busy},
+                                                         {"error", Fault::protocol},
+                                                         {"garbage", Fault::protocol},
+                                                         {"truncated", Fault::protocol},
+                                                         {"unplug", Fault::absent}};
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  plan.period_s = 0.05;
+  plan.run_up_turns = 0.5;
+  for (const auto& [kind, fault] : cases) {
+    for (const int after : {0, 1, 2, 5, 10, 60, 200}) {
+      CAPTURE(kind);
+      CAPTURE(after);
+      SimTicSettings sim;
+      sim.fault = kind;
+      sim.fault_after = after;
+      TicLab lab(sim);
+      const auto found = fault_of([&] {
+        home(*lab.stage, lab.clock, 60);
+        spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {});
+      });
+      // Noise in a status may read as "still searching the reference", until the time for that is over.
+      const bool searching = kind == std::string("garbage") && found == Fault::busy;
+      CHECK((found == fault || searching));
+      // Out of reach it hears nothing more, and stops by itself within its second and the ramp.
+      lab.clock.sleep_until(lab.clock.now_s() + 2.5);
+      (void)fault_of([&] { (void)lab.link->control_in(0xA1, 0, 1, 1); });
+      CHECK((lab.log.empty() || lab.log.back()["event"] != "moving"));
+    }
+  }
 }
 
 TEST_CASE("More steps a second than a Tic can do are refused") {
