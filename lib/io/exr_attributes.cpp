@@ -110,6 +110,9 @@ void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageI
   set_number(header, "vam:z_mm", about.z_mm);
   if (about.has_angle) set_number(header, "vam:angle_deg", about.angle_deg);
   if (about.has_time) set_number(header, "vam:time_s", about.time_s);
+  if (!about.has_number) return;
+  set_integer(header, "vam:number", about.number);
+  set_integer(header, "vam:incomplete", about.incomplete ? 1 : 0);
 }
 
 StackInfo stack_info(const Imf::Header& header) {
@@ -161,6 +164,11 @@ ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index
   if (const auto time = number(header, "vam:time_s")) {
     about.time_s = *time;
     about.has_time = true;
+  }
+  if (const auto taken = number(header, "vam:number")) {
+    about.number = static_cast<int>(*taken);
+    about.has_number = true;
+    about.incomplete = number(header, "vam:incomplete").value_or(0) != 0;
   }
   return about;
 }

@@ -39,7 +39,8 @@ Imf::Compression compression_named(const std::string& name) {
 
 bool same(const ImageInfo& a, const ImageInfo& b) {
   return a.z_mm == b.z_mm && a.has_angle == b.has_angle && a.has_time == b.has_time &&
-         (!a.has_angle || a.angle_deg == b.angle_deg) && (!a.has_time || a.time_s == b.time_s);
+         (!a.has_angle || a.angle_deg == b.angle_deg) && (!a.has_time || a.time_s == b.time_s) &&
+         a.has_number == b.has_number && a.number == b.number && a.incomplete == b.incomplete;
 }
 
 void check_half(const Image& image, const std::string& what) {
@@ -131,6 +132,7 @@ void StackWriter::State::settle(const ImageInfo& own) {
   for (ImageInfo& each : about) {
     each.has_angle = own.has_angle;
     each.has_time = own.has_time;
+    each.has_number = own.has_number;
   }
   const auto chunks = static_cast<std::size_t>(exr::chunk_count(info.height, compression));
   offsets.resize(chunks * about.size());
@@ -161,7 +163,8 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
   if (!settled) settle(own);
   if (!same(own, about[done])) {
     const ImageInfo& promised = about[done];
-    if (own.has_angle != promised.has_angle || own.has_time != promised.has_time || (out.is_stream() && !spool)) {
+    if (own.has_angle != promised.has_angle || own.has_time != promised.has_time ||
+        own.has_number != promised.has_number || (out.is_stream() && !spool)) {
       throw Error{Fault::bug, what + " comes with other facts than were announced"};
     }
     about[done] = own;

@@ -1,9 +1,12 @@
 #include "io/view_source.hpp"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
+#include "io/capture_folder.hpp"
 #include "io/exr_stack.hpp"
 #include "io/picture.hpp"
 #include "io/video.hpp"
@@ -40,15 +43,36 @@ struct ViewSource::State {
   std::unique_ptr<StackReader> stack;
   std::unique_ptr<PictureFolder> folder;
   std::unique_ptr<VideoReader> video;
+  std::optional<CaptureManifest> capture;
+  std::map<long, CaptureRecord>::const_iterator recorded;
+
+  // What came in part is no view.
+  void leave_out(const std::string& name) { warn(name + ": came incomplete from the camera and is left out"); }
 
   bool next_of_stack(CameraFrame& frame) {
     model::ImageInfo about;
-    while (!stack->next(frame.image, about)) {
-      if (!stack->next_stack()) return false;
-    }
+    do {
+      while (!stack->next(frame.image, about)) {
+        if (!stack->next_stack()) return false;
+      }
+      if (about.incomplete) leave_out(path + ": frame " + std::to_string(about.number));
+    } while (about.incomplete);
     if (about.has_time) frame.time_s = about.time_s;
     const bool known = about.has_angle || stack->info().angle_step_deg != 0;
     frame.angle_deg = known ? about.angle_deg : index * needed_step();
+    return true;
+  }
+
+  bool next_of_capture(CameraFrame& frame) {
+    while (recorded != capture->frames.end() && !recorded->second.complete) {
+      leave_out(path + "/" + capture_file_name(recorded++->first));
+    }
+    if (recorded == capture->frames.end()) return false;
+    const CaptureRecord& record = recorded++->second;
+    frame.name = path + "/" + capture_file_name(record.place);
+    frame.image = to_image(read_picture(frame.name));
+    frame.time_s = record.t_monotonic_s;
+    frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
     return true;
   }
 
@@ -61,7 +85,10 @@ struct ViewSource::State {
 ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::make_unique<State>()) {
   state_->path = path;
   state_->step_deg = step_deg;
-  if (path != "-" && std::filesystem::is_directory(path)) {
+  if (path != "-" && is_capture_folder(path)) {
+    state_->capture = read_manifest(path);
+    state_->recorded = state_->capture->frames.begin();
+  } else if (path != "-" && std::filesystem::is_directory(path)) {
     state_->folder = std::make_unique<PictureFolder>(path);
     (void)state_->needed_step();
   } else if (is_video(path)) {
@@ -78,7 +105,9 @@ ViewSource::~ViewSource() = default;
 bool ViewSource::next(CameraFrame& frame) {
   State& s = *state_;
   frame.name = s.path + ": frame " + std::to_string(s.index);
-  if (s.stack) {
+  if (s.capture) {
+    if (!s.next_of_capture(frame)) return false;
+  } else if (s.stack) {
     if (!s.next_of_stack(frame)) return false;
   } else if (s.folder) {
     if (s.index >= s.folder->count()) return false;
@@ -95,7 +124,10 @@ bool ViewSource::next(CameraFrame& frame) {
   return true;
 }
 
-double ViewSource::pixel_mm() const { return state_->stack ? state_->stack->info().pixel_mm : 0; }
+double ViewSource::pixel_mm() const {
+  if (state_->capture) return state_->capture->head.value("pixel_mm", 0.0);
+  return state_->stack ? state_->stack->info().pixel_mm : 0;
+}
 
 std::vector<std::string> ViewSource::history() const {
   return state_->stack ? state_->stack->info().history : std::vector<std::string>{};

@@ -1,5 +1,5 @@
-// Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of numbered
-// pictures, or a video.
+// Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of vam-capture or
+// of numbered pictures, or a video. Frames that a camera delivered in part are left out, each with a warning.
 #pragma once
 
 #include <memory>
@@ -19,9 +19,9 @@ struct CameraFrame {
 
 class ViewSource {
  public:
-  /// A folder and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of its own
-  /// and without an angle step. Throws Error: no_input, data (not a frame stack of a camera), usage (angles are needed
-  /// but step_deg is 0).
+  /// A folder of pictures and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of
+  /// its own and without an angle step. Throws Error: no_input, data (not a frame stack of a camera), usage (angles are
+  /// needed but step_deg is 0).
   ViewSource(const std::string& path, double step_deg);
   ~ViewSource();
   /// False after the last frame; a live stream continues with its next stack by itself.

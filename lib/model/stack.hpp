@@ -38,6 +38,9 @@ struct ImageInfo {
   double time_s = 0;
   bool has_angle = false;  // frames with a measured angle of their own
   bool has_time = false;
+  bool has_number = false;  // camera frames
+  int number = 0;           // since the camera started; a gap is frames that were lost
+  bool incomplete = false;  // parts of the picture did not arrive
 };
 
 }  // namespace vam::model

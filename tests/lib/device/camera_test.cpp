@@ -1,0 +1,268 @@
+#include "device/camera.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/error.hpp"
+#include "device/camera_backends.hpp"
+#include "device/capture.hpp"
+#include "device/frame_count.hpp"
+#include "device/grey_pixels.hpp"
+#include "device/sim_camera.hpp"
+#include "fake_v4l2.hpp"
+#include "fault_of.hpp"
+
+using namespace vam;
+using namespace vam::device;
+
+namespace {
+
+std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const CameraSettings& settings = {}) {
+  return open_v4l2_camera(parse_address("v4l2:/dev/video9", camera_schemes()), settings,
+                          std::make_unique<FakeV4l2>(script, clock), clock);
+}
+
+// A recording of so many frames, a tenth of a second and step_deg apart; those in `lost` are not in it.
+CameraBench recording(int count, double step_deg, std::set<long> lost, std::set<long> cut) {
+  return {[=](const std::string&) -> CameraFeed {
+            return [=, next = 0L](CameraFrame& frame) mutable {
+              while (lost.contains(next)) ++next;
+              if (next >= count) return false;
+              frame = {};
+              frame.levels = GreyImage(2, 2, 8);
+              frame.number = next;
+              frame.time_s = 7 + 0.1 * static_cast<double>(next);
+              frame.angle_deg = step_deg * static_cast<double>(next);
+              frame.complete = !cut.contains(next);
+              ++next;
+              return true;
+            };
+          },
+          {},
+          {}};
+}
+
+struct Taken {
+  std::vector<long> places, numbers, gaps;
+  CaptureTally tally;
+};
+
+Taken take(const CameraBench& bench, const CapturePlan& plan, AngleSource* angles = nullptr) {
+  VirtualClock clock;
+  const auto camera = open_camera("replay:x", {}, bench, clock);
+  Taken taken;
+  taken.tally = capture(*camera, angles, plan,
+                        {[&](long place) { return std::count(taken.places.begin(), taken.places.end(), place) == 0; },
+                         [&](Shot&& shot) {
+                           taken.places.push_back(shot.place);
+                           taken.numbers.push_back(shot.frame.number);
+                         },
+                         [&](long first, long last) {
+                           taken.gaps.push_back(first);
+                           taken.gaps.push_back(last);
+                         }});
+  return taken;
+}
+
+}  // namespace
+
+TEST_CASE("Frame ids: gaps are counted, GigE ids come round after 65535, nonsense counts as the next frame") {
+  FrameCount count;
+  CHECK(count.number(65530) == 0);
+  CHECK(count.number(65533) == 3);
+  CHECK(count.number(std::nullopt) == 4);  // 65534
+  CHECK(count.number(2) == 7);             // 65535, 1, 2
+  CHECK(count.number(60000) == 8);         // too far ahead: an id of long ago
+  CHECK(count.number(5) == 10);            // after 3: 4 was lost
+  FrameCount usb;
+  CHECK(usb.number(0) == 0);
+  CHECK(usb.number(1) == 1);
+  CHECK(usb.number(70000 - 69000) == 1000);
+}
+
+TEST_CASE("Stamps: the shortest delay stands for all, and follows a drifting clock") {
+  StampClock clock(10);
+  CHECK(clock.host_s(5, 105.030) == doctest::Approx(105.030));
+  CHECK(clock.host_s(6, 106.002) == doctest::Approx(106.002));
+  CHECK(clock.host_s(7, 107.090) == doctest::Approx(107.002));
+  CHECK(clock.host_s(18, 118.050) == doctest::Approx(118.050));  // all before are older than 10 s
+}
+
+TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full stays full") {
+  GreyImage image;
+  const std::vector<std::uint8_t> padded{1, 2, 0, 3, 4, 0};
+  CHECK(to_grey(padded, 2, 2, 3, PixelLayout::bytes, 8, image));
+  CHECK(image.values == std::vector<std::uint16_t>{1, 2, 3, 4});
+  CHECK(to_grey(padded, 3, 1, 0, PixelLayout::even_bytes, 8, image));
+  CHECK(image.values == std::vector<std::uint16_t>{1, 0, 4});
+  const std::vector<std::uint8_t> deep{0xff, 0x0f, 0x00, 0x08};
+  CHECK(to_grey(deep, 2, 1, 0, PixelLayout::words, 12, image));
+  CHECK(image.values == std::vector<std::uint16_t>{0xffff, 0x8008});
+  CHECK_FALSE(to_grey(deep, 3, 1, 0, PixelLayout::words, 12, image));
+}
+
+TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
+  VirtualClock clock;
+  V4l2Script script;
+  CameraSettings settings;
+  settings.exposure_us = 20000;
+  settings.fps = 25;
+  const auto camera = v4l2(script, clock, settings);
+  CHECK(camera->identify()["model"] == "fake");
+  CHECK(camera->mode().columns == 4);
+  CHECK(camera->mode().fps == doctest::Approx(25));
+  CHECK(script.exposure == 200);
+  camera->start();
+  std::vector<long> numbers;
+  std::vector<bool> complete;
+  for (int i = 0; i < 4; ++i) {
+    const auto frame = camera->next();
+    REQUIRE(frame.has_value());
+    numbers.push_back(frame->number);
+    complete.push_back(frame->complete);
+    if (i == 1) {
+      CHECK(frame->time_s == 11.5);
+      CHECK(frame->levels.values == std::vector<std::uint16_t>{11, 12, 13, 14, 17, 18, 19, 20});
+    }
+  }
+  CHECK(numbers == std::vector<long>{0, 1, 4, 5});
+  CHECK(complete == std::vector<bool>{true, true, true, false});
+  const double before_s = clock.now_s();
+  CHECK(fault_of([&] { (void)camera->next(); }) == Fault::busy);
+  CHECK(clock.now_s() - before_s < 1.5);
+  script.gone = true;
+  CHECK(fault_of([&] { (void)camera->next(); }) == Fault::absent);
+}
+
+TEST_CASE("V4L2: what a camera cannot do is named") {
+  VirtualClock clock;
+  V4l2Script script;
+  const auto fault = [&](const CameraSettings& settings) {
+    return fault_of([&] { (void)v4l2(script, clock, settings); });
+  };
+  CameraSettings fast;
+  fast.fps = 60;
+  script.rate_limit = 30;
+  CHECK(fault(fast) == Fault::protocol);
+  CameraSettings binned;
+  binned.binning = 2;
+  CHECK(fault(binned) == Fault::usage);
+  CameraSettings deep;
+  deep.format = "Y16";
+  CHECK(fault(deep) == Fault::usage);
+  script.formats = {V4L2_PIX_FMT_MJPEG};
+  CHECK(message_of([&] { (void)v4l2(script, clock); }).find("none that is known") != std::string::npos);
+  script.formats = {V4L2_PIX_FMT_GREY};
+  script.streams = false;
+  CHECK(fault({}) == Fault::usage);
+  script.refuse_open = EBUSY;
+  CHECK(fault({}) == Fault::busy);
+  script.refuse_open = ENOENT;
+  CHECK(fault({}) == Fault::absent);
+}
+
+TEST_CASE("A series by count, by number and by angle; what is lost is counted") {
+  const auto bench = recording(20, 10, {3, 4}, {7});
+  CapturePlan plan;
+  plan.frames = 6;
+  Taken taken = take(bench, plan);
+  CHECK(taken.places == std::vector<long>{0, 1, 2, 3, 4, 5});
+  CHECK(taken.numbers == std::vector<long>{0, 1, 2, 5, 6, 7});
+  CHECK(taken.gaps == std::vector<long>{3, 4});
+  CHECK(taken.tally.dropped == 2);
+  CHECK(taken.tally.incomplete == 1);
+  CHECK(taken.tally.missing == 0);
+
+  plan.by_number = true;
+  taken = take(bench, plan);
+  CHECK(taken.places == std::vector<long>{0, 1, 2, 5});
+  CHECK(taken.tally.missing == 2);
+
+  plan.by_number = false;
+  plan.every_deg = 20;  // two frames for each place but those at the ends
+  taken = take(bench, plan);
+  CHECK(taken.places == std::vector<long>{0, 1, 3, 4, 5});
+  CHECK(taken.numbers == std::vector<long>{0, 2, 6, 8, 10});
+  CHECK(taken.tally.missing == 1);
+
+  plan.max_lost = 2;
+  CHECK(fault_of([&] { (void)take(bench, plan); }) == Fault::busy);
+  plan.max_lost.reset();
+  plan.every_deg.reset();
+  plan.frames = 0;
+  CHECK(take(bench, plan).tally.frames == 18);
+}
+
+TEST_CASE("A followed series begins at angle 0 and keeps the frame nearest to each angle") {
+  class Steady final : public AngleSource {
+   public:
+    void update() override {}
+    std::optional<AngleSample> at(double t_s) const override {
+      if (t_s < 7.15) return std::nullopt;
+      return AngleSample{t_s, 33 * (t_s - 7.5), 0.01};
+    }
+  } angles;
+  CapturePlan plan;
+  plan.frames = 4;
+  plan.by_number = true;
+  plan.latency_s = 0.05;
+  Taken taken = take(recording(20, 0, {}, {}), plan, &angles);
+  CHECK(taken.numbers == std::vector<long>{6, 7, 8, 9});  // 7.6 s less 50 ms is the first after 7.5 s
+  CHECK(taken.places == std::vector<long>{0, 1, 2, 3});
+  plan.every_deg = 10;
+  taken = take(recording(20, 0, {}, {}), plan, &angles);
+  CHECK(taken.places == std::vector<long>{0, 1, 2, 3});
+  CHECK(taken.numbers == std::vector<long>{5, 9, 12, 15});  // 7.45 s, 7.85 s, 8.15 s, 8.45 s
+}
+
+TEST_CASE("A simulated camera: virtual pace waits for nothing, lost and cut frames, a pulled cable") {
+  VirtualClock clock;
+  CameraSettings settings;
+  settings.fps = 10;
+  settings.binning = 8;
+  const auto camera = open_camera("sim:?pace=virtual&lose=1&cut=2&vanish=4", settings, {}, clock);
+  CHECK(camera->mode().columns == 90);
+  camera->start();
+  CHECK(camera->next()->number == 0);
+  const auto cut = camera->next();
+  CHECK(cut->number == 2);
+  CHECK_FALSE(cut->complete);
+  const auto whole = camera->next();
+  CHECK(whole->number == 3);
+  CHECK(whole->time_s == doctest::Approx(clock.now_s() + 0.3));
+  CHECK(fault_of([&] { (void)camera->next(); }) == Fault::absent);
+  settings.trigger = "software";
+  const auto triggered = open_camera("sim:", settings, {}, clock);
+  triggered->start();
+  CHECK(fault_of([&] { (void)triggered->next(); }) == Fault::busy);
+  triggered->trigger();
+  CHECK(triggered->next()->complete);
+}
+
+TEST_CASE("A camera's address and settings are checked before anything is opened") {
+  VirtualClock clock;
+  const auto fault = [&](const std::string& device, const CameraSettings& settings = {}) {
+    return fault_of([&] { (void)open_camera(device, settings, recording(1, 0, {}, {}), clock); });
+  };
+  CHECK(fault("usb:1") == Fault::usage);
+  CHECK(fault("sim:x") == Fault::usage);
+  CHECK(fault("sim:?colums=3") == Fault::usage);
+  CHECK(fault("sim:?lose=a") == Fault::usage);
+  CHECK(fault("sim:?part=cube") == Fault::usage);
+  CHECK(fault("sim:?part=sphere:height=3") == Fault::usage);
+  CHECK(fault("sim:?bits=12") == Fault::usage);
+  CameraSettings wrong;
+  wrong.trigger = "Line0";
+  CHECK(fault("sim:", wrong) == Fault::usage);
+  wrong = {};
+  wrong.binning = 1000;
+  CHECK(fault("sim:", wrong) == Fault::usage);
+  CHECK(fault("replay:x?pace=fast") == Fault::usage);
+  CHECK(fault("replay:x", wrong) == Fault::usage);
+  CHECK(fault("v4l2:/dev/null?buffer=3") == Fault::usage);
+  CHECK(fault_of([&] { (void)open_camera("replay:x", {}, recording(0, 0, {}, {}), clock); }) == Fault::data);
+}

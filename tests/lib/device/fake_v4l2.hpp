@@ -1,0 +1,128 @@
+// A V4L2 camera behind the system calls that the backend makes, for tests: a counter picture, 4 x 2 pixels.
+#pragma once
+
+#include <linux/videodev2.h>
+#include <sys/mman.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <vector>
+
+#include "device/v4l2_driver.hpp"
+
+struct V4l2Script {
+  std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY};
+  std::vector<std::uint32_t> sequence{10, 11, 14, 15};  // of the frames to come
+  std::uint32_t bad_sequence = 15;                      // arrives with the error flag
+  int refuse_open = 0;                                  // errno
+  bool streams = true;
+  int rate_limit = 1000;  // frames a second; faster is not taken
+  bool gone = false;      // after the last frame: unplugged, else silent
+  int exposure = 0;       // seen
+};
+
+class FakeV4l2 final : public vam::device::V4l2Driver {
+ public:
+  explicit FakeV4l2(V4l2Script& script, vam::device::Clock& clock) : script_(script), clock_(clock) {}
+
+  int open(const char*) override {
+    errno = script_.refuse_open;
+    return script_.refuse_open == 0 ? 3 : -1;
+  }
+  void* map(std::size_t, std::size_t offset) override { return memory_.at(offset).data(); }
+  void unmap(void*, std::size_t) override {}
+  void close() override {}
+  int wait(double seconds) override {
+    if (next_ < script_.sequence.size()) return 1;
+    errno = ENODEV;
+    if (script_.gone) return -1;
+    clock_.sleep_until(clock_.now_s() + seconds);
+    return 0;
+  }
+
+  int control(unsigned long request, void* argument) override {
+    switch (request) {
+      case VIDIOC_QUERYCAP: {
+        auto& what = *static_cast<v4l2_capability*>(argument);
+        std::strcpy(reinterpret_cast<char*>(what.card), "fake");
+        what.capabilities = V4L2_CAP_VIDEO_CAPTURE | (script_.streams ? V4L2_CAP_STREAMING : 0U);
+        return 0;
+      }
+      case VIDIOC_ENUM_FMT: {
+        auto& format = *static_cast<v4l2_fmtdesc*>(argument);
+        if (format.index >= script_.formats.size()) return fail(EINVAL);
+        format.pixelformat = script_.formats[format.index];
+        return 0;
+      }
+      case VIDIOC_G_FMT:
+      case VIDIOC_S_FMT: {
+        auto& pixels = static_cast<v4l2_format*>(argument)->fmt.pix;
+        pixels.width = 4;
+        pixels.height = 2;
+        deep_ = pixels.pixelformat != V4L2_PIX_FMT_GREY;
+        pixels.bytesperline = deep_ ? 8 : 6;  // padded rows
+        return 0;
+      }
+      case VIDIOC_S_CTRL:
+      case VIDIOC_G_CTRL: {
+        auto& value = *static_cast<v4l2_control*>(argument);
+        if (value.id != V4L2_CID_EXPOSURE_ABSOLUTE) return fail(EINVAL);
+        (request == VIDIOC_S_CTRL ? script_.exposure : value.value) =
+            request == VIDIOC_S_CTRL ? value.value : script_.exposure;
+        return 0;
+      }
+      case VIDIOC_S_PARM:
+      case VIDIOC_G_PARM: {
+        auto& period = static_cast<v4l2_streamparm*>(argument)->parm.capture.timeperframe;
+        const auto limit = static_cast<__u32>(script_.rate_limit);
+        if (request == VIDIOC_G_PARM || period.denominator > limit * period.numerator) period = {1, limit};
+        return 0;
+      }
+      case VIDIOC_REQBUFS:
+        static_cast<v4l2_requestbuffers*>(argument)->count = static_cast<__u32>(memory_.size());
+        return 0;
+      case VIDIOC_QUERYBUF: {
+        auto& buffer = *static_cast<v4l2_buffer*>(argument);
+        buffer.length = static_cast<__u32>(memory_[0].size());
+        buffer.m.offset = buffer.index;
+        return 0;
+      }
+      case VIDIOC_QBUF:
+        queued_.push_back(static_cast<v4l2_buffer*>(argument)->index);
+        return 0;
+      case VIDIOC_DQBUF:
+        return hand_out(*static_cast<v4l2_buffer*>(argument));
+      default:
+        return 0;
+    }
+  }
+
+ private:
+  static int fail(int reason) {
+    errno = reason;
+    return -1;
+  }
+  int hand_out(v4l2_buffer& buffer) {
+    buffer.index = queued_.front();
+    queued_.pop_front();
+    buffer.sequence = script_.sequence[next_++];
+    buffer.bytesused = deep_ ? 16 : 12;
+    auto& bytes = memory_[buffer.index];
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(buffer.sequence + i);
+    buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    if (buffer.sequence == script_.bad_sequence) buffer.flags |= V4L2_BUF_FLAG_ERROR;
+    buffer.timestamp = {static_cast<long>(buffer.sequence), 500000};
+    return 0;
+  }
+
+  V4l2Script& script_;
+  vam::device::Clock& clock_;
+  std::array<std::vector<std::uint8_t>, 4> memory_{std::vector<std::uint8_t>(16), std::vector<std::uint8_t>(16),
+                                                   std::vector<std::uint8_t>(16), std::vector<std::uint8_t>(16)};
+  std::deque<__u32> queued_;
+  std::size_t next_ = 0;
+  bool deep_ = false;
+};

@@ -1,0 +1,104 @@
+#!/bin/sh
+# vam-capture: series, folders that are gone on with, marks on what was lost, and bad input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
+sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
+take="vam-capture --device $sim --binning 12 --fps 10"
+
+fails 64 'how many images' $take -o views.exr
+fails 64 'streams; name no folder' $take --live -o views/
+fails 64 'no angles to choose by' $take --every 10 -o views.exr
+fails 64 'counts with --every only' $take --frames 3 --turns 2 -o views.exr
+fails 64 'says how many' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
+fails 64 'tells the angle already' $take --frames 3 --follow - --speed 90 -o views.exr
+fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
+fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 -o views.exr
+fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
+fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
+fails 66 'cannot be opened' $take --frames 1 --follow missing -o views.exr
+fails 69 'cannot be opened' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
+fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
+fails 73 'cannot be written' $take --frames 1 --log missing/log -o views.exr
+
+# A stack, and the same frames out of it again.
+quiet 'a stack of frames' $take --frames 12 -o views.exr
+quiet 'from a recording' vam-capture --device replay:views.exr --frames 12 -o again.exr --compression none
+quiet 'and once more' vam-capture --device replay:again.exr --frames 12 -o twice.exr --compression none
+quiet 'a stack on a pipe' sh -c 'vam-capture --device replay:views.exr --frames 12 | cat >piped.exr'
+python3 "$VAM_SOURCE/tests/tools/exr.py" sum again.exr >sum1
+python3 "$VAM_SOURCE/tests/tools/exr.py" sum piped.exr >sum2
+same 'has the same pixels' sum1 sum2
+is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
+
+# Lost and incomplete frames: said, counted, marked.
+lossy='sim:?pace=virtual&lose=3,4&cut=6'
+vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said
+is 'a capture with losses ends well' $? 0
+ok 'what was lost is said' grep -q '2 frames were dropped and 1 came incomplete' said
+is 'and reported' "$(json lossy.json frames) $(json lossy.json dropped) $(json lossy.json incomplete)" '10 2 1'
+is 'and logged' "$(grep -c '"event":"dropped","first":3,"last":4' lossy.log) $(grep -c '"event":"incomplete","number":6' lossy.log)" '1 1'
+python3 - "$VAM_SOURCE" >marks <<'PY'
+import sys, struct, runpy
+source = sys.argv[1]
+sys.argv = ["exr.py", "attr", "lossy.exr", "vam:kind"]  # it runs as a program
+read = runpy.run_path(source + "/tests/tools/exr.py")["read"]
+heads = read("lossy.exr")[0]
+number = lambda head, name: struct.unpack("<i", head[name])[0]
+print(" ".join(str(number(h, "vam:number")) + "!" * number(h, "vam:incomplete") for h in heads))
+PY
+is 'every image has its number, and the incomplete one its mark' "$(tail -n 1 marks)" '0 1 2 5 6! 7 8 9 10 11'
+fails 75 '2 frames dropped and 1 incomplete' vam-capture --device "$lossy" --binning 12 --frames 10 --max-lost 2 -o lost.exr
+
+# A folder holds what came; the same command again takes what is missing, and only that.
+vam-capture --device "$lossy" --binning 12 --frames 10 -o folder/ 2>said
+is 'a folder with holes is an error' "$? $(grep -c '3 of 10 frames are missing' said)" '75 1'
+is 'its dropped frames are in the manifest' "$(grep -c '"dropped":\[3,4\]' folder/manifest.jsonl)" 1
+is 'the incomplete one is marked' "$(grep '"complete":false' folder/manifest.jsonl | grep -o '"number":[0-9]*')" '"number":6'
+vam-capture --device "replay:views.exr" --frames 10 -o folder/ 2>said
+is 'another camera is refused' "$? $(grep -c 'was taken with camera' said)" '73 1'
+quiet 'a whole recording' vam-capture --device replay:views.exr --frames 12 -o whole/
+cp -r whole half; rm half/000003.png half/00001*.png
+sed -e '5d' -e '12,13d' whole/manifest.jsonl >half/manifest.jsonl
+printf '{"frame":10,"file":"0000' >>half/manifest.jsonl
+quiet 'goes on' vam-capture --device replay:views.exr --frames 12 -o half/
+is 'and took only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -l <whole/manifest.jsonl)))" 0
+sort half/manifest.jsonl >half.lines; sort whole/manifest.jsonl >whole.lines
+same 'the manifests tell the same' half.lines whole.lines
+for file in whole/*.png; do cmp -s "$file" "half/$(basename "$file")" || echo "$file"; done >different
+is 'the pictures are the same' "$(cat different)" ''
+touch -d '2001-01-01' half/*.png
+quiet 'a complete folder is left alone' vam-capture --device replay:views.exr --frames 12 -o half/
+is 'no picture was written again' "$(find half -name '*.png' -newermt 2002-01-01)" ''
+mkdir other; touch other/file
+fails 73 'holds other things' vam-capture --device replay:views.exr --frames 12 -o other/
+
+# Killed at any moment: what the manifest lists is there, and the rest can be taken.
+vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/ & victim=$!
+tries=0; until [ -s killed/manifest.jsonl ] && [ "$(wc -l <killed/manifest.jsonl)" -gt 4 ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.01; done
+kill -KILL $victim; wait $victim 2>/dev/null
+for file in $(grep -o '[0-9]*\.png' killed/manifest.jsonl); do cmp -s "killed/$file" "whole/$file" || echo "$file"; done >different
+is 'after kill -9 every listed picture is whole' "$(cat different)" ''
+quiet 'and the rest is taken' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
+for file in whole/*.png; do cmp -s "$file" "killed/$(basename "$file")" || echo "$file"; done >different
+is 'with the same result' "$(cat different)" ''
+
+# Angles: one frame nearest to every multiple; a live stream into vam-ost.
+quiet 'by angle' $take --speed 90 --every 9 -o turn/
+is 'as many as fit the turn' "$(grep -c '"frame"' turn/manifest.jsonl)" 40
+python3 - >worst <<'PY'
+import json
+lines = [json.loads(line) for line in open("turn/manifest.jsonl")][1:]
+print(max(abs(line["angle_deg"] - 9 * line["frame"]) for line in lines))
+PY
+holds 'each within half a frame of its angle' "$(cat worst) <= 4.5"
+echo "vam-capture --device '$sim' --binning 12 --fps 10 --speed 90 --every 9 --turns 1.2 --live |
+  vam-ost --live -o live/ --log live.log" >live.sh
+quiet 'live frames reach vam-ost' sh live.sh
+holds 'which saw a turn' "$(grep -c turns live.log) >= 1"
+quiet 'a capture folder is read by vam-ost with its angles' vam-ost turn -o seen.vdb
+
+vam-capture --device 'sim:?speed_deg_s=90' --binning 12 --frames 500 -o stopped.exr --log begun 2>said & tool=$!
+tries=0; until [ -s begun ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.02; done
+kill -TERM $tool; wait $tool 2>/dev/null
+is 'a signal ends it, and leaves nothing' "$? $(ls | grep -c stopped)" '143 0'
+done_testing

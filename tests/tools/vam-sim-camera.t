@@ -1,0 +1,75 @@
+#!/bin/sh
+# vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the judge.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
+# The port is the machine's: one such test at a time.
+exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9
+
+serve() {  # serve OPTIONS...: starts the camera, waits until it answers
+  : >address
+  vam-sim-camera --die-with-parent "$@" >address 9>&- & server=$!
+  tries=0; while [ ! -s address ] && [ $tries -lt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+}
+end() { kill $server; wait $server 2>/dev/null; }
+take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"
+
+fails 64 'no IPv4 address' vam-sim-camera --address here
+fails 64 'no camera can be served' vam-sim-camera --address 192.0.2.1
+fails 64 'no frame number' vam-sim-camera --lose x
+fails 64 'not like sphere' vam-sim-camera --part cube
+fails 64 'shows --pattern already' vam-sim-camera --pattern grid --frames x.exr
+fails 66 'missing' vam-sim-camera --frames missing
+fails 73 'cannot be written' vam-sim-camera --log missing/log
+
+serve --lose 5 --cut 8,11 --speed 45 --lit 0.5 --log truth
+vam-capture identify --device aravis:127.0.0.1 >who
+is 'it says who it is' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
+fails 75 'UDP port 3956 is taken' vam-sim-camera
+fails 64 'no trigger Line9; the camera has Line0, Software' $take --trigger Line9 --frames 1 -o no.exr
+fails 64 'no pixel format Mono12' $take --format Mono12 --frames 1 -o no.exr
+$take --frames 40 -o views/ --log log 2>said & tool=$!
+tries=0; until [ -s views/manifest.jsonl ] || [ $tries -gt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+vam-capture identify --device aravis:127.0.0.1 2>second
+is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
+wait $tool
+is 'lost frames are missing frames' "$? $(grep -c '3 of 40 frames are missing (1 frames were dropped and 2 came incomplete)' said)" '75 1'
+python3 - >judged <<'PY'
+import json
+sent = {e["number"]: e for e in map(json.loads, open("truth"))}
+lines = [json.loads(line) for line in open("views/manifest.jsonl")][1:]
+taken = {e["number"]: e for e in lines if "frame" in e}
+good = [n for n in sent if n < 40 and sent[n]["event"] == "frame"]
+print(len(good), sum(taken[n]["complete"] and taken[n]["levels"] == sent[n]["levels"] for n in good))
+print(sorted(n for n in taken if not taken[n]["complete"]), [e["dropped"] for e in lines if "dropped" in e])
+delays = sorted(taken[n]["t_monotonic_s"] - sent[n]["t_monotonic_s"] for n in good)
+print(delays[-4] - delays[3] < 0.02)  # the first few have not found the shortest way yet
+PY
+is 'every other frame arrived, exactly as sent' "$(sed -n 1p judged)" '37 37'
+is 'the lost and the cut ones are marked' "$(sed -n 2p judged)" '[8, 11] [[5, 5]]'
+is 'times are those of the sender, but for a steady delay' "$(sed -n 3p judged)" True
+end
+
+serve --vanish 12
+begun=$(date +%s)
+$take --frames 40 -o gone.exr 2>said; status=$?
+is 'a camera whose cable is pulled is absent' "$status $(grep -c 'the camera is gone' said)" '69 1'
+holds 'which is known within the time-out and 5 s, and what a busy machine adds' "$(($(date +%s) - begun)) <= 12"
+is 'nothing is left of the stack' "$(ls | grep -c gone)" 0
+wait $server 2>/dev/null
+
+serve --pattern sweep --pitch 200 --width 40 --shown flips --background 0 --set projector.rows=60 --set projector.axis_row=30 --log truth2
+$take --format Mono16 --frames 60 -o swept/ & tool=$!
+sleep 0.5
+vam-project --pattern sweep --pitch 200 --width 40 --hold 0.2 -o null: --log flips --set projector.rows=60 --set projector.axis_row=30
+wait $tool
+is 'sixteen bits, none lost' "$? $(grep -c '"complete":true' swept/manifest.jsonl)" '0 60'
+python3 - >seen <<'PY'
+import json
+sent = {e["number"]: e for e in map(json.loads, open("truth2"))}
+taken = [json.loads(line) for line in open("swept/manifest.jsonl")][1:]
+print(all(e["levels"] == sent[e["number"]]["levels"] for e in taken), len({e["levels"] for e in taken}) >= 5)
+PY
+is 'exactly as sent, and the line moved: five places and black' "$(cat seen)" 'True True'
+end
+fails 69 'no such camera' $take --frames 1 -o none.exr
+done_testing

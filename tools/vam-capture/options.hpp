@@ -1,0 +1,29 @@
+// What the user asks of vam-capture, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/common.hpp"
+#include "device/camera.hpp"
+#include "io/exr_stack.hpp"
+
+namespace vam::capture_tool {
+
+struct Options {
+  std::string command;
+  std::string device;  // empty: camera.device
+  std::string output = "-";
+  std::string follow;
+  std::optional<double> speed_deg_s, every_deg, pixel_mm, turns;
+  std::optional<int> frames, max_lost;
+  double latency_ms = 0;
+  bool live = false;
+  bool with_parent = false;
+  std::string log, report;
+  device::CameraSettings camera;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+};
+
+}  // namespace vam::capture_tool

@@ -1,0 +1,161 @@
+#include "vam-capture/session.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "device/event_log.hpp"
+#include "device/lines.hpp"
+#include "io/report.hpp"
+#include "printer.hpp"
+#include "vam-capture/recording.hpp"
+#include "vam-capture/sinks.hpp"
+
+namespace vam::capture_tool {
+
+namespace {
+
+Json facts(device::Camera& camera) {
+  const device::CameraMode mode = camera.mode();
+  return {{"camera", camera.identify()}, {"columns", mode.columns}, {"rows", mode.rows},
+          {"bits", mode.bits},           {"fps", mode.fps},         {"exposure_us", mode.exposure_us},
+          {"binning", mode.binning}};
+}
+
+bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
+
+device::CapturePlan plan_of(const Options& o) {
+  device::CapturePlan plan;
+  plan.every_deg = o.every_deg;
+  plan.by_number = is_folder(o.output);
+  plan.latency_s = 1e-3 * o.latency_ms;
+  if (o.max_lost) plan.max_lost = *o.max_lost;
+  plan.frames = o.frames.value_or(0);
+  if (!o.every_deg) {
+    if (o.turns) throw Error{Fault::usage, "--turns: counts with --every only; say --frames"};
+    return plan;
+  }
+  const double places = 360 * o.turns.value_or(1) / *o.every_deg;
+  if (o.frames && o.turns) throw Error{Fault::usage, "--frames: with --every, --turns says how many"};
+  if (!o.frames) plan.frames = std::lround(places);
+  if (plan.frames < 1) throw Error{Fault::usage, "--every: no multiple of it in that turn; give a smaller angle"};
+  return plan;
+}
+
+model::StackInfo stack_info(const cli::App& app, const Options& o, const model::Printer& printer,
+                            const device::CameraMode& mode, long count) {
+  model::StackInfo info;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::camera;
+  info.width = mode.columns;
+  info.height = mode.rows;
+  info.count = static_cast<int>(count);
+  info.pixel_mm = o.pixel_mm.value_or(printer.camera.pixel_mm * mode.binning);
+  info.row_mm = -info.pixel_mm;
+  info.z_start_mm = 0.5 * (mode.rows - 1) * info.pixel_mm;
+  info.angle_step_deg = o.every_deg.value_or(0);
+  info.units = "fraction of full scale";
+  info.history.push_back(app.history());
+  return info;
+}
+
+std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, const model::Printer& printer,
+                                       device::Camera& camera, long count) {
+  if (is_folder(o.output)) {
+    Json head{{"schema", "vam-capture/1"}};
+    head.update(facts(camera));
+    head["pixel_mm"] = o.pixel_mm.value_or(printer.camera.pixel_mm * camera.mode().binning);
+    head["every_deg"] = o.every_deg.value_or(0);
+    return open_folder(o.output, head);
+  }
+  const model::StackInfo info = stack_info(app, o, printer, camera.mode(), count);
+  return o.live ? open_stream(o.output, info, o.stack) : open_stack(o.output, info, o.stack);
+}
+
+std::unique_ptr<device::AngleSource> open_angles(const Options& o) {
+  if (!o.follow.empty()) return device::followed_angle(o.follow, device::real_clock());
+  if (o.speed_deg_s) return device::elapsed_angle(*o.speed_deg_s, device::real_clock());
+  return nullptr;
+}
+
+void check(const Options& o) {
+  if (!o.follow.empty() && o.speed_deg_s) throw Error{Fault::usage, "--speed: --follow tells the angle already"};
+  if (is_folder(o.output) && o.live) throw Error{Fault::usage, "--live: streams; name no folder"};
+  if (is_folder(o.output) || o.live || o.frames || o.every_deg) return;
+  throw Error{Fault::usage,
+              "--frames: a stack says beforehand how many images it has; give it, or --live, or a folder"};
+}
+
+// What was lost is said, whatever else happens; what is missing is an error.
+void conclude(const Options& o, const device::CaptureTally& tally, long wanted) {
+  std::string lost;
+  if (tally.dropped + tally.incomplete > 0) {
+    lost = std::to_string(tally.dropped) + " frames were dropped and " + std::to_string(tally.incomplete) +
+           " came incomplete";
+  }
+  if (tally.missing > 0) {
+    const std::string remedy =
+        is_folder(o.output) ? "run it again to take them" : "a folder (-o views/) keeps what there is";
+    throw Error{Fault::busy, o.output + ": " + std::to_string(tally.missing) + " of " + std::to_string(wanted) +
+                                 " frames are missing" + (lost.empty() ? "" : " (" + lost + ")") + "; " + remedy};
+  }
+  if (!lost.empty()) warn(lost);
+}
+
+}  // namespace
+
+std::unique_ptr<device::Camera> open_camera(const Options& options, const model::Printer& printer) {
+  const std::string device = options.device.empty() ? printer.camera.device : options.device;
+  device::CameraSettings settings = options.camera;
+  if (device.rfind("replay:", 0) != 0) {
+    settings.exposure_us = settings.exposure_us.value_or(printer.camera.exposure_us);
+    settings.fps = settings.fps.value_or(printer.camera.fps);
+    settings.binning = settings.binning.value_or(printer.camera.binning);
+  }
+  return device::open_camera(device, settings, {open_recording, printer, {}}, device::real_clock());
+}
+
+void identify(const Options& options) {
+  device::print_line(facts(*open_camera(options, tool::load_printer(options.printer))).dump(2));
+}
+
+void take(const cli::App& app, const Options& options) {
+  check(options);
+  const model::Printer printer = tool::load_printer(options.printer);
+  const device::CapturePlan plan = plan_of(options);
+  device::EventLog log(options.log);
+  const auto angles = open_angles(options);
+  const auto camera = open_camera(options, printer);
+  const auto store = open_store(app, options, printer, *camera, plan.frames);
+  log("begin", facts(*camera));
+  Progress progress("capturing", plan.frames);
+  const device::CaptureSink sink{[&](long place) { return store->wanted(place); },
+                                 [&](device::Shot&& shot) {
+                                   if (!shot.frame.complete)
+                                     log("incomplete", {{"number", shot.frame.number}, {"place", shot.place}});
+                                   store->keep(std::move(shot));
+                                   progress.tick();
+                                 },
+                                 [&](long first, long last) {
+                                   log("dropped", {{"first", first}, {"last", last}});
+                                   store->dropped(first, last);
+                                 }};
+  const bool nothing_to_do = [&] {
+    for (long place = 0; place < plan.frames; ++place) {
+      if (store->wanted(place)) return false;
+    }
+    return plan.frames > 0;
+  }();
+  device::CaptureTally tally;
+  if (!nothing_to_do) tally = device::capture(*camera, angles.get(), plan, sink);
+  log("end", device::to_json(tally));
+  conclude(options, tally, plan.frames);
+  store->commit();
+  Json report = facts(*camera);
+  report.update(device::to_json(tally));
+  io::write_report(options.report, "vam-capture/1", report);
+}
+
+}  // namespace vam::capture_tool

@@ -1,0 +1,37 @@
+// Where frames go: an EXR frame stack, a stream of small ones, or a folder that a later capture goes on with.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "base/json.hpp"
+#include "device/capture.hpp"
+#include "io/exr_stack.hpp"
+
+namespace vam::capture_tool {
+
+class FrameStore {
+ public:
+  FrameStore() = default;
+  virtual ~FrameStore() = default;
+  FrameStore(const FrameStore&) = delete;
+  FrameStore& operator=(const FrameStore&) = delete;
+  [[nodiscard]] virtual bool wanted(long place) const = 0;
+  virtual void keep(device::Shot&& shot) = 0;
+  virtual void dropped(long first, long last) = 0;
+  /// After the last frame. Throws Error: io, no_output.
+  virtual void commit() = 0;
+};
+
+/// Pixels become fractions of full scale. info.count frames make one stack.
+[[nodiscard]] std::unique_ptr<FrameStore> open_stack(const std::string& path, const model::StackInfo& info,
+                                                     const io::StackOptions& options);
+
+/// Every frame is a stack of its own on the stream, as soon as it is there: for vam-ost --live.
+[[nodiscard]] std::unique_ptr<FrameStore> open_stream(const std::string& path, const model::StackInfo& info,
+                                                      const io::StackOptions& options);
+
+/// head is the first line of the manifest.
+[[nodiscard]] std::unique_ptr<FrameStore> open_folder(const std::string& path, const Json& head);
+
+}  // namespace vam::capture_tool
