@@ -60,11 +60,11 @@ cli::Manual manual() {
         "response.csv"},
        {"The study of the paper's figure 5c:",
         "vam-curethrough sweep dc=1..8,omega_max=1..5 --max-intensity 110 --min-intensity 0.2 --report sweep.json"}},
-      {"Memory of correct: one bit a voxel, 30 bytes a column, a few slices, and while reading the volume as OpenVDB "
-       "holds it, 2 KiB for each block of 8 x 8 x 8 voxels that the surface crosses. At 1920 x 1080 x 1000 voxels a "
-       "ladder of ten rungs takes 1.0 GiB, a gyroid 2.4 GiB. Time there: about 50 s of processor time, shared by the "
-       "cores, most of it compression. --quantise keeps all slices (2 bytes a pixel). Memory of model: a quarter of a "
-       "byte a voxel, and the dose volume when it is asked for.",
+      {"Memory of correct: one bit a voxel, 30 bytes a column, a few slices, and while reading 130 bytes for each "
+       "block of 8 x 8 x 8 voxels that the surface crosses, from a file and from a pipe. At 1920 x 1080 x 1000 voxels "
+       "a gyroid whose surface crosses nearly every block takes 0.7 GiB, and about 50 s of processor time shared by "
+       "the cores, most of it compression. --quantise keeps all slices (2 bytes a pixel). Memory of model: one bit and "
+       "an eighth of a byte a voxel and some slices, 1.0 GiB there, and the dose volume when it is asked for.",
        "Grey levels: an ordinary rounding to 8 bits shifts the dose inside features by up to half a level of Phi, "
        "which "
        "is more than a percent. The levels of --png and --quantise are chosen from the last slice up, each the lowest "

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/parallel.hpp"
-
 namespace vam::resin {
 
 namespace {
@@ -68,21 +66,19 @@ void CureMap::step(Pixel& pixel, bool solid, double cured, CureTotals& totals) c
   pixel.gap += static_cast<float>(cured);
 }
 
-void CureMap::add(const Image& phi, double full, const Image& below, const Image& solid, Image* map) {
-  parallel_for(phi.height, [&](int y) {
-    CureTotals& totals = rows_[static_cast<std::size_t>(y)];
-    for (int x = 0; x < width_; ++x) {
-      const double light = full * static_cast<double>(phi(x, y));
-      const double next = static_cast<double>(below(x, y));
-      const bool in_part = solid(x, y) >= 0.5F;
-      const Cure cure = cure_of(dose_at_centre(light, next, limits_), in_part);
-      totals.correct += cure == Cure::correct;
-      totals.through += cure == Cure::through;
-      totals.under += cure == Cure::under;
-      if (map != nullptr) (*map)(x, y) = static_cast<float>(cure);
-      step(pixels_[phi.index(x, y)], in_part, cured_fraction(light, next, threshold, limits_), totals);
-    }
-  });
+void CureMap::add_row(int y, const float* phi, double full, const float* below, const float* solid) {
+  CureTotals& totals = rows_[static_cast<std::size_t>(y)];
+  Pixel* pixel = pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  for (int x = 0; x < width_; ++x) {
+    const double light = full * static_cast<double>(phi[x]);
+    const auto next = static_cast<double>(below[x]);
+    const bool in_part = solid[x] >= 0.5F;
+    const Cure cure = cure_of(dose_at_centre(light, next, limits_), in_part);
+    totals.correct += cure == Cure::correct;
+    totals.through += cure == Cure::through;
+    totals.under += cure == Cure::under;
+    step(pixel[x], in_part, cured_fraction(light, next, threshold, limits_), totals);
+  }
 }
 
 CureTotals CureMap::finish() {
@@ -112,14 +108,11 @@ CureTotals CureMap::finish() {
 CureTotals judge_column(const std::vector<std::uint8_t>& part, const std::vector<double>& phi, const Limits& limits) {
   const std::vector<double> omega = dose_at_nodes(phi, limits);
   CureMap map(1, 1, static_cast<int>(part.size()), limits);
-  Image light(1, 1);
-  Image below(1, 1);
-  Image solid(1, 1);
   for (std::size_t n = 0; n < phi.size(); ++n) {
-    light.values[0] = static_cast<float>(phi[n]);
-    below.values[0] = static_cast<float>(omega[n + 1]);
-    solid.values[0] = n < part.size() && part[n] != 0 ? 1.0F : 0.0F;
-    map.add(light, 1, below, solid);
+    const auto light = static_cast<float>(phi[n]);
+    const auto below = static_cast<float>(omega[n + 1]);
+    const float solid = n < part.size() && part[n] != 0 ? 1.0F : 0.0F;
+    map.add_row(0, &light, 1, &below, &solid);
   }
   return map.finish();
 }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/image.hpp"
 #include "resin/curethrough.hpp"
 
 namespace vam::resin {
@@ -39,9 +38,9 @@ class CureMap {
  public:
   CureMap(int width, int height, int slices, const Limits& limits);
 
-  /// phi: Phi / full; below: Omega at the node below the slice (StackDose::replay); solid: values >= 0.5 are in the
-  /// part. Fills `map`, if given, with the Cure of every voxel.
-  void add(const Image& phi, double full, const Image& below, const Image& solid, Image* map = nullptr);
+  /// Row y of the next slice. phi: Phi / full; below: Omega at the node below the slice (StackDose::replay_row); solid:
+  /// values >= 0.5 are in the part. Rows may be added by many threads at once.
+  void add_row(int y, const float* phi, double full, const float* below, const float* solid);
   /// After the last slice.
   [[nodiscard]] CureTotals finish();
 

@@ -52,17 +52,21 @@ std::uint64_t PartColumns::bits(std::size_t column, int first) const {
   return shift == 0 || index + 1 == stride_ ? low : low | words[index + 1] << (word_bits - shift);
 }
 
+void PartColumns::unpack_row(int y, int first, int count, float* out, std::size_t stride) const {
+  std::vector<std::uint64_t> row(static_cast<std::size_t>(width_));
+  const std::size_t start = static_cast<std::size_t>(y) * row.size();
+  for (int done = 0; done < count; done += word_bits) {
+    for (std::size_t x = 0; x < row.size(); ++x) row[x] = bits(start + x, first + done);
+    for (int k = 0; k < std::min(word_bits, count - done); ++k) {
+      float* slice = out + static_cast<std::size_t>(done + k) * stride;
+      for (std::size_t x = 0; x < row.size(); ++x) slice[x] = static_cast<float>(row[x] >> k & 1U);
+    }
+  }
+}
+
 void PartColumns::unpack(int first, int count, float* out) const {
   parallel_for(height_, [&](int y) {
-    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
-    std::vector<std::uint64_t> row(static_cast<std::size_t>(width_));
-    for (int done = 0; done < count; done += word_bits) {
-      for (std::size_t x = 0; x < row.size(); ++x) row[x] = bits(start + x, first + done);
-      for (int k = 0; k < std::min(word_bits, count - done); ++k) {
-        float* slice = out + static_cast<std::size_t>(done + k) * pixels_ + start;
-        for (std::size_t x = 0; x < row.size(); ++x) slice[x] = static_cast<float>(row[x] >> k & 1U);
-      }
-    }
+    unpack_row(y, first, count, out + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_), pixels_);
   });
 }
 

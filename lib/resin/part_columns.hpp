@@ -38,6 +38,8 @@ class PartColumns {
 
   /// Slices first .. first + count - 1 as dense images, 1 in the part and 0 outside.
   void unpack(int first, int count, float* out) const;
+  /// The same of row y alone, slice first + i at out + i * stride.
+  void unpack_row(int y, int first, int count, float* out, std::size_t stride) const;
 
   /// Is slice n of this column in the part?
   [[nodiscard]] bool solid(std::size_t column, int n) const {

@@ -52,26 +52,21 @@ void StackDose::turn() {
   }
 }
 
-void StackDose::replay(std::span<const Image> block, std::vector<Image>& below) {
-  if (!turned_ || replayed_ + 1 >= at_start_.size()) throw Error{Fault::bug, "stack dose: replayed out of order"};
-  const Image& end = at_start_[++replayed_];
-  below.resize(block.size());
-  for (Image& image : below) {
-    if (image.width != end.width || image.height != end.height) image = Image(end.width, end.height);
-  }
+void StackDose::replay_row(int first, std::span<const Image> block, int y, float* below) const {
+  const auto next = static_cast<std::size_t>(first / block_slices) + 1;
+  if (!turned_ || next >= at_start_.size()) throw Error{Fault::bug, "stack dose: replayed too early or too far"};
+  const Image& end = at_start_[next];
+  const auto width = static_cast<std::size_t>(end.width);
   const double factor = limits_.gain * full_;
-  parallel_for(end.height, [&](int y) {
-    std::vector<double> omega(end.row(y), end.row(y) + end.width);
-    for (std::size_t i = block.size(); i-- > 0;) {
-      const float* phi = block[i].row(y);
-      float* out = below[i].row(y);
-      for (int x = 0; x < end.width; ++x) {
-        const auto p = static_cast<std::size_t>(x);
-        out[x] = static_cast<float>(omega[p]);
-        omega[p] = factor * static_cast<double>(phi[x]) + limits_.q * omega[p];  // [CURE19 eq 5]
-      }
+  std::vector<double> omega(end.row(y), end.row(y) + width);
+  for (std::size_t i = block.size(); i-- > 0;) {
+    const float* phi = block[i].row(y);
+    float* out = below + i * width;
+    for (std::size_t x = 0; x < width; ++x) {
+      out[x] = static_cast<float>(omega[x]);
+      omega[x] = factor * static_cast<double>(phi[x]) + limits_.q * omega[x];  // [CURE19 eq 5]
     }
-  });
+  }
 }
 
 }  // namespace vam::resin

@@ -1,6 +1,6 @@
 // The dose of a whole stack of slices, in printing order. The recursion runs from the last slice up but files are read
-// from the first down, so the stack is read twice: once to know the dose at every 16th node, once to fill in between.
-// Memory: one image per 16 slices, and 16 more.
+// from the first down, so the stack is read twice: once to know the dose at every 32nd node, once to fill in between.
+// Memory: one image per 32 slices, and 32 more.
 #pragma once
 
 #include <span>
@@ -20,11 +20,12 @@ class StackDose {
   void add(const Image& slice);
   /// Between the readings.
   void turn();
-  /// Second reading, `block_slices` slices at a time, in printing order (fewer only at the end): below[i] becomes Omega
-  /// at the node below block[i], node n + 1 of slice n. All else follows from it: dose_at_centre(), cured_fraction().
-  void replay(std::span<const Image> block, std::vector<Image>& below);
+  /// Second reading, of row y of `block`, which begins with slice `first`, a multiple of block_slices, and is as long
+  /// (shorter only at the end): below[i * width + x] becomes Omega at the node below slice first + i. All else follows
+  /// from it: dose_at_centre(), cured_fraction(). In any order, by many threads at once.
+  void replay_row(int first, std::span<const Image> block, int y, float* below) const;
 
-  static constexpr int block_slices = 16;
+  static constexpr int block_slices = 32;
   [[nodiscard]] int slices() const { return slices_; }
 
  private:
@@ -34,7 +35,6 @@ class StackDose {
   double weight_ = 1;             // q^(slices since the block's first)
   std::vector<double> gathered_;  // of the block that add() is in
   std::vector<Image> at_start_;   // Omega at the first node of every block; one more, 0, at the end
-  std::size_t replayed_ = 0;
   bool turned_ = false;
 };
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/frame_folder.hpp"
 #include "io/picture.hpp"
@@ -93,17 +94,25 @@ std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const 
   GreyImage slice(job.part.columns().width(), job.part.columns().height(), job.print.printer.projector.bits);
   Progress progress("correcting", job.slices);
   const auto times = time_stamps(job);
-  for (int n = job.slices; n-- > 0;) {
-    correction.previous(slice.values);
-    GreyImage placed = frame.place(slice);
-    if (folder != nullptr) {
-      folder->write(n, placed,
+  std::vector<GreyImage> batch(static_cast<std::size_t>(2 * threads()));  // encoded together
+  for (int end = job.slices; end > 0;) {
+    const int count = std::min(end, static_cast<int>(batch.size()));
+    for (int i = 0; i < count; ++i) {
+      correction.previous(slice.values);
+      batch[static_cast<std::size_t>(i)] = frame.place(slice);
+    }
+    parallel_for(folder != nullptr ? count : 0, [&](int i) {
+      const int n = end - 1 - i;
+      folder->write(n, batch[static_cast<std::size_t>(i)],
                     {{"vam:time_s", format_number(times[static_cast<std::size_t>(n)].time_s, 9)},
                      {"vam:fps", format_number(frames_per_s(job.print.process), 9)},
                      {"vam:history", job.info.history.back()}});
+    });
+    for (int i = 0; i < (options.quantise ? count : 0); ++i) {
+      kept[static_cast<std::size_t>(end - 1 - i)] = std::move(batch[static_cast<std::size_t>(i)]);
     }
-    if (options.quantise) kept[static_cast<std::size_t>(n)] = std::move(placed);
-    progress.tick();
+    end -= count;
+    progress.tick(count);
   }
   return kept;
 }

@@ -26,12 +26,13 @@ bool is_volume(const std::string& path) { return path == "-" || (path.size() > 4
 Slices plain_slices(const std::shared_ptr<Part>& part, float dark) {
   const model::Grid& grid = part->grid();
   Slices slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
-  auto slab = std::make_shared<std::vector<float>>(grid.slice_size() * block);
+  static constexpr int batch = 8;
+  auto slab = std::make_shared<std::vector<float>>(grid.slice_size() * batch);
   slices.read = [part, slab, dark](int n, Image& slice) {
     const model::Grid& shape = part->grid();
-    if (n % block == 0) part->columns().unpack(n, std::min(block, shape.nz - n), slab->data());
+    if (n % batch == 0) part->columns().unpack(n, std::min(batch, shape.nz - n), slab->data());
     if (slice.width != shape.nx || slice.height != shape.ny) slice = Image(shape.nx, shape.ny);
-    const float* solid = slab->data() + static_cast<std::size_t>(n % block) * shape.slice_size();
+    const float* solid = slab->data() + static_cast<std::size_t>(n % batch) * shape.slice_size();
     for (std::size_t p = 0; p < slice.size(); ++p) slice.values[p] = std::max(solid[p], dark);
   };
   return slices;
@@ -92,7 +93,7 @@ Inputs open_inputs(const cli::App& app, const Model& options) {
 // The second reading: everything that is worth knowing of a block of slices.
 class Judge {
  public:
-  Judge(const Model& options, const Inputs& in) : in_(in), grid_(grid_of(in)), solid_(grid_.nx, grid_.ny) {
+  Judge(const Model& options, const Inputs& in) : in_(in), grid_(grid_of(in)) {
     if (in.part) map_.emplace(grid_.nx, grid_.ny, in.slices.count, in.print.limits);
     if (!options.output.empty()) dose_.emplace("dose", grid_);
     plane_.row = options.row.value_or(grid_.ny / 2);
@@ -106,19 +107,9 @@ class Judge {
     plane_.omega.assign(static_cast<std::size_t>(in.slices.count), 0);
   }
 
-  void add(int first, const std::vector<Image>& light, const std::vector<Image>& below) {
-    const std::size_t size = grid_.slice_size();
-    read_design(first, static_cast<int>(light.size()));
-    std::vector<float> centres(dose_ ? size * light.size() : 0);
-    for (std::size_t i = 0; i < light.size(); ++i) {
-      const int n = first + static_cast<int>(i);
-      if (map_) {
-        std::copy_n(design_.begin() + static_cast<std::ptrdiff_t>(i * size), size, solid_.values.begin());
-        map_->add(light[i], in_.print.limits.phi_max, below[i], solid_);
-      }
-      keep_plane(n, light[i], below[i]);
-      if (dose_) fill_centres(light[i], below[i], centres.data() + i * size);
-    }
+  void add(int first, const std::vector<Image>& light, const resin::StackDose& dose) {
+    std::vector<float> centres(dose_ ? grid_.slice_size() * light.size() : 0);
+    parallel_for(grid_.ny, [&](int y) { judge_row(first, light, dose, y, centres); });
     if (!dose_) return;
     const int count = static_cast<int>(light.size());
     if (in_.part) return in_.part->write(*dose_, first, count, centres);
@@ -135,41 +126,46 @@ class Judge {
     return model::centred_grid(in.slices.width, in.slices.height, in.slices.count, in.print.process.slice_um * 1e-3);
   }
 
-  // 1 in the part, 0 outside; slices beyond the part are empty.
-  void read_design(int first, int count) {
-    if (!in_.part) return;
-    design_.assign(grid_.slice_size() * static_cast<std::size_t>(count), 0.0F);
-    const int inside = std::clamp(in_.part->grid().nz - first, 0, count);
-    if (inside > 0) in_.part->columns().unpack(first, inside, design_.data());
+  void judge_row(int first, const std::vector<Image>& light, const resin::StackDose& dose, int y,
+                 std::vector<float>& centres) {
+    const auto width = static_cast<std::size_t>(grid_.nx);
+    std::vector<float> below(light.size() * width);
+    dose.replay_row(first, light, y, below.data());
+    std::vector<float> solid(below.size());  // slices beyond the part are empty
+    const int inside = in_.part ? std::clamp(in_.part->grid().nz - first, 0, static_cast<int>(light.size())) : 0;
+    if (inside > 0) in_.part->columns().unpack_row(y, first, inside, solid.data(), width);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      const float* row = light[i].row(y);
+      const float* next = below.data() + i * width;
+      if (map_) map_->add_row(y, row, in_.print.limits.phi_max, next, solid.data() + i * width);
+      if (y == plane_.row) keep_plane(first + static_cast<int>(i), row, next, solid.data() + i * width);
+      if (dose_) fill_centres(row, next, centres.data() + i * grid_.slice_size() + static_cast<std::size_t>(y) * width);
+    }
   }
 
-  void keep_plane(int n, const Image& light, const Image& below) {
-    const double full = in_.print.limits.phi_max;
+  void keep_plane(int n, const float* light, const float* below, const float* solid) {
     for (int x = 0; x < grid_.nx; ++x) {
-      const double phi = full * static_cast<double>(light(x, plane_.row));
-      const double omega = resin::dose_at_centre(phi, static_cast<double>(below(x, plane_.row)), in_.print.limits);
-      const bool solid = map_ && solid_(x, plane_.row) >= 0.5F;
-      plane_.light(x, n) = light(x, plane_.row);
-      plane_.solid(x, n) = solid ? 1.0F : 0.0F;
-      const resin::Cure cure = resin::cure_of(omega, solid);
+      const double omega = centre(light[x], below[x]);
+      const bool in_part = map_ && solid[x] >= 0.5F;
+      plane_.light(x, n) = light[x];
+      plane_.solid(x, n) = in_part ? 1.0F : 0.0F;
+      const resin::Cure cure = resin::cure_of(omega, in_part);
       plane_.cure(x, n) = static_cast<float>(map_ || cure == resin::Cure::empty ? cure : resin::Cure::correct);
       if (x == plane_.column) plane_.omega[static_cast<std::size_t>(n)] = omega;
     }
   }
 
-  void fill_centres(const Image& light, const Image& below, float* out) const {
-    parallel_for(light.height, [&](int y) {
-      for (std::size_t p = light.index(0, y); p < light.index(0, y) + static_cast<std::size_t>(light.width); ++p) {
-        const double phi = in_.print.limits.phi_max * static_cast<double>(light.values[p]);
-        out[p] = static_cast<float>(resin::dose_at_centre(phi, static_cast<double>(below.values[p]), in_.print.limits));
-      }
-    });
+  void fill_centres(const float* light, const float* below, float* out) const {
+    for (int x = 0; x < grid_.nx; ++x) out[x] = static_cast<float>(centre(light[x], below[x]));
+  }
+
+  double centre(float light, float below) const {
+    const double phi = in_.print.limits.phi_max * static_cast<double>(light);
+    return resin::dose_at_centre(phi, static_cast<double>(below), in_.print.limits);
   }
 
   const Inputs& in_;
   model::Grid grid_;
-  std::vector<float> design_;
-  Image solid_;
 };
 
 void read_twice(const Inputs& in, Judge& judge) {
@@ -181,15 +177,12 @@ void read_twice(const Inputs& in, Judge& judge) {
     dose.add(slice);
   }
   dose.turn();
-  std::vector<Image> light;
-  std::vector<Image> below;
   for (int n = 0; n < in.slices.count; n += block) {
-    light.resize(static_cast<std::size_t>(std::min(block, in.slices.count - n)));
+    std::vector<Image> light(static_cast<std::size_t>(std::min(block, in.slices.count - n)));
     for (std::size_t i = 0; i < light.size(); ++i, progress.tick()) {
       in.slices.read(n + static_cast<int>(i), light[i]);
     }
-    dose.replay(light, below);
-    judge.add(n, light, below);
+    judge.add(n, light, dose);
   }
 }
 
