@@ -113,4 +113,20 @@ class LiveSink final : public io::FrameSink {
   int turns_;
 };
 
+/// The same for frames that belong to times: each is held for `hold_s`, once.
+class LiveSequence final : public io::FrameSink {
+ public:
+  LiveSequence(Live& live, double hold_s) : live_(live), hold_s_(hold_s) {}
+  void write(std::span<const io::ProjectorFrame> frames) override {
+    for (const auto& frame : frames) live_.add(frame.levels);
+  }
+  void commit() override { tally = live_.play_through(hold_s_, false); }
+
+  device::PlayTally tally;
+
+ private:
+  Live& live_;
+  double hold_s_;
+};
+
 }  // namespace vam::tool

@@ -1,6 +1,7 @@
 // vam-project: projector frames from sinograms, for files; one frame per time step of the turning stage.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,14 +18,14 @@
 #include "io/exr_stack.hpp"
 #include "io/frame_sink.hpp"
 #include "io/report.hpp"
-#include "io/response_file.hpp"
 #include "io/stream.hpp"
 #include "live.hpp"
 #include "optics/flatland.hpp"
 #include "optics/frames.hpp"
 #include "patterns.hpp"
 #include "printer.hpp"
-#include "resin/response.hpp"
+#include "vam-project/show.hpp"
+#include "vam-project/slices.hpp"
 
 namespace {
 
@@ -33,7 +34,7 @@ using namespace vam;
 struct Options {
   std::string input = "-";
   std::string output = "-";
-  std::optional<double> fps, speed_deg_s, turns, flatland_mm, peak;
+  std::optional<double> fps, print_speed_mm_h, speed_deg_s, turns, flatland_mm, peak;
   std::optional<int> bits;
   std::string orientation;
   double column_offset = 0;
@@ -84,6 +85,12 @@ cli::Manual manual() {
        "Grey: a value of --peak (by default the largest of the stack) becomes full intensity, times --intensity. Each "
        "pixel gets the grey level whose intensity, by the measured response (projector.response) or else the straight "
        "line from min_intensity to max_intensity, is nearest to the wanted one.",
+       "Slices of continuous stereolithography (vam-curethrough correct) are shown one after the other, each once, "
+       "slice n from n / fps on, with fps = print speed / slice height: both stand in the EXR stack, --print-speed or "
+       "--fps override them, and a folder of pictures has its times in frames.csv. The slices that the last feature "
+       "needs at the end are part of the stack. A slice that is smaller than the projector's picture is put with its "
+       "middle at axis_column, axis_row; its values are fractions of full intensity, or grey. Live they are held for "
+       "1 / fps each, by elapsed time, and all are in memory beforehand.",
        "With --flatland the frames show one slice of a virtual sinogram from above: each is the 1-D projection at its "
        "angle, smeared across the plane. Projected onto a thin layer of resin they print the cross-section, and the "
        "sum "
@@ -99,6 +106,9 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-project "
         "--flatland 0 "
         "-o flatland.mp4"},
+       {"The slices of a continuous print, 1000 mm/h at 50 um a slice, as a video of 5.56 frames per second:",
+        "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-intensity 110 "
+        "--min-intensity 0.2 -o slices.exr && vam-project slices.exr --set projector.pixel_mm=0.05 -o slices.mkv"},
        {"A focus star as a picture:", "vam-project --pattern star -o star/"},
        {"A synchronised print of one turn, here on a simulated stage and no screen:",
         "vam-stage spin --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed 0.1"}},
@@ -128,14 +138,19 @@ cli::Manual manual() {
        "rises.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017; Orth et al., Correcting ray distortion in tomographic "
        "additive manufacturing, Opt. Express 2021."},
-      {"vam-optimize", "vam-resample", "vam-stage", "vam-view"}};
+      {"vam-optimize", "vam-resample", "vam-curethrough", "vam-stage", "vam-view"}};
 }
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) for the projector; with --flatland a virtual one.");
+  app.positional("SINOGRAM", options.input,
+                 "Sinogram stack (EXR) for the projector, with --flatland a virtual one; or the slices of "
+                 "vam-curethrough, a frame stack (EXR) or a folder of pictures.");
   cli::add_output(app, options.output);
   app.group("Time");
-  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second; without it projector.fps.");
+  app.option("--fps", "HZ", options.fps, cli::positive,
+             "Frames per second; without it projector.fps, or for slices print speed / slice height.");
+  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive,
+             "Speed of the platform, for slices; without it what the stack says.");
   app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed; without it stage.speed_deg_s.");
   app.option("--turns", "N", options.turns, cli::positive, "Turns, whole or not; without it stage.turns.");
   app.group("Place");
@@ -148,7 +163,7 @@ void declare(cli::App& app, Options& options) {
   app.group("Grey");
   app.option("--bits", "N", options.bits, {1, 16}, "1, 2, 4, 8, 10 or 16 bits a pixel; without it projector.bits.");
   app.option("--peak", "VALUE", options.peak, cli::positive,
-             "The value that becomes full intensity; without it the largest of the stack.");
+             "The value that becomes full intensity; without it the largest of the stack, for slices 1.");
   app.option("--intensity", "FACTOR", options.intensity, cli::positive,
              "Multiplies all light; beyond full it is clipped.");
   tool::add_live(app, options.live);
@@ -204,59 +219,60 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   return read_light(reader, std::make_shared<optics::FrameComposer>(options.input, info, place));
 }
 
-resin::Response response_of(const model::Projector& projector) {
-  if (projector.response.empty()) return resin::projector_response(projector);
-  return resin::Response(io::read_response(projector.response));
+project::Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {
+  return {schedule.count, schedule.fps, schedule.step_deg,
+          [&](int n) { return light.frame(schedule.angle_deg(n), schedule.step_deg); }, false};
 }
 
-// All frames of the schedule through the grey levels into the sink, a few at a time.
-resin::LightTally show(const Light& light, float scale, const optics::FrameSchedule& schedule,
-                       const model::Projector& projector, bool quantise, io::FrameSink& sink) {
-  const resin::GreyLevels levels(response_of(projector), projector.bits);
-  std::vector<resin::LightTally> tallies(static_cast<std::size_t>(schedule.count));
-  const auto develop = [&](int n) {
-    io::ProjectorFrame frame;
-    frame.time_s = schedule.time_s(n);
-    frame.angle_deg = schedule.angle_deg(n);
-    frame.intensity = light.frame(frame.angle_deg, schedule.step_deg);
-    tallies[static_cast<std::size_t>(n)] = resin::limit_to_full(frame.intensity, scale);
-    optics::orient(frame.intensity, projector.orientation);
-    frame.levels = resin::to_levels(frame.intensity, levels);
-    if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
-    return frame;
-  };
-  Progress progress("projecting", schedule.count);
-  const int batch = 2 * threads();
-  for (int first = 0; first < schedule.count; first += batch) {
-    std::vector<io::ProjectorFrame> frames(static_cast<std::size_t>(std::min(batch, schedule.count - first)));
-    parallel_for(static_cast<int>(frames.size()),
-                 [&](int i) { frames[static_cast<std::size_t>(i)] = develop(first + i); });
-    sink.write(frames);
-    progress.tick(static_cast<long>(frames.size()));
+bool is_folder(const std::string& path) {
+  std::error_code ignored;
+  return path != "-" && std::filesystem::is_directory(path, ignored);
+}
+
+// Slices know no stage: they are shown one after the other in time.
+project::Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
+                               const project::SliceStack& slices) {
+  for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow"}) {
+    if (!app.given(option)) continue;
+    throw Error{Fault::usage, std::string(option) + ": " + slices.name +
+                                  " holds slices, which are shown once, by time; leave it out"};
   }
-  sink.commit();
-  resin::LightTally all;
-  for (const auto& tally : tallies) all += tally;
-  return all;
+  const double fps = project::slices_per_s(slices, {options.fps, options.print_speed_mm_h});
+  return project::frames_of(slices, fps, printer.projector, options.column_offset, options.row_offset);
 }
 
-Json figures(const optics::FrameSchedule& schedule, int bits, double peak, const resin::LightTally& tally) {
-  const auto lit = static_cast<double>(std::max(tally.lit, 1L));
-  return {{"frames", schedule.count},
-          {"fps_hz", schedule.fps},
-          {"step_deg", schedule.step_deg},
-          {"duration_s", schedule.count / schedule.fps},
-          {"bits", bits},
-          {"peak", peak},
-          {"mean_intensity_fraction", tally.light / static_cast<double>(tally.pixels)},
-          {"mean_lit_intensity_fraction", tally.light / lit},
-          {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};
+Json slice_report(const project::Frames& frames, const Options& options, const model::Projector& projector,
+                  const resin::LightTally& tally) {
+  Json report = figures(frames, projector.bits, options.peak.value_or(1), tally);
+  report.erase("step_deg");
+  return report;
 }
 
-void warn_clipped(const resin::LightTally& tally) {
-  if (tally.clipped == 0) return;
-  warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
-       " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
+void play_slices(const cli::App& app, const Options& options, const model::Printer& printer,
+                 const project::SliceStack& slices, tool::Live& live) {
+  const project::Frames frames = slices_in_time(app, options, printer, slices);
+  tool::LiveSequence sink(live, 1 / frames.fps);
+  const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
+  const auto tally = project::show(frames, scale, printer.projector, app.given("--bits"), sink);
+  project::warn_clipped(tally);
+  Json report = slice_report(frames, options, printer.projector, tally);
+  report["flips"] = sink.tally.flips;
+  report["lit_flips"] = sink.tally.lit;
+  report["missed_flips"] = sink.tally.missed;
+  io::write_report(options.report, "vam-project/1", report);
+}
+
+void write_slices(const cli::App& app, const Options& options, const model::Printer& printer,
+                  const project::SliceStack& slices) {
+  const project::Frames frames = slices_in_time(app, options, printer, slices);
+  io::FrameSinkOptions facts{project::facts_of(slices, frames.fps, printer.projector), frames.fps,
+                             printer.projector.bits, options.stack};
+  facts.info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, facts);
+  const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
+  const auto tally = project::show(frames, scale, printer.projector, app.given("--bits"), *sink);
+  project::warn_clipped(tally);
+  io::write_report(options.report, "vam-project/1", slice_report(frames, options, printer.projector, tally));
 }
 
 // One turn's frames into the display, then the print: the angle of the table chooses the frame.
@@ -269,22 +285,46 @@ void run_live(const cli::App& app, const Options& options, const model::Printer&
                 "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
   }
   tool::Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
+  if (is_folder(options.input)) return play_slices(app, options, printer, project::slice_folder(options.input), live);
   io::StackReader reader(options.input);
+  if (reader.info().kind == model::Kind::frames) {
+    return play_slices(app, options, printer, project::slices_of(options.input, reader), live);
+  }
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.peak.value_or(light.peak);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const auto schedule = optics::frame_schedule(frames, 360, 1);
   tool::LiveSink sink(live, printer.stage.speed_deg_s, static_cast<int>(turns));
+  const project::Frames shown = frames_of(light, schedule);
   const auto tally =
-      show(light, static_cast<float>(options.intensity / peak), schedule, printer.projector, app.given("--bits"), sink);
-  warn_clipped(tally);
-  Json report = figures(schedule, printer.projector.bits, peak, tally);
+      show(shown, static_cast<float>(options.intensity / peak), printer.projector, app.given("--bits"), sink);
+  project::warn_clipped(tally);
+  Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   report.erase("fps_hz");
   report["flips"] = sink.tally.flips;
   report["lit_flips"] = sink.tally.lit;
   report["missed_flips"] = sink.tally.missed;
   io::write_report(options.report, "vam-project/1", report);
+}
+
+void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
+  const model::Projector& projector = printer.projector;
+  const double turns = options.turns.value_or(printer.stage.turns);
+  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
+  const Light light = read_light(options, reader, projector);
+  const double peak = options.peak.value_or(light.peak);
+
+  const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
+  io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
+                             projector.bits, options.stack};
+  facts.info.units = "fraction of full intensity";
+  facts.info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, facts);
+  const project::Frames frames = frames_of(light, schedule);
+  const auto tally = show(frames, static_cast<float>(options.intensity / peak), projector, app.given("--bits"), *sink);
+  project::warn_clipped(tally);
+  io::write_report(options.report, "vam-project/1", figures(frames, projector.bits, peak, tally));
 }
 
 void run(const cli::App& app, Options& options) {
@@ -298,24 +338,13 @@ void run(const cli::App& app, Options& options) {
   if (device::names_display(options.output)) {
     return device::interruptible([&] { run_live(app, options, printer); });
   }
-  const double turns = options.turns.value_or(printer.stage.turns);
-  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);
-
+  if (is_folder(options.input)) return write_slices(app, options, printer, project::slice_folder(options.input));
   io::StackReader reader(options.input);
-  const Light light = read_light(options, reader, projector);
-  const double peak = options.peak.value_or(light.peak);
-
-  const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
-  io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
-                             projector.bits, options.stack};
-  facts.info.units = "fraction of full intensity";
-  facts.info.history.push_back(app.history());
-  const auto sink = io::open_frame_sink(options.output, facts);
-  const auto scale = static_cast<float>(options.intensity / peak);
-  const auto tally = show(light, scale, schedule, projector, app.given("--bits"), *sink);
-  warn_clipped(tally);
-  io::write_report(options.report, "vam-project/1", figures(schedule, projector.bits, peak, tally));
+  if (reader.info().kind == model::Kind::frames) {
+    return write_slices(app, options, printer, project::slices_of(options.input, reader));
+  }
+  write_turns(app, options, printer, reader);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ class StackSource : public ImageSource {
  public:
   explicit StackSource(const std::string& path) : reader_(path) {}
   [[nodiscard]] const model::StackInfo& info() const override { return reader_.info(); }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return reader_.about(); }
   bool next(Image& image, model::ImageInfo& about) override { return reader_.next(image, about); }
 
  private:
@@ -47,6 +48,7 @@ class VideoSource : public ImageSource {
     info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }
   bool next(Image& image, model::ImageInfo& about) override {
     GreyImage grey;
     if (!reader_.next(grey)) return false;
@@ -61,6 +63,7 @@ class VideoSource : public ImageSource {
  private:
   VideoReader reader_;
   model::StackInfo info_;
+  std::vector<model::ImageInfo> about_;
   int taken_ = 0;
 };
 
@@ -92,6 +95,7 @@ class FolderSource : public ImageSource {
     if (index_.size() != static_cast<std::size_t>(folder_.count())) index_.clear();
   }
   [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
     about = index_.empty() ? model::ImageInfo{} : index_[static_cast<std::size_t>(taken_)];

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/image.hpp"
 #include "io/exr_stack.hpp"
@@ -19,6 +20,8 @@ class ImageSource {
   ImageSource(const ImageSource&) = delete;
   ImageSource& operator=(const ImageSource&) = delete;
   [[nodiscard]] virtual const model::StackInfo& info() const = 0;
+  /// The facts of every image, where they are known before the first is read; else empty.
+  [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
 };
 

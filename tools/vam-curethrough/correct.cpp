@@ -12,10 +12,11 @@
 #include "io/picture.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
+#include "optics/slice_place.hpp"
 #include "resin/gaps.hpp"
 #include "resin/slice_correction.hpp"
 #include "vam-curethrough/catalogue.hpp"
-#include "vam-curethrough/frame.hpp"
+#include "vam-curethrough/slices.hpp"
 #include "vam-curethrough/subcommands.hpp"
 
 namespace vam::curethrough {
@@ -71,7 +72,8 @@ std::vector<model::ImageInfo> time_stamps(const Job& job) {
 }
 
 // Exact intensities, in printing order.
-void write_exact(const Correct& options, const Job& job, const Frame& frame, io::StackWriter& out) {
+void write_exact(const Correct& options, const Job& job, const optics::SlicePlace& frame, float dark,
+                 io::StackWriter& out) {
   resin::SliceCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices);
   Progress progress("correcting", job.slices);
   Image slice;
@@ -79,14 +81,14 @@ void write_exact(const Correct& options, const Job& job, const Frame& frame, io:
   for (int n = 0; n < job.slices; ++n) {
     correction.next(slice);
     if (options.values == "grey") to_grey(slice, job.print.response);
-    out.write(frame.place(slice, placed));
+    out.write(frame.place(slice, dark, placed));
     progress.tick();
   }
 }
 
 // Grey levels, chosen from the last slice up; all are kept until the stack can be written from the first down.
 std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
-                                  const io::FrameFolder* folder, const Frame& frame) {
+                                  const io::FrameFolder* folder, const optics::SlicePlace& frame) {
   std::vector<float> steps;
   for (int v = 0; v < levels.count(); ++v) steps.push_back(levels.intensity(v));
   resin::LevelCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices, steps);
@@ -220,9 +222,8 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
   Json report = figures(options, job);
   if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.part.columns());
 
-  const double darkest = job.print.limits.phi_min / job.print.limits.phi_max;
-  const Frame frame(options.full_frame ? &job.print.printer.projector : nullptr, job.info,
-                    options.values == "grey" ? 0.0F : static_cast<float>(darkest));
+  const auto frame = options.full_frame ? optics::SlicePlace("--full-frame", job.print.printer.projector, job.info)
+                                        : optics::SlicePlace(job.info);
   frame.apply(job.info);
   std::optional<io::StackWriter> out;
   if (stack) out.emplace(options.output, job.info, time_stamps(job), options.stack);
@@ -233,7 +234,8 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
     const auto kept = all_levels(options, job, levels, folder ? &*folder : nullptr, frame);
     if (options.quantise) write_levels(options, job, levels, kept, *out);
   }
-  if (stack && !options.quantise) write_exact(options, job, frame, *out);
+  const double darkest = options.values == "grey" ? 0 : job.print.limits.phi_min / job.print.limits.phi_max;
+  if (stack && !options.quantise) write_exact(options, job, frame, static_cast<float>(darkest), *out);
   if (folder) folder->commit(time_stamps(job));
   if (out) out->commit();
   if (!options.mask.empty()) write_mask(options.mask, job.gaps.mask);

@@ -63,6 +63,22 @@ Slices from_stack(const std::string& path, const resin::Response& response) {
 
 }  // namespace
 
+void to_grey(Image& slice, const resin::Response& response) {
+  parallel_for(slice.height, [&](int y) {
+    // Rows are long runs of few values, so the inverse is asked for once a run.
+    float* row = slice.row(y);
+    float intensity = -1;
+    float grey = 0;
+    for (int x = 0; x < slice.width; ++x) {
+      if (row[x] != intensity) {
+        intensity = row[x];
+        grey = static_cast<float>(response.grey(static_cast<double>(intensity)));
+      }
+      row[x] = grey;
+    }
+  });
+}
+
 Slices open_slices(const std::string& path, const resin::Response& response) {
   return std::filesystem::is_directory(path) ? from_folder(path, response) : from_stack(path, response);
 }

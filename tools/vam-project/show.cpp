@@ -1,0 +1,69 @@
+#include "vam-project/show.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/log.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "io/response_file.hpp"
+#include "optics/frames.hpp"
+
+namespace vam::project {
+
+resin::Response response_of(const model::Projector& projector) {
+  if (projector.response.empty()) return resin::projector_response(projector);
+  return resin::Response(io::read_response(projector.response));
+}
+
+resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
+                       io::FrameSink& sink) {
+  const resin::GreyLevels levels(response_of(projector), projector.bits);
+  std::vector<resin::LightTally> tallies(static_cast<std::size_t>(frames.count));
+  const auto develop = [&](int n, io::ProjectorFrame& frame) {
+    if (!frames.in_order) frame.intensity = frames.light(n);
+    frame.time_s = n / frames.fps;
+    frame.angle_deg = n * frames.step_deg;
+    tallies[static_cast<std::size_t>(n)] = resin::limit_to_full(frame.intensity, scale);
+    optics::orient(frame.intensity, projector.orientation);
+    frame.levels = resin::to_levels(frame.intensity, levels);
+    if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
+  };
+  Progress progress("projecting", frames.count);
+  const int batch = 2 * threads();
+  for (int first = 0; first < frames.count; first += batch) {
+    std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(batch, frames.count - first)));
+    const int count = static_cast<int>(shown.size());
+    for (int i = 0; i < (frames.in_order ? count : 0); ++i) {
+      shown[static_cast<std::size_t>(i)].intensity = frames.light(first + i);
+    }
+    parallel_for(count, [&](int i) { develop(first + i, shown[static_cast<std::size_t>(i)]); });
+    sink.write(shown);
+    progress.tick(count);
+  }
+  sink.commit();
+  resin::LightTally all;
+  for (const auto& tally : tallies) all += tally;
+  return all;
+}
+
+Json figures(const Frames& frames, int bits, double peak, const resin::LightTally& tally) {
+  const auto lit = static_cast<double>(std::max(tally.lit, 1L));
+  return {{"frames", frames.count},
+          {"fps_hz", frames.fps},
+          {"step_deg", frames.step_deg},
+          {"duration_s", frames.count / frames.fps},
+          {"bits", bits},
+          {"peak", peak},
+          {"mean_intensity_fraction", tally.light / static_cast<double>(tally.pixels)},
+          {"mean_lit_intensity_fraction", tally.light / lit},
+          {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};
+}
+
+void warn_clipped(const resin::LightTally& tally) {
+  if (tally.clipped == 0) return;
+  warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
+       " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
+}
+
+}  // namespace vam::project

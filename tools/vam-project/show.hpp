@@ -1,0 +1,32 @@
+// From the light that is wanted to the frames that a device gets.
+#pragma once
+
+#include <functional>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "io/frame_sink.hpp"
+#include "model/printer.hpp"
+#include "resin/response.hpp"
+
+namespace vam::project {
+
+struct Frames {
+  int count = 0;
+  double fps = 0;       // frame n belongs to the time n / fps
+  double step_deg = 0;  // and to the stage angle n * step_deg
+  /// The light of frame n. Asked for once for every n: in order, or by many threads at once.
+  std::function<Image(int n)> light;
+  bool in_order = false;
+};
+
+[[nodiscard]] resin::Response response_of(const model::Projector& projector);
+
+/// All frames through the grey levels into the sink, a few at a time; `scale` takes the light to fractions of full.
+resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
+                       io::FrameSink& sink);
+
+[[nodiscard]] Json figures(const Frames& frames, int bits, double peak, const resin::LightTally& tally);
+void warn_clipped(const resin::LightTally& tally);
+
+}  // namespace vam::project

@@ -1,0 +1,117 @@
+#include "vam-project/slices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "io/any_frames.hpp"
+#include "optics/slice_place.hpp"
+
+namespace vam::project {
+
+namespace {
+
+std::optional<double> fact(const model::StackInfo& info, const char* name) {
+  const auto found = info.extra.find(name);
+  const auto value = found == info.extra.end() ? std::nullopt : parse_number(found->second);
+  return value && *value > 0 ? value : std::nullopt;
+}
+
+bool is_grey(const model::StackInfo& info) { return info.units == "grey" || info.units == "fraction of full grey"; }
+
+// Grey 0..1 to fractions of full intensity. Rows are runs of few values.
+void to_intensity(Image& slice, const resin::Response& response) {
+  parallel_for(slice.height, [&](int y) {
+    float grey = -1;
+    float intensity = 0;
+    for (float* pixel = slice.row(y); pixel != slice.row(y) + slice.width; ++pixel) {
+      if (*pixel != grey) {
+        grey = *pixel;
+        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
+      }
+      *pixel = intensity;
+    }
+  });
+}
+
+void require_slices(const SliceStack& stack) {
+  for (const model::ImageInfo& about : stack.about) {
+    if (about.angle_deg == stack.about.front().angle_deg) continue;
+    throw Error{Fault::data, stack.name +
+                                 ": its frames belong to stage angles; vam-project needs their sinogram, or the slices "
+                                 "of vam-curethrough"};
+  }
+}
+
+}  // namespace
+
+SliceStack slices_of(const std::string& path, io::StackReader& reader) {
+  io::require(path, reader.info(), model::Kind::frames, model::Space::projector);
+  return {path == "-" ? "stdin" : path, reader.info(), reader.about(), [&reader](Image& slice) {
+            model::ImageInfo about;
+            return reader.next(slice, about);
+          }};
+}
+
+SliceStack slice_folder(const std::string& path) {
+  const std::shared_ptr<io::ImageSource> source = io::open_images(path, io::FileType::pictures);
+  SliceStack stack{path, source->info(), source->about(), [source](Image& slice) {
+                     model::ImageInfo about;
+                     return source->next(slice, about);
+                   }};
+  return stack;
+}
+
+double slices_per_s(const SliceStack& stack, const SliceTiming& timing) {
+  require_slices(stack);
+  if (timing.fps && timing.speed_mm_h) {
+    throw Error{Fault::usage, "--fps, --print-speed: each gives the slices' rate; leave one out"};
+  }
+  if (timing.fps) return *timing.fps;
+  const auto slice_mm = fact(stack.info, "vam:slice_mm");
+  const auto speed_mm_h = timing.speed_mm_h ? timing.speed_mm_h : fact(stack.info, "vam:speed_mm_h");
+  if (slice_mm && speed_mm_h) return *speed_mm_h / 3600 / *slice_mm;
+  if (timing.speed_mm_h) {
+    throw Error{Fault::usage, "--print-speed: " + stack.name + " does not say its slice height; give --fps"};
+  }
+  const auto& about = stack.about;
+  if (about.size() > 1 && about.front().has_time && about.back().time_s > about.front().time_s) {
+    return static_cast<double>(about.size() - 1) / (about.back().time_s - about.front().time_s);
+  }
+  throw Error{Fault::data, stack.name + ": says neither print speed and slice height nor times; give --fps"};
+}
+
+Frames frames_of(const SliceStack& stack, double fps, const model::Projector& projector, double column_offset,
+                 double row_offset) {
+  const auto place = std::make_shared<optics::SlicePlace>(stack.name, projector, stack.info, column_offset, row_offset);
+  const auto response = std::make_shared<resin::Response>(response_of(projector));
+  const auto dark = static_cast<float>(response->intensity(0));
+  Frames frames{stack.info.count, fps, 0, {}, true};
+  frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int) {
+    Image slice;
+    if (!next(slice)) throw Error{Fault::bug, name + ": fewer slices than announced"};
+    if (grey) to_intensity(slice, *response);
+    Image placed;
+    if (&place->place(slice, dark, placed) == &slice) return slice;
+    return placed;
+  };
+  return frames;
+}
+
+model::StackInfo facts_of(const SliceStack& stack, double fps, const model::Projector& projector) {
+  model::StackInfo info = stack.info;
+  info.pixel_mm = info.row_mm = projector.pixel_mm;
+  optics::SlicePlace(stack.name, projector, stack.info).apply(info);
+  info.units = "fraction of full intensity";
+  info.extra["vam:fps"] = format_number(fps, 9);
+  if (const auto slice_mm = fact(info, "vam:slice_mm")) {
+    info.extra["vam:speed_mm_h"] = format_number(fps * 3600 * *slice_mm, 9);
+  }
+  return info;
+}
+
+}  // namespace vam::project
