@@ -130,7 +130,7 @@ std::string record_path(const model::Calibration& calibration, const std::string
 
 std::string write_record(const model::Calibration& calibration, const std::string& scan, const Json& facts,
                          double utc_s) {
-  const std::string path = record_path(calibration, scan, utc_s, ".json");
+  std::string path = record_path(calibration, scan, utc_s, ".json");
   if (fs::exists(path)) throw Error{Fault::no_output, path + ": a record is never written twice"};
   Json record{{"schema", schema},
               {"scan", scan},
