@@ -11,8 +11,8 @@ namespace vam::metrology {
 namespace {
 
 constexpr double earliest_s = -0.02;  // a camera that stamps late makes the light seem early
-constexpr double latest_s = 0.3;
 constexpr double coarse_s = 0.0005;
+constexpr int trials = 640;  // up to 0.3 s
 
 // The part of each exposure during which the light, delayed, was on.
 std::vector<double> lit_parts(const BlinkScan& scan, double latency_s) {
@@ -64,7 +64,8 @@ Latency measure_latency(const BlinkScan& scan) {
   double best_s = 0;
   Line best;
   best.misfit = INFINITY;
-  for (double trial_s = earliest_s; trial_s <= latest_s; trial_s += coarse_s) {
+  for (int i = 0; i <= trials; ++i) {
+    const double trial_s = earliest_s + i * coarse_s;
     const Line line = straight(lit_parts(scan, trial_s), scan.light);
     if (line.misfit < best.misfit) {
       best = line;

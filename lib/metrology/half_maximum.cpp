@@ -51,9 +51,11 @@ double top_of(const std::vector<double>& profile, const Crossings& at) {
   double sxx = 0;
   double sy = 0;
   double sxy = 0;
-  for (double x = std::ceil(middle - reach); x <= middle + reach; ++x) {
-    const double y = profile[static_cast<std::size_t>(x)];
-    const double square = (x - middle) * (x - middle);
+  const auto last = static_cast<std::size_t>(middle + reach);
+  for (auto i = static_cast<std::size_t>(std::ceil(middle - reach)); i <= last; ++i) {
+    const double y = profile[i];
+    const double x = static_cast<double>(i) - middle;
+    const double square = x * x;
     ++n;
     sx += square;
     sxx += square * square;

@@ -78,8 +78,9 @@ Finding edges(const ScanOptions& options, const model::Printer& printer) {
     for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
   }
   const double row_mm = printer.camera.pixel_mm * printer.camera.binning;
+  const int band_rows = rows / options.bands;  // as band_means() cuts them
   for (int b = 0; b < options.bands; ++b) {
-    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * (rows / options.bands) * row_mm);
+    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * row_mm);
   }
   const auto found = metrology::find_edges(scan, printer);
   Finding finding;

@@ -1,0 +1,102 @@
+#!/bin/sh
+# A print that ends before its time, from any side: dark and still, the right status, and a summary of it.
+# In memory: a disk that is busy with others would hold up the screen.
+[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH; export PATH
+VAM_LOCK_DIR=$PWD/locks; mkdir locks screen; export VAM_LOCK_DIR
+ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
+screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
+shim=$(vam-sim-stage --shim)
+await() {  # await COMMAND...: until it succeeds, at most 10 s
+  tries=0
+  until "$@" || [ $tries -ge 500 ]; do tries=$((tries + 1)); sleep 0.02; done
+}
+cat >printer.toml <<TOML
+[projector]
+columns = 64
+rows = 48
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 40
+[stage]
+device = "gcs:$PWD/stage"
+speed_deg_s = 60
+TOML
+python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr space=projector width=64 height=36 count=3
+
+exec 4>screen.number
+Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
+server=$!
+await test -s screen.number
+DISPLAY=:$(cat screen.number); export DISPLAY
+export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+
+simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
+  rm -f truth path
+  vam-sim-stage --link stage --log truth --die-with-parent --acceleration 3000 --max-speed 360 "$@" >path &
+  simulator=$!
+  await test -s path
+}
+finish() { kill $simulator; wait $simulator 2>/dev/null; }
+stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
+lit() { grep -q '"frame":[0-9]' "$1/flips.jsonl" 2>/dev/null; }
+begin() {  # begin RUN: a print of 20 turns that is under way
+  rm -f leds
+  (exec env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated --missed 0.9 \
+    --run-up 0.05 --turns 20 --run "$1" 2>errors) &
+  printing=$!
+  await lit "$1"
+}
+child() { pgrep -P $printing -x "$1"; }
+aborted() {  # aborted NAME STATUS OUTCOME REGEX: of the run of that name
+  wait $printing 2>/dev/null; status=$?
+  is "$1: status" $status "$2"
+  [ -z "$3" ] || is "$1: the summary" "$(json "$1/summary.json" outcome)" "$3"
+  [ -z "$4" ] || { grep -Eq -- "$4" errors; report $? "$1: says '$4'"; }
+  [ "$1" = unplugged ] || { await stood; ok "$1: the table stands" stood; }  # a pulled cable leaves it to its last order
+  is "$1: black" "$($screen now)" black
+  # The simulated light engine is a part of vam-project and dies with it; usb-safety.t kills it beside a real one.
+  [ "$1" = projector-killed ] || is "$1: the light is off" "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
+}
+
+simulate
+begin term; kill -TERM $printing
+aborted term 143 aborted ''
+begin hangup; kill -HUP $printing
+aborted hangup 129 aborted ''
+begin killed; tools=$(pgrep -P $printing); kill -KILL $printing
+aborted killed 137 '' ''
+gone() { for pid in $tools; do ! kill -0 "$pid" 2>/dev/null || return 1; done; }
+await gone; ok 'killed: its tools end, too' gone
+begin projector-killed; kill -KILL "$(child vam-project)"
+aborted projector-killed 137 'project failed' ''
+begin stage-killed; kill -KILL "$(child vam-stage)"
+aborted stage-killed 137 'stage failed' ''
+begin busy
+env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --uncalibrated --run second 2>second-errors
+is 'a second print is turned away' "$? $(grep -c 'in use by process' second-errors)" '75 1'
+kill -TERM $printing
+aborted busy 143 aborted ''
+finish
+
+# Each kind of wrong answer of the stage, in the middle of the print.
+spoilt() {  # spoilt NAME STATUS REGEX FAULT
+  simulate --fault "$4"
+  begin "$1"
+  aborted "$1" "$2" 'stage failed' "$3"
+  finish
+}
+spoilt garbage 76 'was answered' garbage@POS?:150
+spoilt truncated 75 'no end of the answer' truncated@POS?:150
+spoilt late 75 'no answer' late@POS?:150
+spoilt wrong-sender 76 'controller 7 instead of 1' wrong-sender@POS?:150
+spoilt blocked 76 'was due|is blocked' block@POS?:150
+spoilt unplugged 69 'unplugged' unplug@POS?:150
+simulate --fault error@VEL
+(exec env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated --run refused 2>errors) &
+printing=$!
+aborted refused 76 'stage failed' 'refused with error 17'
+finish
+kill $server; wait $server 2>/dev/null
+done_testing
