@@ -25,7 +25,7 @@ namespace vam::capture_tool {
 namespace {
 
 constexpr double wanted_axis_sigma_px = 0.1;
-constexpr double wanted_radius_sigma = 5e-4;  // of the radius
+constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is told from noise
 constexpr double allowed_shift_px = 1;
 constexpr double allowed_radius_change = 0.005;
 

@@ -1,0 +1,91 @@
+#!/bin/sh
+# The calibration scans of vam-capture on pictures with known truth: records, current link, refusal.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+scans="python3 $VAM_SOURCE/tests/tools/scans.py"
+value() { json "$1" "values.$2.value"; }  # value RECORD NAME
+sigma() { json "$1" "values.$2.sigma"; }
+near() { holds "$1" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
+kept() { ls cal | grep -c "^cal-lab-1-$1-.*json"; }  # records of a scan
+
+geometry='columns=512 pitch=4 width=2 radius=12.4'
+$scans sweep sweep axis=249.3 $geometry
+$scans ramp ramp
+$scans flat flat
+$scans beam beam
+$scans turn turn axis=61.25 wobble=2 phase=40
+$scans sweep moved axis=251.3 $geometry
+
+fails 64 'name them with --from' vam-capture edges
+fails 66 'missing' vam-capture edges --from missing
+fails 64 'needs --flips' vam-capture latency --from ramp
+fails 64 'needs --pixel' vam-capture beam --from beam
+fails 64 'no calibration.folder' vam-capture check
+fails 65 'are not 16 levels' vam-capture response --from ramp --steps 16
+fails 65 'no height shows light' vam-capture edges --from flat --pitch 4 --width 2
+fails 65 '8 rows; at least 16' vam-capture beam --from ramp --pixel 0.0035 --step 1.27
+
+# Without a folder the record is printed.
+vam-capture beam --from beam --pixel 0.0035 --first -6.35 --step 1.27 >beam.json
+is 'beam: it ends well' $? 0
+near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
+is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
+
+cat >printer.toml <<'TOML'
+[projector]
+columns = 512
+[calibration]
+folder = "cal"
+instrument = "lab 1"
+vial = "A7"
+valid_hours = 12
+TOML
+quiet 'edges' vam-capture edges --from sweep --pitch 4 --width 2
+near 'edges: the middle' "$(value cal/current-edges.json axis_column)" 249.3 0.1
+near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
+is 'edges: what is said of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
+is 'edges: the frames are named by their hash' "$(json cal/current-edges.json sha256.sweep)" "$(cd sweep && sha256sum * | sha256sum | cut -d' ' -f1)"
+quiet 'response' vam-capture response --from ramp
+near 'response: half grey' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-lab-1-response-*.csv)" 0.229 0.003
+quiet 'flat' vam-capture flat --from flat
+near 'flat: unevenness' "$(json cal/current-flat.json flat.unevenness)" 0.09 0.02
+quiet 'axis' vam-capture axis --from turn --step 10
+near 'axis: the column' "$(value cal/current-axis.json axis_column)" 61.25 0.02
+near 'axis: the wobble' "$(value cal/current-axis.json wobble)" 2 0.02
+near 'axis: its phase' "$(value cal/current-axis.json wobble_phase)" 40 1
+is 'records are read-only' "$(find cal -name 'cal-*.json' -perm 0444 | wc -l)" 4
+
+# The tools take them up.
+vam-project --print-printer -o in-force.toml
+is 'axis_column is the measured one' "$(sed -n 's/^axis_column = \([0-9.]*\).*/\1/p' in-force.toml | head -n 1)" "$(value cal/current-edges.json axis_column)"
+ok 'so is the response' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-force.toml
+ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.toml
+ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
+ok 'check' vam-capture check --need edges --need response
+vam-capture check >state
+is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
+
+# Stale, foreign and missing records.
+fails 65 'has no record of latency; run vam-calibrate' vam-capture check --need latency
+fails 64 'none of edges' vam-capture check --need edge
+fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
+fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
+ok 'without them all goes on' vam-project --print-printer --set calibration.folder= -o plain.toml
+vam-capture axis --from turn --step 10 --set calibration.valid_hours=1e-7
+fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-printer
+quiet 'a stale record does not stop a new one' vam-capture axis --from turn --step 10
+ok 'which heals' vam-project --print-printer -o healed.toml
+
+# A vial that moved is told and not used, unless that is wanted.
+before=$(readlink cal/current-edges.json)
+vam-capture edges --from moved --pitch 4 --width 2 2>errors
+is 'a vial that moved by 2 px is a judgement' $? 1
+ok 'which says how far' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
+is 'the record in force stays' "$(readlink cal/current-edges.json)" "$before"
+is 'the other is kept, too' "$(kept edges)" 2
+vam-capture edges --from moved --pitch 4 --width 2 --accept 2>errors
+is 'accepted' "$? $(grep -c warning errors)" '0 1'
+near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
+echo nonsense >cal/current-beam.json
+fails 65 'is no vam-calibration/1 record of beam' vam-project --print-printer
+fails 73 'cannot make the folder' vam-capture axis --from turn --step 10 --set calibration.folder=printer.toml/cal
+done_testing
