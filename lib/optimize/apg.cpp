@@ -2,12 +2,12 @@
 // preconditioner and restarts (O'Donoghue & Candes 2015).
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "optimize/loss.hpp"
 #include "optimize/method.hpp"
 #include "optimize/safeguard.hpp"
 #include "optimize/step_length.hpp"
+#include "optimize/two_metric.hpp"
 
 namespace vam::optimize {
 
@@ -42,15 +42,17 @@ class Apg final : public Method {
     const PerSlice beta = advance();
     residual(problem, iterate, beta);
     light.forward(before_.dose, update_);
-    hold_active(iterate, beta, peak);
+    const auto ahead = [&](std::size_t s, std::size_t i) {
+      const float now = iterate.g[s].values[i];
+      return now + beta[s][i % lanes] * (now - before_.g[s].values[i]);
+    };
+    bounds_.hold(update_, peak, ahead);
     light.precondition(update_);
     for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        const float now = iterate.g[s].values[i];
-        const float ahead = now + beta[s][i % lanes] * (now - before_.g[s].values[i]);
-        before_.g[s].values[i] = now;
-        const float next = std::clamp(ahead - length_[s][i % lanes] * update_[s].values[i], 0.0F, peak);
-        iterate.g[s].values[i] = active(s, i) ? std::clamp(ahead, 0.0F, peak) : next;
+        const float y = ahead(s, i);
+        before_.g[s].values[i] = iterate.g[s].values[i];
+        iterate.g[s].values[i] = bounds_.step(s, i, y, length_[s][i % lanes] * update_[s].values[i], peak);
       }
     });
     std::swap(iterate.dose, before_.dose);
@@ -79,30 +81,6 @@ class Apg final : public Method {
     momentum_ = constant(iterate.g.size(), 1.0F);
     half_width_ = constant(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
     loss_ = losses(problem, light, iterate);
-  }
-
-  /// Values at a bound that the plain gradient would push beyond it are held there, and only the others take part in
-  /// the preconditioned step: clipping a step along P would not go downhill (two-metric projection, Bertsekas 1982).
-  void hold_active(const Iterate& iterate, const PerSlice& beta, float peak) {
-    active_.resize(iterate.g.size(), std::vector<std::uint16_t>(iterate.g[0].values.size() / lanes));
-    for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i < last; i += lanes) {
-        unsigned bits = 0;
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          const float now = iterate.g[s].values[i + lane];
-          const float ahead = now + beta[s][lane] * (now - before_.g[s].values[i + lane]);
-          float& u = update_[s].values[i + lane];
-          const bool held = (ahead <= 0 && u > 0) || (ahead >= peak && u < 0);
-          bits |= held ? 1U << lane : 0U;
-          u = held ? 0.0F : u;
-        }
-        active_[s][i / lanes] = static_cast<std::uint16_t>(bits);
-      }
-    });
-  }
-
-  [[nodiscard]] bool active(std::size_t s, std::size_t i) const {
-    return ((active_[s][i / lanes] >> (i % lanes)) & 1U) != 0;
   }
 
   /// t_{k+1} = (1 + sqrt(1 + 4 t_k^2)) / 2, beta = (t_k - 1) / t_{k+1}.
@@ -179,7 +157,7 @@ class Apg final : public Method {
   std::vector<Slab> update_;
   PerSlice momentum_, length_, loss_;
   PerSlice half_width_;  // of each slice's window about the threshold
-  std::vector<std::vector<std::uint16_t>> active_;
+  TwoMetric bounds_;
 };
 
 }  // namespace

@@ -266,9 +266,8 @@ std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const 
     const float* values = dose[s].values.data() + first % lanes;
     const Label* labels = problem.labels[s].data() + first % lanes;
     for (std::size_t i = 0; i < dose[s].values.size(); i += lanes) {
-      for (int lane = 0; lane < used; ++lane) {
-        slices[static_cast<std::size_t>(first + lane)].add(values[i + static_cast<std::size_t>(lane)],
-                                                           labels[i + static_cast<std::size_t>(lane)]);
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
+        slices[static_cast<std::size_t>(first) + lane].add(values[i + lane], labels[i + lane]);
       }
     }
   });

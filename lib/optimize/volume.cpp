@@ -325,8 +325,8 @@ VolumeOutcome optimise(const VolumeTask& task, const Operator& light) {
   if (task.blur_px > 0 && !task.make()->keeps_scale()) {
     throw Error{
         Fault::usage,
-        "this method scales each slice by itself and cannot make up for a blur from slice to slice; use apg, pm "
-        "or bclp, or leave the blur out (--no-blur)"};
+        "this method scales each slice by itself and cannot make up for a blur from slice to slice; use apg, cal, "
+        "pm or bclp, or leave the blur out (--no-blur)"};
   }
   return Run(task, light)();
 }

@@ -66,12 +66,17 @@ for seconds in 0.2 0.3 0.4 0.6 0.9 1.5 3 10 60; do
   attempt $seconds && break
   [ -e parts.exr ] && break
 done
-history() { sed 's/vam-optimize 0[^"]*//' "$1"; }
 is "the pixels of an interrupted run" "$(tail -c 20000 parts.exr | cksum)" "$(tail -c 20000 whole.exr | cksum)"
 same "its trace" parts.csv whole.csv
 same "its report" parts.json whole.json
 is "its state is removed in the end" "$(ls run.state 2>/dev/null)" ""
-sh -c 'trap "" TERM; exec timeout -s INT 0.5 vam-optimize --iterations 100000 --patience 0 --checkpoint run.state part.vdb -o never.exr'
+for seconds in 0.5 1 2 5 20; do
+  timeout --preserve-status -s INT $seconds \
+    vam-optimize --iterations 100000 --patience 0 --checkpoint run.state part.vdb -o never.exr
+  status=$?
+  [ -e run.state ] && break
+done
+is "broken off, it ends by the signal" "$status" 130
 is "broken off, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
 fails 65 'of another job' vam-optimize --angles 90 --checkpoint run.state part.vdb -o out.exr
 python3 - <<'EOF'
@@ -80,7 +85,7 @@ bytes[-400:-396] = b"\x00\x00\xc0\x7f"
 open("nan.state", "wb").write(bytes)
 open("cut.state", "wb").write(bytes[:3000])
 EOF
-fails 65 'nan.state: .*(NaN|damaged)' vam-optimize --iterations 100000 --patience 0 --checkpoint nan.state part.vdb -o out.exr
+fails 65 'nan.state: .*NaN' vam-optimize --iterations 100000 --patience 0 --checkpoint nan.state part.vdb -o out.exr
 fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
 fails 65 'not a state' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
 
@@ -98,7 +103,7 @@ printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --response falls.csv part.vdb -o out.exr
 fails 66 'none.csv' vam-optimize --method bclp --response none.csv part.vdb -o out.exr
 fails 64 'knows part and void only' vam-optimize --grey --method osmo part.vdb -o out.exr
-fails 64 'no-blur' vam-optimize --method cal --set resin.psf_mm=0.1 part.vdb -o out.exr
+fails 64 'no-blur' vam-optimize --method osmo --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
 fails 65 "grid of 'target' is not" vam-optimize --weights other.vdb part.vdb -o out.exr
 vam-slice --shape handle --insert-shape cylinder:diameter=14,height=30 --voxel 0.4 -o overlap.vdb 2>/dev/null

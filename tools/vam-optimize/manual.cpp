@@ -39,7 +39,8 @@ cli::Manual manual() {
        "share of the voxels outside their band, PW the least margin that any has, negative outside, IPDR the largest "
        "and CV the root mean square error, IoU 1 - VER.",
        "The beam's point spread (resin.psf_mm) and the diffusion of dose (resin.diffusion_mm2_s) smear the dose; apg, "
-       "pm and bclp find light that makes up for it. The slices are then optimised together with their neighbours."},
+       "cal, pm and bclp find light that makes up for it. The slices are then optimised together with their "
+       "neighbours."},
       {{"Projections of a gyroid for the default printer:",
         "vam-slice --shape gyroid --voxel 0.25 -o part.vdb && vam-optimize part.vdb -o light.exr"},
        {"Computed axial lithography, with the figures of merit of every iteration:",

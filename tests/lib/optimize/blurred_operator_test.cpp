@@ -131,7 +131,7 @@ TEST_CASE("slices that share dose decide together, so that doses stay those of t
   const auto problem = make_problem(all.data(), 5, size, size, parts::circle(size), {});
   const ParallelOperator sharp(parts::turn(size, 60));
   const BlurredOperator light(sharp, 1, 5);
-  for (const std::string name : {"apg", "pm", "bclp"}) {
+  for (const std::string name : {"apg", "cal", "pm", "bclp"}) {
     CAPTURE(name);
     Iterate state;
     iterate(*make_method(name, {}), problem, light, {.iterations = 12, .until = {}, .patience = 0}, state);

@@ -127,6 +127,41 @@ TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's lo
   }
 }
 
+TEST_CASE("osmo's and cal's loss never rises: osmo's by itself, cal's by line search") {
+  const auto parts = some_parts();
+  const auto all = parts::stacked(parts);
+  const ParallelOperator light(parts::turn(size, 360));
+  const auto problem = make_problem(all.data(), 4, size, size, parts::circle(size), {});
+  const CureCurve& curve = problem.demands.curve;
+  // cal's: the integral of M(x) - f, for part less its value at a dose of 2 so that 0 is the least.
+  const auto cross = [&](std::size_t s, std::size_t i, float x) {
+    if (!asked(problem.labels[s][i])) return 0.0F;
+    const float f = problem.target[s].values[i];
+    return curve.area(x) - f * x - (f > 0 ? curve.area(2) - 2 * f : 0.0F);
+  };
+  for (const std::string name : {"osmo", "cal"}) {
+    CAPTURE(name);
+    const auto method = make_method(name, {});
+    Iterate state;
+    method->start(problem, light, state);
+    const auto now = [&] {
+      return name == "osmo" ? loss(state.dose, problem) : summed(state.dose, [&](std::size_t s, std::size_t i) {
+        return cross(s, i, state.dose[s].values[i]);
+      });
+    };
+    const PerSlice first = now();
+    PerSlice before = first;
+    for (int i = 0; i < 20; ++i) {
+      method->step(problem, light, state);
+      const PerSlice after = now();
+      // The sum itself is only known to rounding: 1e-6 of what it began with.
+      for (std::size_t s = 0; s < 4; ++s) CHECK(after[0][s] <= before[0][s] + 1e-6F * first[0][s]);
+      before = after;
+    }
+    for (std::size_t s = 0; s < 4; ++s) CHECK(before[0][s] < 0.7F * first[0][s]);
+  }
+}
+
 TEST_CASE("projections are never negative") {
   for (const auto& name : method_names()) {
     CAPTURE(name);
