@@ -78,7 +78,7 @@ VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out) : out_(s
   for (const double weight : gaussian_weights(sigma_px)) weights_.push_back(static_cast<float>(weight));
 }
 
-void VolumeBlur::push(Image slice) {
+void VolumeBlur::push(const Image& slice) {
   const int reach = static_cast<int>(weights_.size()) - 1;
   held_.push_back(blur_across(slice, weights_));
   ++pushed_;

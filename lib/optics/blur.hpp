@@ -22,7 +22,7 @@ namespace vam::optics {
 class VolumeBlur {
  public:
   VolumeBlur(double sigma_px, std::function<void(Image)> out);
-  void push(Image slice);
+  void push(const Image& slice);
   /// After the last slice.
   void finish();
 

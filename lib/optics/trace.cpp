@@ -176,6 +176,9 @@ void Tracer::State::dose_tile(const float* slab, int lanes, int tile, std::span<
   const int i1 = std::min(i0 + tile_edge, grid.nx);
   const int j1 = std::min(j0 + tile_edge, grid.ny);
   alignas(64) float sums[tile_edge * tile_edge * 64] = {};
+  const auto sums_of = [&](int i, int j) {
+    return sums + static_cast<std::ptrdiff_t>((j - j0) * tile_edge + (i - i0)) * lanes;
+  };
   // Angles outside, voxels inside: the light of a few angles on the tile stays in the cache.
   for (int row = 0; row < setup.turn.rows; row += trace_rows) {
     const int rows = std::min(trace_rows, setup.turn.rows - row);
@@ -188,14 +191,14 @@ void Tracer::State::dose_tile(const float* slab, int lanes, int tile, std::span<
         const bool outside = r >= table.reach_mm && table.outer.rows > 0;
         const LitTable::Zone& zone = outside ? table.outer : table.inner;
         trace_voxel(kernel, zone, (r - zone.first_mm) / zone.pitch_mm, std::atan2(y, x), slab, row, rows,
-                    sums + ((j - j0) * tile_edge + (i - i0)) * lanes);
+                    sums_of(i, j));
       }
     }
   }
   const auto step = static_cast<float>(std::abs(setup.turn.step_rad));
   for (int j = j0; j < j1; ++j) {
     for (int i = i0; i < i1; ++i) {
-      const float* sum = sums + ((j - j0) * tile_edge + (i - i0)) * lanes;
+      const float* sum = sums_of(i, j);
       for (std::size_t s = 0; s < doses.size(); ++s) doses[s](i, j) = step * sum[s];
     }
   }
