@@ -44,6 +44,18 @@ cli::Manual manual() {
        "showed a "
        "test pattern, and what its --log says was on when (--flips), and write a calibration record; check says which "
        "records are in force. vam-calibrate(1) runs them all.",
+       "A record is a JSON file in calibration.folder of the printer file: read-only, named "
+       "cal-INSTRUMENT-SCAN-UTC.json, "
+       "with each value's unit, sigma, number of readings and method, the hashes of the frames, how long it is valid "
+       "and "
+       "for which instrument and vial. The link current-SCAN.json points to the one in force, which every tool that "
+       "reads "
+       "the printer file takes up: flag, then --set, then record, then file. A stale or foreign record is refused "
+       "(status "
+       "65). A scan whose result is not to be trusted is recorded, but not put in force (status 1). Without a folder "
+       "the "
+       "record goes to standard output. The latency takes the camera's time stamps as true: find their --latency "
+       "first.",
        "Lost frames are never hidden: the count of frames that were dropped and of those that came incomplete is said "
        "on "
        "standard error, in --report and in --log; an incomplete frame is marked in the manifest and in the stack "
@@ -53,6 +65,11 @@ cli::Manual manual() {
        {"Twenty frames of a simulated print that turns 18 degrees between two of them, as fast as they can be made:",
         "vam-capture --device 'sim:?pace=virtual&speed_deg_s=180&lit_s=0.1' --binning 8 --fps 10 --frames 20 -o "
         "views.exr"},
+       {"Where the rotation axis is in frames of a bead (here a piece of print) over a turn:",
+        "vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
+        "--binning 4 "
+        "--speed "
+        "90 --every 10 -o turn.exr && vam-capture axis --from turn.exr --bands 3"},
        {"Half a turn into a folder; the second call finds nothing missing and takes nothing:",
         "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/\n"
         "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/"}},

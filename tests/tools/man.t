@@ -26,4 +26,14 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
 done
 
+for script in vam-print vam-calibrate; do
+  page=$VAM_SOURCE/man/$script.1
+  is "$script: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
+  ok "$script: --help" "$VAM_SOURCE/scripts/$script" --help
+  for option in $("$VAM_SOURCE/scripts/$script" --help | grep -o -- '--[a-z-]*' | sort -u); do
+    grep -q "Fl -${option#--} " "$page" || grep -q "Fl -${option#--}\$" "$page"; report $? "$script: $option is in the manual"
+  done
+  grep -q "$script" "$VAM_SOURCE/README.md"; report $? "$script: in README"
+done
+
 done_testing

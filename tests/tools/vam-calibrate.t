@@ -78,6 +78,9 @@ ok 'all are in force' vam-capture check --need latency --need response --need ax
 python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=256 height=36 count=3 pixel=0.1 row=0.1
 quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 --run run
 is 'whose summary names them' "$(json run/summary.json calibration.response.sha256)" "$(sha256sum <cal/current-response.json | cut -d' ' -f1)"
+is 'and the stage' "$(json run/devices.json stage.serial)" "$(json cal/current-axis.json devices.stage.serial)"
+echo '{"stage": {"serial": "another"}}' >other.json
+fails 65 'was made with the stage .*, this is another; run vam-calibrate' vam-capture check --devices other.json
 fails 65 "is of instrument 'simulated', this is 'other'" vam-capture check --set calibration.instrument=other
 kill $server; wait $server 2>/dev/null
 done_testing

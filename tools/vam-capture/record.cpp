@@ -50,6 +50,28 @@ Json hashes(const ScanOptions& options) {
   return json;
 }
 
+// {"camera": {"serial": ...}, "stage": {...}}: what the tools' identify says.
+Json read_devices(const std::string& path) {
+  Json devices = Json::parse(io::read_all(path), nullptr, false);
+  if (!devices.is_object()) throw Error{Fault::data, path + ": is no JSON object of devices"};
+  for (const auto& [name, device] : devices.items()) {
+    if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is no JSON object"};
+    if (device.contains(name)) device = Json(device[name]);  // vam-capture says more than the camera's own
+  }
+  return devices;
+}
+
+// Why a record was not made with these devices; empty when nothing speaks against it.
+std::string stranger(const Json& record, const Json& devices) {
+  const Json known = record.value("devices", Json::object());
+  for (const auto& [name, device] : devices.items()) {
+    const std::string now = device.value("serial", "");
+    const std::string then = known.value(name, Json::object()).value("serial", now);
+    if (then != now) return "was made with the " + name + " " + then + ", this is " + now + "; run vam-calibrate";
+  }
+  return "";
+}
+
 }  // namespace
 
 void Finding::value(const std::string& name, const metrology::Measured& measured, const std::string& unit,
@@ -73,6 +95,7 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
              {"reasons", reasons},
              {"values", finding.values_}};
   facts.update(finding.facts);
+  if (!options.devices.empty()) facts["devices"] = read_devices(options.devices);
   facts["sha256"] = hashes(options);
   if (calibration.folder.empty()) {
     io::write_text("-", facts.dump(2) + "\n");
@@ -100,6 +123,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
       throw Error{Fault::usage, "--need " + name + ": is none of " + join(scans, ", ")};
     }
   }
+  const Json devices = options.devices.empty() ? Json::object() : read_devices(options.devices);
   Json report = Json::object();
   std::string first;
   for (const auto& scan : scans) {
@@ -108,6 +132,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     std::string why;
     if (record) {
       why = io::objection(*record, calibration, io::utc_seconds());
+      if (why.empty()) why = stranger(record->json, devices);
       const std::string path = (fs::path(record->path).parent_path() / fs::read_symlink(record->path)).string();
       report[scan] = {{"record", path},
                       {"sha256", hash_file(path)},

@@ -62,6 +62,7 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
 Finding edges(const ScanOptions& options, const model::Printer& printer) {
   std::map<int, std::pair<int, std::vector<double>>> sums;  // by the pattern's frame
   int rows = 0;
+  double row_mm = 0;
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const auto means = metrology::band_means(frame.image, options.bands);
     auto& [count, sum] = sums[frame.shown];
@@ -69,6 +70,7 @@ Finding edges(const ScanOptions& options, const model::Printer& printer) {
     for (std::size_t b = 0; b < means.size(); ++b) sum[b] += means[b];
     ++count;
     rows = frame.image.height;
+    row_mm = frame.pixel_mm;
   });
   metrology::SweepScan scan;
   scan.width_px = options.width_px;
@@ -77,7 +79,6 @@ Finding edges(const ScanOptions& options, const model::Printer& printer) {
     scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
     for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
   }
-  const double row_mm = printer.camera.pixel_mm * printer.camera.binning;
   const int band_rows = rows / options.bands;  // as band_means() cuts them
   for (int b = 0; b < options.bands; ++b) {
     scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * row_mm);
@@ -213,12 +214,14 @@ Finding beam(const ScanOptions& options, const model::Printer& printer) {
 
 Finding axis(const ScanOptions& options, const model::Printer& printer) {
   metrology::TurnScan scan;
+  double pixel_mm = 0;
   scan.middle.resize(static_cast<std::size_t>(options.bands));
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const auto middles = metrology::bright_middles(frame.image, options.bands);
     for (std::size_t b = 0; b < middles.size(); ++b) scan.middle[b].push_back(middles[b]);
     scan.angle_deg.push_back(frame.angle_deg);
     scan.rows = frame.image.height;
+    pixel_mm = frame.pixel_mm;
   });
   const auto found = metrology::find_camera_axis(scan);
   Finding finding;
@@ -227,7 +230,6 @@ Finding axis(const ScanOptions& options, const model::Printer& printer) {
   finding.value("tilt", found.tilt_deg, "deg", "line through the axes by row");
   finding.value("wobble", found.wobble_px, "px", method);
   finding.value("wobble_phase", found.phase_deg, "deg", method);
-  const double pixel_mm = printer.camera.pixel_mm * printer.camera.binning;
   finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},
                 "mm", method);
   if (found.column.sigma > wanted_axis_sigma_px) {
@@ -273,6 +275,8 @@ void add_input(cli::App& scan, ScanOptions& options, bool with_flips) {
                 "Log of vam-project while they were taken: tells which picture each frame shows. Without it frame n "
                 "shows picture n.");
   }
+  scan.option("--devices", "FILE", options.devices,
+              "JSON for the record, like {\"camera\": ...}: what identify says of each device that took part.");
   cli::add_printer(scan, options.printer);
 }
 
@@ -306,6 +310,7 @@ void add_scans(cli::App& app, ScanOptions& options, std::string& chosen) {
   auto& check =
       app.subcommand("check", "print the current records as JSON; status 65 when one must not be used", chosen);
   check.option("--need", "SCAN", options.needed, "A record of this scan must be there; may be repeated.");
+  check.option("--devices", "FILE", options.devices, "Refuse records made with devices of other serial numbers.");
   cli::add_printer(check, options.printer);
 }
 

@@ -23,6 +23,7 @@ struct ScanOptions {
   int pitch_px = 4, width_px = 4, steps = 17;      // of the pattern
   double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
   double step_deg = 0;                             // axis: frames without angles
+  std::string devices;                             // who took part
   std::vector<std::string> needed;                 // check
   cli::PrinterOptions printer;
 };
@@ -39,6 +40,7 @@ struct ScanFrame {
   Image image;
   double time_s = 0;  // middle of the exposure
   double angle_deg = 0;
+  double pixel_mm = 0;  // at the axis, as the frames say, else the printer
   int shown =
       0;  // the pattern's frame that was on during the whole exposure: by the flips, else the frame's own number
 };

@@ -52,9 +52,10 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
   // A folder of pictures asks for angles, which only the scan `axis` needs.
   const bool needs_angles = options.command == "axis";
   io::ViewSource source(options.from, needs_angles ? options.step_deg : 1);
+  const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
   for (int n = 0; source.next(frame); ++n) {
-    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, n};
+    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
     if (!flips.empty()) {
       if (frame.time_s == 0) {
         throw Error{Fault::usage, frame.name + ": has no time, which --flips needs; capture with vam-capture"};
