@@ -43,6 +43,14 @@ done
 holds "the judge sees the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
 is "and no error" "$(value exact.json ver)" 0.0
 
+blurring="--set resin.psf_mm=0.12"  # the judge blurs in its own way
+for how in "" --no-blur; do
+  quiet "blur: $how" vam-optimize --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o light.exr
+  vam-dose light.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur$how.json" >table
+done
+holds "light made up for the blur prints under it" "$(value blur.json pw) > 0 && $(value blur.json ver) == 0"
+holds "light that was not does not" "$(value blur--no-blur.json pw) < 0"
+
 ok "through pipes" sh -c 'vam-optimize --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
 vam-optimize --method dose-norm --angles 90 --threads 1 --compression none part.vdb -o one.exr
