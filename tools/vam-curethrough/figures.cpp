@@ -1,13 +1,42 @@
 // Tables and JSON of the cure map.
 #include "vam-curethrough/figures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
+#include <vector>
 
-#include "base/log.hpp"
-#include "io/stream.hpp"
+#include "base/text.hpp"
 
 namespace vam::curethrough {
+
+namespace {
+
+using Heights = std::pair<int, int>;  // from, to; in slices
+
+// At most 20 groups of neighbouring heights that occur; the report has each by itself.
+std::vector<std::pair<Heights, resin::FeatureErrors>> grouped(const std::vector<resin::FeatureErrors>& by_height) {
+  const auto occurs = [](const resin::FeatureErrors& e) { return e.features > 0; };
+  const auto sizes = static_cast<std::size_t>(std::count_if(by_height.begin(), by_height.end(), occurs));
+  const std::size_t each = std::max<std::size_t>(1, (sizes + 19) / 20);
+  std::vector<std::pair<Heights, resin::FeatureErrors>> groups;
+  std::size_t taken = 0;
+  for (int h = 0; h < static_cast<int>(by_height.size()); ++h) {
+    const resin::FeatureErrors& e = by_height[static_cast<std::size_t>(h)];
+    if (!occurs(e)) continue;
+    if (taken++ % each == 0) groups.push_back({{h, h}, {}});
+    auto& [heights, sum] = groups.back();
+    heights.second = h;
+    sum.features += e.features;
+    sum.under += e.under;
+    sum.through += e.through;
+    sum.worst = std::max(sum.worst, e.worst);
+  }
+  return groups;
+}
+
+}  // namespace
 
 Json to_json(const resin::CureTotals& totals, const resin::Process& process) {
   const double voxel_mm3 = std::pow(process.slice_um * 1e-3, 3);
@@ -50,15 +79,18 @@ std::string table_of(const resin::CureTotals& totals, const resin::Process& proc
   count("cure-through", totals.through);
   count("undercured", totals.under);
   text += "feature height   features   mean error  cure-through   undercured        worst  (um)\n";
-  for (std::size_t h = 0; h < totals.by_height.size(); ++h) {
-    const resin::FeatureErrors& e = totals.by_height[h];
-    if (e.features == 0) continue;
-    const double per = process.slice_um / static_cast<double>(e.features);
-    std::snprintf(line, sizeof line, "%14.6g %10lld %12.4g %13.4g %12.4g %12.4g\n",
-                  static_cast<double>(h) * process.slice_um, static_cast<long long>(e.features),
-                  e.mean() * process.slice_um, e.through * per, e.under * per, e.worst * process.slice_um);
+  const auto errors = [&](const std::string& what, const resin::FeatureErrors& e) {
+    const double per = e.features > 0 ? process.slice_um / static_cast<double>(e.features) : 0;
+    std::snprintf(line, sizeof line, "%14s %10lld %12.4g %13.4g %12.4g %12.4g\n", what.c_str(),
+                  static_cast<long long>(e.features), e.mean() * process.slice_um, e.through * per, e.under * per,
+                  e.worst * process.slice_um);
     text += line;
+  };
+  for (const auto& [heights, sum] : grouped(totals.by_height)) {
+    const std::string from = format_number(heights.first * process.slice_um);
+    errors(heights.first == heights.second ? from : from + "-" + format_number(heights.second * process.slice_um), sum);
   }
+  errors("all", totals.all());
   return text;
 }
 

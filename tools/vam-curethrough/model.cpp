@@ -6,6 +6,7 @@
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "io/file_type.hpp"
 #include "io/report.hpp"
 #include "io/stream.hpp"
 #include "resin/cure_map.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 constexpr int block = resin::StackDose::block_slices;
 
-bool is_volume(const std::string& path) { return path == "-" || (path.size() > 4 && path.ends_with(".vdb")); }
+bool is_volume(const std::string& path) { return path == "-" || io::file_type(path) == io::FileType::volume; }
 
 // The ordinary slices of a part: full light in it, the least outside.
 Slices plain_slices(const std::shared_ptr<Part>& part, float dark) {
@@ -69,6 +70,9 @@ double slice_height_um(const Model& options, const Inputs& in) {
 Inputs open_inputs(const cli::App& app, const Model& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
+  if (is_volume(options.input) && !design.path.empty()) {
+    throw Error{Fault::usage, "--part: " + options.input + " is a part itself; give slices, or leave out --part"};
+  }
   if (is_volume(options.input)) design.path = options.input;
   if (!design.path.empty()) in.part = std::make_shared<Part>(design, exposure_of(options.print));
   const bool plain = is_volume(options.input);

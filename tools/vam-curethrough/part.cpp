@@ -72,7 +72,8 @@ void Part::take_values(const io::VoxelBlock& block) {
   const int first = upside_down() ? grid().nz - box.z1 : box.z0;
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
-      const float* column = block.values + ((x - block.i) * 8 + (y - block.j)) * 8 + (box.z0 - block.k);
+      const int corner = ((x - block.i) * 8 + (y - block.j)) * 8 + (box.z0 - block.k);
+      const float* column = block.values + corner;
       std::uint64_t bits = 0;
       for (int b = 0; b < count; ++b) bits |= static_cast<std::uint64_t>(column[b] >= least_) << b;
       columns_->put(pixel(x, y), first, count, upside_down() ? reversed(bits, count) : bits);
