@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
 
 namespace vam::resin {
@@ -152,6 +153,20 @@ Image to_intensity(const GreyImage& image, const GreyLevels& levels) {
   Image intensity(image.width, image.height);
   for (std::size_t i = 0; i < image.values.size(); ++i) intensity.values[i] = levels.intensity(image.values[i]);
   return intensity;
+}
+
+void to_intensity(Image& greys, const Response& response) {
+  parallel_for(greys.height, [&](int y) {
+    float grey = -1;  // rows are runs of few values
+    float intensity = 0;
+    for (float* pixel = greys.row(y); pixel != greys.row(y) + greys.width; ++pixel) {
+      if (*pixel != grey) {
+        grey = *pixel;
+        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
+      }
+      *pixel = intensity;
+    }
+  });
 }
 
 }  // namespace vam::resin

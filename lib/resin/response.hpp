@@ -75,5 +75,7 @@ LightTally limit_to_full(Image& image, float scale);
 
 /// What the projector gives for these levels, as fractions of full intensity.
 [[nodiscard]] Image to_intensity(const GreyImage& image, const GreyLevels& levels);
+/// The same in place for greys 0...1.
+void to_intensity(Image& greys, const Response& response);
 
 }  // namespace vam::resin

@@ -33,20 +33,6 @@ Slices from_folder(const std::string& path, const resin::Response& response) {
   return slices;
 }
 
-void to_intensity(Image& slice, const resin::Response& response) {
-  parallel_for(slice.height, [&](int y) {
-    float grey = -1;
-    float intensity = 0;
-    for (float* pixel = slice.row(y); pixel != slice.row(y) + slice.width; ++pixel) {
-      if (*pixel != grey) {
-        grey = *pixel;
-        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
-      }
-      *pixel = intensity;
-    }
-  });
-}
-
 Slices from_stack(const std::string& path, const resin::Response& response) {
   auto reader = std::make_shared<std::unique_ptr<io::StackReader>>(std::make_unique<io::StackReader>(path));
   const model::StackInfo info = (*reader)->info();
@@ -56,7 +42,7 @@ Slices from_stack(const std::string& path, const resin::Response& response) {
     if (n == 0) *reader = std::make_unique<io::StackReader>(path);
     model::ImageInfo about;
     if (!(*reader)->next(slice, about)) throw Error{Fault::bug, path + ": fewer slices than announced"};
-    if (grey) to_intensity(slice, response);
+    if (grey) resin::to_intensity(slice, response);
   };
   return slices;
 }

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/any_frames.hpp"
 #include "optics/slice_place.hpp"
@@ -22,21 +21,6 @@ std::optional<double> fact(const model::StackInfo& info, const char* name) {
 }
 
 bool is_grey(const model::StackInfo& info) { return info.units == "grey" || info.units == "fraction of full grey"; }
-
-// Grey 0..1 to fractions of full intensity. Rows are runs of few values.
-void to_intensity(Image& slice, const resin::Response& response) {
-  parallel_for(slice.height, [&](int y) {
-    float grey = -1;
-    float intensity = 0;
-    for (float* pixel = slice.row(y); pixel != slice.row(y) + slice.width; ++pixel) {
-      if (*pixel != grey) {
-        grey = *pixel;
-        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
-      }
-      *pixel = intensity;
-    }
-  });
-}
 
 void require_slices(const SliceStack& stack) {
   for (const model::ImageInfo& about : stack.about) {
@@ -94,7 +78,7 @@ Frames frames_of(const SliceStack& stack, double fps, const model::Projector& pr
   frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int) {
     Image slice;
     if (!next(slice)) throw Error{Fault::bug, name + ": fewer slices than announced"};
-    if (grey) to_intensity(slice, *response);
+    if (grey) resin::to_intensity(slice, *response);
     Image placed;
     if (&place->place(slice, dark, placed) == &slice) return slice;
     return placed;

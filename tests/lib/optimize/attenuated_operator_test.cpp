@@ -13,19 +13,8 @@ using parts::dot;
 
 TEST_CASE("A and A* are adjoint with absorption, and the preconditioner is symmetric") {
   const AttenuatedOperator light(parts::turn(64, 90), 1.0 / 32, 32);
-  const Slab f = parts::noise(light.object(), 1);
-  const Slab g = parts::noise(light.sinogram(), 2);
-  Slab projected(64, 90);
-  Slab dose(64, 64);
-  light.forward({&f, 1}, {&projected, 1});
-  light.adjoint({&g, 1}, {&dose, 1});
-  CHECK(std::abs(dot(projected, g) - dot(f, dose)) < 1e-5 * std::sqrt(dot(projected, projected) * dot(g, g)));
-  const Slab h = parts::noise(light.sinogram(), 3);
-  Slab pg = g;
-  Slab ph = h;
-  light.precondition({&pg, 1});
-  light.precondition({&ph, 1});
-  CHECK(std::abs(dot(pg, h) - dot(g, ph)) < 1e-5 * std::sqrt(dot(pg, pg) * dot(h, h)));
+  CHECK(parts::adjoint_error(light) < 1e-5);
+  CHECK(parts::asymmetry_of_preconditioner(light) < 1e-5);
 }
 
 TEST_CASE("a single beam decays from where it enters the resin") {

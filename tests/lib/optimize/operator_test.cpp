@@ -11,33 +11,20 @@ using parts::dot;
 namespace {
 
 /// |<A f, g> - <f, A* g>| / (|A f| |g|)
-double adjoint_error(const Operator& light) {
-  const Slab f = parts::noise(light.object(), 1);
-  const Slab g = parts::noise(light.sinogram(), 2);
-  Slab projected(light.sinogram().width, light.sinogram().height);
-  Slab dose(light.object().width, light.object().height);
-  light.forward({&f, 1}, {&projected, 1});
-  light.adjoint({&g, 1}, {&dose, 1});
-  return std::abs(dot(projected, g) - dot(f, dose)) / std::sqrt(dot(projected, projected) * dot(g, g));
-}
-
 }  // namespace
 
 TEST_CASE("A and A* are adjoint, with half the rows and with all") {
-  CHECK(adjoint_error(ParallelOperator(parts::turn(64, 90))) < 1e-5);
-  CHECK(adjoint_error(ParallelOperator(parts::turn(65, 91))) < 1e-5);
+  CHECK(parts::adjoint_error(ParallelOperator(parts::turn(64, 90))) < 1e-5);
+  CHECK(parts::adjoint_error(ParallelOperator(parts::turn(65, 91))) < 1e-5);
 }
 
 TEST_CASE("the filters are symmetric, and the preconditioner is positive") {
   const ParallelOperator light(parts::turn(64, 90));
+  CHECK(parts::asymmetry_of_preconditioner(light) < 1e-5);
   const Slab a = parts::noise(light.sinogram(), 3);
-  const Slab b = parts::noise(light.sinogram(), 4);
-  Slab fa = a;
-  Slab fb = b;
-  light.precondition({&fa, 1});
-  light.precondition({&fb, 1});
-  CHECK(std::abs(dot(fa, b) - dot(a, fb)) < 1e-5 * std::sqrt(dot(fa, fa) * dot(b, b)));
-  CHECK(dot(a, fa) > 0);
+  Slab filtered = a;
+  light.precondition({&filtered, 1});
+  CHECK(dot(a, filtered) > 0);
 }
 
 TEST_CASE("an even turn needs half the rows; the projected image gives the same dose") {

@@ -31,30 +31,20 @@ VialSetup setup_of(const vam::optics::View& view, int size, int angles) {
   return setup;
 }
 
-double adjoint_error(const Operator& light) {
-  const Slab f = parts::noise(light.object(), 1);
-  const Slab g = parts::noise(light.sinogram(), 2);
-  Slab projected(light.sinogram().width, light.sinogram().height);
-  Slab dose(light.object().width, light.object().height);
-  light.forward({&f, 1}, {&projected, 1});
-  light.adjoint({&g, 1}, {&dose, 1});
-  return std::abs(dot(projected, g) - dot(f, dose)) / std::sqrt(dot(projected, projected) * dot(g, g));
-}
-
 /// Smooth light without symmetry.
 double shine(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * theta) + 0.1 * std::cos(theta); }
 
 }  // namespace
 
 TEST_CASE("in the vial A and A* are adjoint, whatever stands in the light's way and whichever way the stage turns") {
-  CHECK(adjoint_error(VialOperator(setup_of(vial, 64, 90))) < 1e-5);
-  CHECK(adjoint_error(VialOperator(setup_of(walled, 37, 91))) < 1e-5);
+  CHECK(parts::adjoint_error(VialOperator(setup_of(vial, 64, 90))) < 1e-5);
+  CHECK(parts::adjoint_error(VialOperator(setup_of(walled, 37, 91))) < 1e-5);
   VialSetup turned = setup_of(vial, 50, 72);
   turned.direction = -1;
   turned.angle_offset_rad = 0.4;
   turned.absorption_per_mm = 0.07;
   turned.projector.axis_column = 211.3;
-  CHECK(adjoint_error(VialOperator(turned)) < 1e-5);
+  CHECK(parts::adjoint_error(VialOperator(turned)) < 1e-5);
 }
 
 TEST_CASE("four slabs at once give what each gives alone") {
@@ -133,14 +123,11 @@ TEST_CASE("A* filter A is about the identity in the vial, and the preconditioner
   light.adjoint(g, {&dose, 1});
   CHECK(*dose.at(73, 58) == doctest::Approx(1.0).epsilon(0.05));
   CHECK(std::abs(*dose.at(30, 100)) < 0.05);
+  CHECK(parts::asymmetry_of_preconditioner(light) < 1e-5);
   const Slab a = parts::noise(light.sinogram(), 3);
-  const Slab b = parts::noise(light.sinogram(), 4);
-  Slab fa = a;
-  Slab fb = b;
-  light.precondition({&fa, 1});
-  light.precondition({&fb, 1});
-  CHECK(std::abs(dot(fa, b) - dot(a, fb)) < 1e-5 * std::sqrt(dot(fa, fa) * dot(b, b)));
-  CHECK(dot(a, fa) > 0);
+  Slab filtered = a;
+  light.precondition({&filtered, 1});
+  CHECK(dot(a, filtered) > 0);
 }
 
 TEST_CASE("a projector that does not see the vial is told so") {
