@@ -87,6 +87,8 @@ void declare(cli::App& app, Options& o) {
              "Stage angle at which it stands towards the projector's higher columns.");
   app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Full width at half maximum that the optics add to a pixel.");
   app.option("--divergence", "DEG", bench.divergence_deg, {0, 45}, "Of the beam, from the plane of the axis.");
+  app.option("--glow", "PART", bench.glow, {0, 10000},
+             "Brightness of a vial that is lit all over, of full scale in 20 ms. A thin line needs more.");
   app.option("--gamma", "N", bench.gamma, {0.1, 10}, "Light = (grey / full) to this power.");
   app.option("--vignetting", "PART", bench.vignetting, {0, 1}, "Light that the image's corners lack.");
   app.option("--background", "PART", bench.background, {0, 1}, "Of full scale.");

@@ -17,10 +17,10 @@ namespace {
 
 const std::vector<std::string>& option_names() {
   static const std::vector<std::string> names{
-      "columns",     "rows",       "axis_column", "tilt_deg", "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
-      "gamma",       "vignetting", "background",  "noise",    "part",      "lit_s",     "seed",       "divergence_deg",
-      "speed_deg_s", "angles",     "shown",       "bits",     "lag_ms",    "lose",      "cut",        "vanish",
-      "pace",        "log"};
+      "columns",        "rows",        "axis_column", "tilt_deg",   "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
+      "gamma",          "glow",        "vignetting",  "background", "noise",     "part",      "lit_s",      "seed",
+      "divergence_deg", "speed_deg_s", "angles",      "shown",      "bits",      "lag_ms",    "lose",       "cut",
+      "vanish",         "pace",        "log"};
   return names;
 }
 
@@ -37,6 +37,7 @@ SimCameraSettings settings_of(const Address& address, const CameraSettings& aske
   bench.wobble_deg = address.number("wobble_deg", bench.wobble_deg, -360, 360);
   bench.beam_mm = address.number("beam_mm", bench.beam_mm, 0, 10);
   bench.divergence_deg = address.number("divergence_deg", bench.divergence_deg, 0, 45);
+  bench.glow = address.number("glow", bench.glow, 0, 1e4);
   bench.gamma = address.number("gamma", bench.gamma, 0.1, 10);
   bench.vignetting = address.number("vignetting", bench.vignetting, 0, 1);
   bench.background = address.number("background", bench.background, 0, 1);

@@ -16,8 +16,8 @@ namespace vam::device {
 
 namespace {
 
+constexpr int beams_a_column = 8;
 constexpr int steps = 160;               // along a camera ray through the resin
-constexpr double fluorescence = 0.6;     // of full scale, for full light all through the vial
 constexpr double scatter_per_mm = 0.08;  // of full scale
 constexpr double reference_us = 20000;
 
@@ -119,7 +119,9 @@ struct SimScene::State {
   int bits = 8;
   double pixel_mm = 0;
   std::vector<Sight> sights;
-  std::vector<SimRay> beams;  // of projector column edges
+  std::vector<SimRay> beams;   // beams_a_column of them, from the outer edge of the first column on
+  std::size_t first_beam = 0;  // that enters the resin
+  std::size_t last_beam = 0;
 
   State(const SimBench& about, int binning, int depth) : bench(about), bits(depth) {
     columns = bench.columns / binning;
@@ -128,9 +130,13 @@ struct SimScene::State {
     const auto& projector = bench.printer.projector;
     const auto outside = outer_shells(bench.printer, bench.printer.resin.index);
     const auto distance_mm = model::lens_distance_mm(projector);
-    for (int c = 0; c <= projector.columns; ++c) {
-      beams.push_back(sim_ray((c - 0.5 - projector.axis_column) * projector.pixel_mm, distance_mm, outside));
+    for (int i = 0; i <= projector.columns * beams_a_column; ++i) {
+      const double column = static_cast<double>(i) / beams_a_column - 0.5;
+      beams.push_back(sim_ray((column - projector.axis_column) * projector.pixel_mm, distance_mm, outside));
     }
+    while (first_beam + 1 < beams.size() && !beams[first_beam].enters) ++first_beam;
+    last_beam = beams.size() - 1;
+    while (last_beam > first_beam && !beams[last_beam].enters) --last_beam;
     const auto to_camera = outer_shells(bench.printer, bench.printer.camera.index_resin);
     for (int c = 0; c < columns; ++c) {
       const double x_mm = (c - 0.5 * (columns - 1)) * pixel_mm;
@@ -145,12 +151,15 @@ struct SimScene::State {
     const double half_mm = std::sqrt(std::max(0.0, radius_mm * radius_mm - ray.offset_mm * ray.offset_mm));
     const double turn = ray.turn_rad + bench.printer.camera.azimuth_deg * rad_per_deg;
     const double pixel = bench.printer.projector.pixel_mm;
+    double before = 0;
     for (int i = 0; i <= steps; ++i) {
       const double u = half_mm * (2.0 * i / steps - 1);
       const double x = ray.offset_mm * std::cos(turn) - u * std::sin(turn);
       const double y = ray.offset_mm * std::sin(turn) + u * std::cos(turn);
-      seen.edges.push_back(column_through(x, y));
-      if (i > 0) seen.gains.push_back(transmitted(0.5 * (seen.edges[seen.gains.size()] + seen.edges.back())));
+      const Crossing here = crossing(x, y);
+      seen.edges.push_back(here.column);
+      if (i > 0) seen.gains.push_back(0.5 * (before + here.irradiance));
+      before = here.irradiance;
       if (i < steps) {
         const double spread = 2 * std::abs(y) * std::tan(bench.divergence_deg * rad_per_deg);
         seen.widths.push_back(std::hypot(bench.beam_mm, spread) / pixel);
@@ -160,33 +169,30 @@ struct SimScene::State {
     return seen;
   }
 
-  // The projector column (fractional, may lie outside) whose ray goes through a point of the resin.
-  [[nodiscard]] double column_through(double x, double y) const {
+  // The projector column (fractional) whose ray goes through a point of the resin, and the light there, of that in the
+  // plane of the axis without a vial: rays that come closer together are brighter. 0 where none comes.
+  struct Crossing {
+    double column = 0;
+    double irradiance = 0;
+  };
+  [[nodiscard]] Crossing crossing(double x, double y) const {
     const auto beyond = [&](const SimRay& beam) {  // how far the point is on the side of the higher columns
-      if (!beam.enters) return beam.offset_mm < 0 ? 1e9 : -1e9;
       return x * std::cos(beam.turn_rad) + y * std::sin(beam.turn_rad) - beam.offset_mm;
     };
-    std::size_t low = 0;
-    std::size_t high = beams.size() - 1;
-    if (beyond(beams[low]) < 0) return -1.5;
-    if (beyond(beams[high]) > 0) return static_cast<double>(high) + 0.5;
+    const auto column = [](std::size_t beam) { return static_cast<double>(beam) / beams_a_column - 0.5; };
+    std::size_t low = first_beam;
+    std::size_t high = last_beam;
+    if (beyond(beams[low]) < 0) return {column(low), 0};
+    if (beyond(beams[high]) > 0) return {column(high), 0};
     while (high - low > 1) {
       const std::size_t middle = (low + high) / 2;
       (beyond(beams[middle]) >= 0 ? low : high) = middle;
     }
-    const double before = beyond(beams[low]);
-    const double after = beyond(beams[high]);
-    const bool edge = before > 1e8 || after < -1e8;  // no light comes here: between the last ray in and the first past
-    if (edge) return before > 1e8 ? -1.5 : static_cast<double>(beams.size()) - 0.5;
-    return static_cast<double>(low) - 0.5 + before / (before - after);
-  }
-
-  // Of the light of a projector column; 0 where it passes beside the resin.
-  [[nodiscard]] double transmitted(double column) const {
-    const auto at = static_cast<long>(std::floor(column + 0.5));
-    if (at < 0 || at + 1 >= static_cast<long>(beams.size())) return 0;
-    const auto left = static_cast<std::size_t>(at);
-    return 0.5 * (beams[left].transmittance + beams[left + 1].transmittance);
+    const double apart_mm = beyond(beams[low]) - beyond(beams[high]);
+    const double part = beyond(beams[low]) / std::max(apart_mm, 1e-9);
+    const double even_mm = bench.printer.projector.pixel_mm / beams_a_column;
+    const double through = (1 - part) * beams[low].transmittance + part * beams[high].transmittance;
+    return {column(low) + part / beams_a_column, through * std::min(even_mm / std::max(apart_mm, 1e-9), 20.0)};
   }
 
   [[nodiscard]] LitRow lit_row(const GreyImage& picture, int row) const {
@@ -209,7 +215,7 @@ struct SimScene::State {
       for (std::size_t i = 0; i + 1 < seen.edges.size(); ++i) {
         sum += seen.gains[i] * lit.mean(seen.edges[i] + shift, seen.edges[i + 1] + shift, seen.widths[i]);
       }
-      light[c] = fluorescence * seen.weight * sum;
+      light[c] = bench.glow * seen.weight * sum;
     }
     return light;
   }

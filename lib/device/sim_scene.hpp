@@ -33,6 +33,7 @@ struct SimBench {
   double wobble_deg = 0;      // and stands towards +x of the lab at this stage angle
   double beam_mm = 0;         // full width at half maximum that the optics add to a pixel in the plane of the axis
   double divergence_deg = 0;  // growth of the half width per distance from that plane
+  double glow = 0.6;          // of full scale in 20 ms, for full light all through the vial
   double gamma = 1;           // intensity = (grey / full)^gamma
   double vignetting = 0;      // part of the light that the corners of the image lack
   double background = 0.02;   // of full scale
