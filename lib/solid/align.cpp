@@ -63,9 +63,11 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Pose& pose, const Surfa
   const auto chunks = static_cast<int>((n + chunk - 1) / chunk);
   parallel_for(chunks, [&](int c) {
     const std::size_t begin = static_cast<std::size_t>(c) * chunk;
+    int start = 0;
     for (std::size_t i = begin; i < std::min(n, begin + chunk); ++i) {
       pairs.moved[i] = pose(points[i]);
-      const Foot foot = reference.closest(from_eigen(pairs.moved[i]));
+      const Foot foot = reference.closest(from_eigen(pairs.moved[i]), start);
+      start = foot.triangle;
       pairs.foot[i] = to_eigen(foot.point);
       pairs.normal[i] = to_eigen(foot.normal);
       pairs.distance[i] = (pairs.moved[i] - pairs.foot[i]).dot(pairs.normal[i]);
@@ -269,13 +271,12 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   for (Start& start : starts) start.rms = iterate(few, reference, rigid, 20, size, start.pose).rms_mm;
   keep(3);
 
-  Alignment best;
-  for (Start& start : starts) {
-    if (&start != &starts.front() && start.rms > 1.5 * starts.front().rms) break;  // clearly another pose
-    const Alignment candidate = iterate(all, reference, options, options.max_iterations, size, start.pose);
-    if (&start == &starts.front() || candidate.rms_mm < best.rms_mm) best = candidate;
-  }
-  return best;
+  // The best at a tenth of the points, then all points from there.
+  const std::vector<Vector3d> some = points_of(print, std::max(400, options.samples / 10));
+  for (Start& start : starts)
+    start.rms = iterate(some, reference, options, options.max_iterations, size, start.pose).rms_mm;
+  keep(1);
+  return iterate(all, reference, options, options.max_iterations, size, starts.front().pose);
 }
 
 }  // namespace vam::solid

@@ -1,27 +1,16 @@
 #include "solid/surface.hpp"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
-
 #include <algorithm>
 #include <random>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "solid/triangle_tree.hpp"
 #include "solid/winding.hpp"
 
 namespace vam::solid {
 
 namespace {
-
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
-
-using Corners = std::array<Vector3, 3>;
 
 Corners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
@@ -31,45 +20,29 @@ Corners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
 
 Vector3 twice_area(const Corners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
-Kernel::Point_3 to_cgal(const Vector3& p) { return {p[0], p[1], p[2]}; }
-
 }  // namespace
 
 struct Surface::State {
-  Triangles triangles;
-  std::vector<Vector3> normals;
-  Tree tree;
+  std::shared_ptr<const TriangleTree> tree;
   WindingNumber winding;
 
-  explicit State(const model::TriangleSoup& mesh) : winding(mesh) {
-    triangles.reserve(mesh.triangles.size());
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const Corners c = corners(mesh, i);
-      const Vector3 normal = twice_area(c);
-      const double area = length(normal);
-      if (!(area > 0)) continue;  // CGAL's own normal() throws on these
-      triangles.emplace_back(to_cgal(c[0]), to_cgal(c[1]), to_cgal(c[2]));
-      normals.push_back((1 / area) * normal);
-    }
-    if (triangles.empty()) throw Error{Fault::data, "the reference surface has no triangle with an area"};
-    tree.insert(triangles.cbegin(), triangles.cend());
-    tree.build();
-    tree.accelerate_distance_queries();
+  explicit State(const model::TriangleSoup& mesh)
+      : tree(std::make_shared<const TriangleTree>(corners_of(mesh))), winding(tree) {
+    if (tree->triangles.empty()) throw Error{Fault::data, "the reference surface has no triangle with an area"};
   }
 };
 
 Surface::Surface(const model::TriangleSoup& mesh) : state_(std::make_unique<State>(mesh)) {}
 Surface::~Surface() = default;
 
-Foot Surface::closest(const Vector3& point) const {
-  const auto [foot, iterator] = state_->tree.closest_point_and_primitive(to_cgal(point));
-  const auto triangle = iterator - state_->triangles.cbegin();
-  return {
-      {foot.x(), foot.y(), foot.z()}, state_->normals[static_cast<std::size_t>(triangle)], static_cast<int>(triangle)};
+Foot Surface::closest(const Vector3& point, int start) const {
+  const Nearest nearest = state_->tree->nearest(point, start);
+  const Vector3 normal = twice_area(state_->tree->triangles[static_cast<std::size_t>(nearest.triangle)]);
+  return {nearest.point, (1 / length(normal)) * normal, nearest.triangle};
 }
 
 double Surface::signed_distance(const Vector3& point) const {
-  const double distance = length(point - closest(point).point);
+  const double distance = std::sqrt(state_->tree->nearest(point).distance2);
   return state_->winding(point) > 0.5 ? -distance : distance;
 }
 
@@ -80,7 +53,13 @@ std::vector<float> Surface::signed_distances(std::span<const Vector3> points) co
   parallel_for(chunks, [&](int c) {
     const std::size_t begin = static_cast<std::size_t>(c) * chunk;
     const std::size_t end = std::min(points.size(), begin + chunk);
-    for (std::size_t i = begin; i < end; ++i) distances[i] = static_cast<float>(signed_distance(points[i]));
+    int start = 0;  // neighbours in the list are mostly neighbours in space
+    for (std::size_t i = begin; i < end; ++i) {
+      const Nearest nearest = state_->tree->nearest(points[i], start);
+      start = nearest.triangle;
+      const auto distance = static_cast<float>(std::sqrt(nearest.distance2));
+      distances[i] = state_->winding(points[i]) > 0.5 ? -distance : distance;
+    }
   });
   return distances;
 }

@@ -13,11 +13,11 @@ namespace vam::solid {
 /// The foot of a point on the surface.
 struct Foot {
   Vector3 point{};
-  Vector3 normal{};  // of the triangle it lies on, unit length; zero where the triangle is degenerate
-  int triangle = 0;
+  Vector3 normal{};  // of the triangle it lies on, unit length
+  int triangle = 0;  // for the next call of closest()
 };
 
-/// Closest points by CGAL's AABB tree, sides by the generalised winding number, so that a reference with holes works.
+/// Closest points by a tree of boxes, sides by the generalised winding number, so that a reference with holes works.
 /// All calls may come from several threads.
 class Surface {
  public:
@@ -25,7 +25,8 @@ class Surface {
   explicit Surface(const model::TriangleSoup& mesh);
   ~Surface();
 
-  [[nodiscard]] Foot closest(const Vector3& point) const;
+  /// `start`: Foot::triangle of a point nearby makes it faster, not different.
+  [[nodiscard]] Foot closest(const Vector3& point, int start = 0) const;
   /// mm, positive outside the surface, negative inside (MeshLab's, CloudCompare's and Open3D's sign).
   [[nodiscard]] double signed_distance(const Vector3& point) const;
   /// signed_distance of all points, in parallel.

@@ -7,114 +7,113 @@ namespace vam::solid {
 
 namespace {
 
-constexpr int leaf_size = 8;
-constexpr double far =
-    3.0;  // a node is summarised when the point is farther than this many radii: a disc then errs by 8 %
+constexpr double far = 2.0;  // a node is summarised beyond this many radii
 
-using Triangle = std::array<Vector3, 3>;
+Vector3 area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
-Vector3 area_vector(const Triangle& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
+Vector3 centroid(const Corners& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
 
-Vector3 centroid(const Triangle& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
+// Solid angles of the triangles seen from a point: tan(angle / 2) = numerator / denominator (Van Oosterom & Strackee
+// 1983). Small half angles are added by multiplying complex numbers, so that a leaf needs one arctangent.
+double triangle_angles(const Corners* begin, const Corners* end, const Vector3& point) {
+  constexpr double small = 0.75;  // atan(0.75) x 4 triangles stays below pi
+  double re = 1;
+  double im = 0;
+  double half = 0;
+  for (const Corners* t = begin; t != end; ++t) {
+    const Vector3 a = (*t)[0] - point;
+    const Vector3 b = (*t)[1] - point;
+    const Vector3 c = (*t)[2] - point;
+    const double la = length(a);
+    const double lb = length(b);
+    const double lc = length(c);
+    const double numerator = dot(a, cross(b, c));
+    const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    if (std::abs(numerator) < small * denominator) {
+      const double turned = re * denominator - im * numerator;
+      im = re * numerator + im * denominator;
+      re = turned;
+    } else {
+      half += std::atan2(numerator, denominator);
+    }
+  }
+  return 2 * (half + std::atan2(im, re));
+}
 
-// Solid angle of a triangle seen from the origin of a, b, c (Van Oosterom & Strackee 1983).
-double triangle_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
-  const double la = length(a);
-  const double lb = length(b);
-  const double lc = length(c);
-  const double numerator = dot(a, cross(b, c));
-  const double denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return 2 * std::atan2(numerator, denominator);
+double farthest_corner(const TriangleNode& node, const Vector3& from) {
+  Vector3 way{};
+  for (std::size_t d = 0; d < 3; ++d) way[d] = std::max(from[d] - node.low[d], node.high[d] - from[d]);
+  return length(way);
 }
 
 }  // namespace
 
-WindingNumber::WindingNumber(const model::TriangleSoup& mesh) {
-  triangles_.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    triangles_.push_back({mesh.points[static_cast<std::size_t>(t[0])], mesh.points[static_cast<std::size_t>(t[1])],
-                          mesh.points[static_cast<std::size_t>(t[2])]});
+WindingNumber::WindingNumber(const model::TriangleSoup& mesh)
+    : WindingNumber(std::make_shared<const TriangleTree>(corners_of(mesh))) {}
+
+WindingNumber::WindingNumber(std::shared_ptr<const TriangleTree> tree) : tree_(std::move(tree)) {
+  const auto& nodes = tree_->nodes;
+  clusters_.resize(nodes.size());
+  for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parent
+    clusters_[i] = nodes[i].right == 0 ? of_leaf(nodes[i])
+                                       : merged(clusters_[i + 1], clusters_[static_cast<std::size_t>(nodes[i].right)]);
+    clusters_[i].reach = far * farthest_corner(nodes[i], clusters_[i].centre);
   }
-  nodes_.reserve(2 * triangles_.size() / leaf_size + 2);
-  build(0, static_cast<int>(triangles_.size()), triangles_);
 }
 
-// Splits at the median of the longest side of the centroids' box; children follow their parent.
-int WindingNumber::build(int begin, int end, std::vector<Triangle>& triangles) {
-  const int index = static_cast<int>(nodes_.size());
-  nodes_.emplace_back();
-  Node node;
-  node.begin = begin;
-  node.end = end;
-  if (end - begin > leaf_size) {
-    Vector3 low = centroid(triangles[static_cast<std::size_t>(begin)]);
-    Vector3 high = low;
-    for (int i = begin; i < end; ++i) {
-      const Vector3 c = centroid(triangles[static_cast<std::size_t>(i)]);
-      for (std::size_t d = 0; d < 3; ++d) {
-        low[d] = std::min(low[d], c[d]);
-        high[d] = std::max(high[d], c[d]);
-      }
-    }
-    const Vector3 size = high - low;
-    const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
-    const int middle = (begin + end) / 2;
-    std::nth_element(triangles.begin() + begin, triangles.begin() + middle, triangles.begin() + end,
-                     [axis](const Triangle& a, const Triangle& b) { return centroid(a)[axis] < centroid(b)[axis]; });
-    node.left = build(begin, middle, triangles);
-    node.right = build(middle, end, triangles);
+WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
+  Cluster leaf;
+  for (int i = node.begin; i < node.end; ++i) {
+    const Corners& t = tree_->triangles[static_cast<std::size_t>(i)];
+    const Vector3 a = area_vector(t);
+    leaf.weight += length(a);
+    leaf.area = leaf.area + a;
+    leaf.centre = leaf.centre + length(a) * centroid(t);
   }
-  summarise(node);
-  nodes_[static_cast<std::size_t>(index)] = node;
-  return index;
+  leaf.centre = (1 / leaf.weight) * leaf.centre;
+  for (int i = node.begin; i < node.end; ++i) {
+    const Corners& t = tree_->triangles[static_cast<std::size_t>(i)];
+    const Vector3 offset = centroid(t) - leaf.centre;
+    for (std::size_t d = 0; d < 3; ++d) leaf.second[d] = leaf.second[d] + offset[d] * area_vector(t);
+  }
+  return leaf;
 }
 
-void WindingNumber::summarise(Node& node) const {
-  double total = 0;
-  for (int i = node.begin; i < node.end; ++i) {
-    const Triangle& t = triangles_[static_cast<std::size_t>(i)];
-    const Vector3 a = area_vector(t);
-    total += length(a);
-    node.area = node.area + a;
-    node.centre = node.centre + length(a) * centroid(t);
+WindingNumber::Cluster WindingNumber::merged(const Cluster& a, const Cluster& b) const {
+  Cluster both;
+  both.weight = a.weight + b.weight;
+  both.area = a.area + b.area;
+  both.centre = (1 / both.weight) * (a.weight * a.centre + b.weight * b.centre);
+  for (std::size_t d = 0; d < 3; ++d) {
+    both.second[d] =
+        a.second[d] + b.second[d] + (a.centre[d] - both.centre[d]) * a.area + (b.centre[d] - both.centre[d]) * b.area;
   }
-  if (total > 0) node.centre = (1 / total) * node.centre;
-  for (int i = node.begin; i < node.end; ++i) {
-    const Triangle& t = triangles_[static_cast<std::size_t>(i)];
-    const Vector3 a = area_vector(t);
-    const Vector3 offset = centroid(t) - node.centre;
-    for (std::size_t d = 0; d < 3; ++d) node.second[d] = node.second[d] + offset[d] * a;
-    for (const Vector3& corner : t) node.radius = std::max(node.radius, length(corner - node.centre));
-  }
+  return both;
 }
 
 // Omega = sum of A . grad G with G = -1/r: first order A.r/r^3, second order the derivative of that along the offsets
 // [Barill18 eq 14 and 15].
-double WindingNumber::solid_angle(int index, const Vector3& point) const {
-  const Node& node = nodes_[static_cast<std::size_t>(index)];
-  const Vector3 r = node.centre - point;
-  const double distance = length(r);
-  if (distance > far * node.radius) {
-    const double cubed = distance * distance * distance;
-    double angle = dot(node.area, r) / cubed;
+double WindingNumber::solid_angle(std::size_t index, const Vector3& point) const {
+  const Cluster& cluster = clusters_[index];
+  const Vector3 r = cluster.centre - point;
+  const double distance2 = dot(r, r);
+  if (distance2 > cluster.reach * cluster.reach) {
+    const double cubed = distance2 * std::sqrt(distance2);
     double trace = 0;
     double along = 0;
     for (std::size_t d = 0; d < 3; ++d) {
-      trace += node.second[d][d];
-      along += r[d] * dot(node.second[d], r);
+      trace += cluster.second[d][d];
+      along += r[d] * dot(cluster.second[d], r);
     }
-    angle += trace / cubed - 3 * along / (cubed * distance * distance);
-    return angle;
+    return (dot(cluster.area, r) + trace - 3 * along / distance2) / cubed;
   }
-  if (node.left >= 0) return solid_angle(node.left, point) + solid_angle(node.right, point);
-  double angle = 0;
-  for (int i = node.begin; i < node.end; ++i) {
-    const Triangle& t = triangles_[static_cast<std::size_t>(i)];
-    angle += triangle_angle(t[0] - point, t[1] - point, t[2] - point);
-  }
-  return angle;
+  const TriangleNode& node = tree_->nodes[index];
+  if (node.right != 0) return solid_angle(index + 1, point) + solid_angle(static_cast<std::size_t>(node.right), point);
+  return triangle_angles(tree_->triangles.data() + node.begin, tree_->triangles.data() + node.end, point);
 }
 
-double WindingNumber::operator()(const Vector3& point) const { return solid_angle(0, point) / (4 * std::numbers::pi); }
+double WindingNumber::operator()(const Vector3& point) const {
+  return clusters_.empty() ? 0.0 : solid_angle(0, point) / (4 * std::numbers::pi);
+}
 
 }  // namespace vam::solid

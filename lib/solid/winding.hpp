@@ -4,39 +4,40 @@
 // SIGGRAPH 2018).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/vector3.hpp"
 #include "model/mesh.hpp"
+#include "solid/triangle_tree.hpp"
 
 namespace vam::solid {
 
 class WindingNumber {
  public:
-  /// The mesh must be oriented (repair orients); it is copied as far as needed.
+  /// The mesh must be oriented (repair orients).
   explicit WindingNumber(const model::TriangleSoup& mesh);
+  /// Shares a tree that is there.
+  explicit WindingNumber(std::shared_ptr<const TriangleTree> tree);
 
   /// In 4 pi steradians, positive inside an outward-oriented surface. Absolute error below 0.05, which "more than a
   /// half" does not feel.
   [[nodiscard]] double operator()(const Vector3& point) const;
 
  private:
-  struct Node {
+  struct Cluster {                    // what a node looks like from far
     Vector3 centre{};                 // area-weighted centroid
     Vector3 area{};                   // sum of the triangles' area vectors: the dipole moment
     std::array<Vector3, 3> second{};  // sum of (centroid - centre) x area vector, outer product: the next order
-    double radius = 0;                // of the ball about centre that holds the triangles
-    int begin = 0;
-    int end = 0;    // triangles of a leaf
-    int left = -1;  // children; -1 in a leaf
-    int right = -1;
+    double weight = 0;                // sum of the areas
+    double reach = 0;                 // beyond this distance the summary will do
   };
-  int build(int begin, int end, std::vector<std::array<Vector3, 3>>& triangles);
-  void summarise(Node& node) const;
-  [[nodiscard]] double solid_angle(int node, const Vector3& point) const;
+  [[nodiscard]] Cluster of_leaf(const TriangleNode& node) const;
+  [[nodiscard]] Cluster merged(const Cluster& a, const Cluster& b) const;
+  [[nodiscard]] double solid_angle(std::size_t node, const Vector3& point) const;
 
-  std::vector<std::array<Vector3, 3>> triangles_;
-  std::vector<Node> nodes_;
+  std::shared_ptr<const TriangleTree> tree_;
+  std::vector<Cluster> clusters_;  // one a node
 };
 
 }  // namespace vam::solid

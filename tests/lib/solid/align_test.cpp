@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "lib/meshes.hpp"
+#include "solid/isosurface.hpp"
+#include "solid/shapes.hpp"
 #include "solid/surface.hpp"
 #include "solid/winding.hpp"
 
@@ -18,6 +20,32 @@ TriangleSoup blocks() {
   test::add_box({0, 4.5, 0}, {3, 9, 6}, mesh);
   test::add_box({7, -3, 4}, {9, 3, 5}, mesh);
   return mesh;
+}
+
+// Body, head, two unlike ears and a tail: rounded, with principal axes that say little, like a scanned animal.
+TriangleSoup animal() {
+  TriangleSoup mesh;
+  const auto add = [&](const Vector3& centre, const Vector3& size) {
+    TriangleSoup ball = test::sphere({0, 0, 0}, 1, 24);
+    const int first = static_cast<int>(mesh.points.size());
+    for (const auto& p : ball.points)
+      mesh.points.push_back({centre[0] + size[0] * p[0], centre[1] + size[1] * p[1], centre[2] + size[2] * p[2]});
+    for (const auto& t : ball.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  };
+  add({0, 0, 0}, {4, 5, 4.5});
+  add({0.5, -4, 4}, {2.4, 2.8, 2.5});
+  add({1.5, -3.5, 7.5}, {0.6, 0.9, 2.4});
+  add({-0.8, -2.6, 7}, {0.6, 1.2, 2});
+  add({0, 5, -2.5}, {1.2, 1.2, 1.2});
+  return mesh;
+}
+
+TriangleSoup gyroid() {
+  const solid::Field field = solid::make_shape("gyroid:cell=5,sheet=1,diameter=10,height=7.5");
+  const model::Grid grid = model::centred_grid(46, 46, 36, 0.25, -0.25 * 17.5);
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  solid::cover(field, grid, 0, grid.nz, volume.values.data());
+  return solid::isosurface(volume, 0.5);
 }
 
 TriangleSoup moved(TriangleSoup mesh, const solid::Similarity& motion) {
@@ -98,6 +126,24 @@ TEST_CASE("a pose scrambled by 170 degrees about any axis is found again") {
       worst = std::max(worst, length(found.transform(print.points[i]) - reference.points[i]));
     }
     CHECK(worst < 1e-4);  // 1e-5 of the size: the stopping tolerance, amplified by linear convergence
+  }
+}
+
+TEST_CASE("170 degrees about any axis are found again on a rounded animal, and on a gyroid up to its symmetries") {
+  for (const bool symmetric : {false, true}) {
+    const TriangleSoup reference = symmetric ? gyroid() : animal();
+    const solid::Surface surface(reference);
+    for (const Vector3& axis : {Vector3{1, 0, 0}, {0, 0, 1}, {-1, 2, 0.5}}) {
+      const TriangleSoup print = moved(reference, turn(axis, 170, {30, -12, 4}));
+      const auto found = solid::align(print, reference, surface, {});
+      double worst = 0;
+      for (std::size_t i = 0; i < print.points.size(); ++i) {
+        const Vector3 back = found.transform(print.points[i]);
+        worst = std::max(worst,
+                         symmetric ? length(back - surface.closest(back).point) : length(back - reference.points[i]));
+      }
+      CHECK(worst < 0.01);  // a thousandth of the size
+    }
   }
 }
 

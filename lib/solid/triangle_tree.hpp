@@ -1,0 +1,48 @@
+// Triangles in a tree of boxes: what closest points and winding numbers walk.
+#pragma once
+
+#include <vector>
+
+#include "base/vector3.hpp"
+#include "model/mesh.hpp"
+
+namespace vam::solid {
+
+using Corners = std::array<Vector3, 3>;
+
+/// A node holds triangles [begin, end); an inner one has children at index + 1 and at `right`, so children follow their
+/// parent and the root is node 0.
+struct TriangleNode {
+  Vector3 low{};
+  Vector3 high{};
+  int begin = 0;
+  int end = 0;
+  int right = 0;  // 0 in a leaf
+};
+
+/// The triangle of the tree that is nearest, and the point on it.
+struct Nearest {
+  Vector3 point{};
+  double distance2 = 0;
+  int triangle = 0;  // in the order of the tree
+};
+
+struct TriangleTree {
+  std::vector<Corners> triangles;  // in the order of the leaves
+  std::vector<TriangleNode> nodes;
+
+  TriangleTree() = default;
+  /// Splits at the median of the longest side of the centroids' box.
+  explicit TriangleTree(std::vector<Corners> soup);
+
+  /// Triangle 'start' is looked at first: a neighbour's answer saves half of the way. There must be a triangle.
+  [[nodiscard]] Nearest nearest(const Vector3& point, int start = 0) const;
+};
+
+/// The corners of all triangles of a mesh that have an area.
+[[nodiscard]] std::vector<Corners> corners_of(const model::TriangleSoup& mesh);
+
+/// The nearest point of a triangle that has an area (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+[[nodiscard]] Vector3 nearest_on(const Corners& triangle, const Vector3& point);
+
+}  // namespace vam::solid
