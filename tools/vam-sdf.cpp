@@ -1,44 +1,13 @@
 // vam-sdf: how far a print is from its design.
-#include <algorithm>
-#include <cstdio>
-#include <string>
-#include <vector>
-
-#include "base/error.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "io/mesh_file.hpp"
-#include "io/picture.hpp"
-#include "io/plot.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
-#include "io/vdb.hpp"
-#include "metrology/deviation.hpp"
-#include "model/conditions.hpp"
-#include "solid/align.hpp"
-#include "solid/isosurface.hpp"
+#include "vam-sdf/options.hpp"
 
 namespace {
 
 using namespace vam;
-
-struct Options {
-  std::string print = "-";
-  std::string reference;
-  std::string output;
-  std::string align = "full";
-  bool scale = false;
-  std::optional<double> level;
-  double reference_level = 0.5;
-  int samples = 200000;
-  std::string histogram;
-  int bins = 101;
-  std::optional<double> limit_mm;
-  std::string require;
-  std::string report;
-};
+using sdf_tool::HeightOptions;
+using sdf_tool::Options;
 
 cli::Manual manual() {
   return {
@@ -55,13 +24,19 @@ cli::Manual manual() {
        "point-to-plane ICP ends it. --align icp trusts the pose of the files; --align none keeps it. With --scale the "
        "uniform scale is fitted too and reported as shrinkage.",
        "A table goes to standard error when that is a terminal, the figures as JSON to --report, the print with "
-       "distances and blue-white-red colours to -o. With --require the exit status is 1 unless every condition holds."},
+       "distances and blue-white-red colours to -o. With --require the exit status is 1 unless every condition holds.",
+       "vam-sdf height compares a profilometer's picture of an embossed print with its design: the picture is levelled "
+       "by the plane through its base, the design's outline at half height is laid onto the print's, with a scale that "
+       "is reported as shrinkage, and outline, overlap and height are measured."},
       {{"Two boxes, one a little larger:",
         "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
         "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --level 0.5 -o deviation.ply --report deviation.json"},
-       {"A verdict for a script:",
-        "vam-sdf print.vdb design.vdb --level 0.5 --require 'rms<=0.2' --histogram sdf.csv"}},
+       {"A verdict for a script:", "vam-sdf print.vdb design.vdb --level 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
+       {"An embossed badge as a print would show it, 1 % too small, against its design:",
+        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\n"
+        "vam-slice --shape resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\n"
+        "vam-sdf height seen.vdb badge.vdb --pixel 0.1 -o outline.png --plot section.png"}},
       {"Signs come from the generalised winding number, so that a reference with holes works. Distances are exact to "
        "the triangles; the fine percentiles depend on --samples.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and table "
@@ -75,6 +50,7 @@ void declare(cli::App& app, Options& options) {
   app.option("-o,--output", "FILE.ply", options.output,
              "The aligned print with distances and colours at its vertices.");
   app.option("--level", "VALUE", options.level, cli::any, "Surface of a print volume: the threshold in its units.");
+  app.option("--resin", "FILE", options.resin_record, "The same from a record of vam-ost threshold.");
   app.option("--reference-level", "VALUE", options.reference_level, cli::any, "Surface of a reference volume.");
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "How the print is laid onto the reference.");
@@ -92,115 +68,23 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
-bool is_volume(const std::string& path) { return path.size() > 4 && path.substr(path.size() - 4) == ".vdb"; }
-
-model::TriangleSoup read_surface(const std::string& path, std::optional<double> level) {
-  if (!is_volume(path)) return io::read_mesh(path);
-  if (!level) throw Error{Fault::usage, path + ": is a volume; give the surface's value with --level"};
-  const io::SparseVolume volume = io::read_volume(path, "");
-  model::TriangleSoup mesh = solid::isosurface(
-      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, *level);
-  if (mesh.triangles.empty()) {
-    throw Error{Fault::data, path + ": no surface, the volume does not cross " + format_number(*level)};
-  }
-  const auto stretch = volume.metadata.find("vam:stretch_z");
-  const double factor = stretch == volume.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
-  for (auto& point : mesh.points) point[2] /= factor;
-  return mesh;
-}
-
-solid::Alignment align(const Options& options, const model::TriangleSoup& print,
-                       const model::TriangleSoup& reference_mesh, const solid::Surface& reference) {
-  solid::AlignOptions how;
-  how.with_scale = options.scale;
-  if (options.align == "full") return solid::align(print, reference_mesh, reference, how);
-  if (options.align == "icp") return solid::refine(print, reference, how);
-  solid::Alignment as_it_is;
-  as_it_is.converged = true;
-  return as_it_is;
-}
-
-double figure(const metrology::Comparison& found, const std::string& name) {
-  const auto& d = found.print_to_reference;
-  if (name == "rms") return d.rms_mm;
-  if (name == "mean") return d.mean_mm;
-  if (name == "sigma") return d.sigma_mm;
-  if (name == "mad") return d.mad_mm;
-  if (name == "max") return d.max_abs_mm;
-  if (name == "hausdorff") return found.hausdorff_mm;
-  return 100 * d.rms_mm / found.largest_dimension_mm;  // rms_percent
-}
-
-void write_coloured(const std::string& path, const model::TriangleSoup& print, const solid::Surface& reference,
-                    double limit_mm, const std::string& history) {
-  model::VertexData vertices;
-  vertices.quality = reference.signed_distances(print.points);
-  for (const float distance : vertices.quality) {
-    vertices.colours.push_back(metrology::blue_white_red(static_cast<double>(distance), limit_mm));
-  }
-  io::write_ply(path, print, vertices,
-                {history, "distance in mm, positive outside the reference; colours -" + format_number(limit_mm, 4) +
-                              " (blue) to +" + format_number(limit_mm, 4) + " mm (red)"});
-}
-
-void write_histogram(const Options& options, const metrology::Comparison& found, double limit_mm) {
-  io::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
-  for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
-  const io::Histogram histogram = builder.done();
-  const std::string& path = options.histogram;
-  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
-    io::Plot plot;
-    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_reference.rms_mm, 3) + " mm";
-    plot.x = {"distance to the reference / mm (positive: outside)", -limit_mm, limit_mm};
-    plot.y.label = "share of the area / %";
-    plot.series.push_back({"", histogram.edges, histogram.percent, io::paint::blue, io::SeriesStyle::bars});
-    plot.markers.push_back({0, "reference", io::paint::grey});
-    return io::write_png(path, io::draw(plot));
-  }
-  std::string text = "from_mm,to_mm,area_percent\n";
-  for (std::size_t i = 0; i < histogram.percent.size(); ++i) {
-    text += format_number(histogram.edges[i]) + "," + format_number(histogram.edges[i + 1]) + "," +
-            format_number(histogram.percent[i]) + "\n";
-  }
-  io::write_text(path, text);
-}
-
-void run(const cli::App& app, const Options& options) {
-  if (options.reference.empty()) throw Error{Fault::usage, "REFERENCE: give the design to compare with"};
-  std::vector<model::Condition> conditions;
-  if (!options.require.empty())
-    conditions =
-        model::parse_conditions(options.require, {"rms", "mean", "sigma", "mad", "max", "hausdorff", "rms_percent"});
-  for (const auto& input : {options.print, options.reference}) {
-    if (!options.output.empty()) io::refuse_same_file(input, options.output);
-  }
-  const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_level);
-  model::TriangleSoup print = read_surface(options.print, options.level);
-
-  const solid::Surface reference(reference_mesh);
-  const solid::Alignment alignment = align(options, print, reference_mesh, reference);
-  if (!alignment.converged)
-    warn("alignment: still moving after " + std::to_string(alignment.iterations) + " iterations");
-  for (auto& point : print.points) point = alignment.transform(point);
-  const metrology::Comparison found = metrology::compare(print, reference_mesh, reference, options.samples);
-
-  const auto& ends = found.print_to_reference.percentiles_mm;
-  const double limit_mm =
-      options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
-  if (!options.output.empty()) write_coloured(options.output, print, reference, limit_mm, app.history());
-  if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
-  Json figures = metrology::to_json(found);
-  figures["alignment"] = {{"method", options.align},
-                          {"scale", alignment.transform.scale},
-                          {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
-                          {"matrix", alignment.transform.matrix()}};
-  io::write_report(options.report, "vam-sdf/1", figures);
-  for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
-    note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
-         format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
-  }
-  const auto failed = model::unmet(conditions, [&](const std::string& name) { return figure(found, name); });
-  if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
+void declare_height(cli::App& app, HeightOptions& options) {
+  app.positional("PICTURE", options.picture,
+                 "Profilometer's heights: PNG, TIFF or EXR; or a mesh or volume, seen from above.");
+  app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.");
+  app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel of the picture.");
+  app.option("--full", "MM", options.full_mm, cli::positive,
+             "Height of full scale of a PNG or TIFF; its level 0 is a lost reading. EXR values are multiplied by it.");
+  app.option("--lowest", "MM", options.lowest_mm, cli::any, "Heights below it are not of the print (the stage).");
+  app.option("--reference-level", "VALUE", options.reference_level, cli::any, "Surface of a design volume.");
+  app.choice("--align", options.align, {"none", "icp", "full"},
+             "How the design is laid onto the print: middle on middle, from there, or from any turn.");
+  app.option("-o,--output", "FILE.png", options.output, "The levelled heights with the design's outline.");
+  app.option("--line", "X0,Y0,X1,Y1", options.line, 4, "Ends of a section, in pixels from the top left.");
+  app.option("--plot", "FILE.png", options.plot, "The heights along it; without --line across the middle.");
+  app.option("--require", "CONDITIONS", options.require,
+             "Conditions on rms and max (mm), iou, shrinkage (%), height (mm).");
+  cli::add_report(app, options.report);
 }
 
 }  // namespace
@@ -208,6 +92,11 @@ void run(const cli::App& app, const Options& options) {
 int main(int argc, char** argv) {
   cli::App app(manual());
   Options options;
+  HeightOptions height;
   declare(app, options);
-  return app.run(argc, argv, [&] { run(app, options); });
+  declare_height(app.subcommand("height", "compare a profilometer's picture of an embossed print with its design",
+                                options.command),
+                 height);
+  return app.run(argc, argv,
+                 [&] { options.command == "height" ? sdf_tool::height(height) : sdf_tool::deviation(app, options); });
 }

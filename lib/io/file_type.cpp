@@ -55,13 +55,20 @@ std::string file_head(const std::string& path) {
   return head;
 }
 
+std::string head_of(const std::string& path) { return path == "-" ? stdin_head() : file_head(path); }
+
+// A 64-bit number begins with these four bytes.
+bool begins_a_volume(const std::string& head) { return head.starts_with(" BDV"); }
+
 }  // namespace
+
+bool is_volume(const std::string& path) { return begins_a_volume(head_of(path)); }
 
 FileType file_type(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::pictures;
-  const std::string head = path == "-" ? stdin_head() : file_head(path);
-  if (head.starts_with(" BDV")) return FileType::volume;  // a 64-bit number that begins with these four bytes
+  const std::string head = head_of(path);
+  if (begins_a_volume(head)) return FileType::volume;
   if (head.starts_with("\x76\x2f\x31\x01")) return FileType::stack;
   if (head.starts_with("\x1a\x45\xdf\xa3") || (head.size() >= 8 && head.substr(4, 4) == "ftyp")) return FileType::video;
   const std::string name = path == "-" ? "stdin" : path;

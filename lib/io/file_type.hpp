@@ -16,4 +16,7 @@ enum class FileType {
 /// Throws Error: no_input, data (none of these).
 [[nodiscard]] FileType file_type(const std::string& path);
 
+/// Where a mesh may stand as well: is it a volume? Throws Fault::no_input.
+[[nodiscard]] bool is_volume(const std::string& path);
+
 }  // namespace vam::io

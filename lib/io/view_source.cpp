@@ -30,11 +30,11 @@ bool is_video(const std::string& path) {
   return ends_in(path, ".mkv") || ends_in(path, ".mp4") || ends_in(path, ".avi");
 }
 
+}  // namespace
+
 bool is_picture(const std::string& path) {
   return ends_in(path, ".png") || ends_in(path, ".tif") || ends_in(path, ".tiff");
 }
-
-}  // namespace
 
 struct ViewSource::State {
   std::string path;

@@ -27,6 +27,20 @@ holds 'two spheres of different size' "$(json volume.json print_to_reference.mea
 quiet 'a verdict that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
 fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --level 0.5 --align none --require 'rms<=0.001'
 
+# An embossed badge seen from above, 2 % too small, on a disc.
+vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb
+vam-slice --shape resolution:height=1 --voxel 0.1 --scale 0.98 --rotate 0,0,31 --stretch-z 1 -o seen.vdb
+quiet 'heights against a design' vam-sdf height seen.vdb badge.vdb --pixel 0.08 -o outline.png --plot section.png \
+  --report height.json --require 'iou>=0.7,rms<=0.1'
+holds 'shrinkage' "$(json height.json shrinkage_percent) > 1.8 && $(json height.json shrinkage_percent) < 2.2"
+holds 'turn' "$(json height.json turn_deg) > 30.8 && $(json height.json turn_deg) < 31.2"
+python3 "$VAM_SOURCE/tests/tools/png.py" size outline.png >/dev/null; report $? 'a picture of the heights'
+fails 1 'shrinkage = ' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --require 'shrinkage<=1'
+fails 64 'DESIGN' vam-sdf height seen.vdb
+fails 64 'outside the picture' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --line 0,0,9999,10
+fails 65 'flat' vam-sdf height box.off badge.vdb --pixel 0.08
+fails 66 'missing' vam-sdf height missing.png badge.vdb
+
 fails 64 'REFERENCE' vam-sdf box.off
 fails 64 'give the surface' vam-sdf sphere.vdb box.off
 fails 64 'rmse' vam-sdf box.off box.off --require 'rmse<=1'

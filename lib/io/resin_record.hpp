@@ -1,0 +1,12 @@
+// What was measured of a resin, kept in a file for later runs.
+#pragma once
+
+#include <string>
+
+namespace vam::io {
+
+/// The gelation threshold I_p in the record that vam-ost threshold wrote. Throws Error: no_input, data (not such a
+/// record, or its level is not above 0).
+[[nodiscard]] double gelation_level(const std::string& path);
+
+}  // namespace vam::io

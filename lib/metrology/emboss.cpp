@@ -1,0 +1,327 @@
+#include "metrology/emboss.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+struct Point {
+  double x = 0;
+  double y = 0;
+};
+
+// p -> (a p.x - b p.y + x, b p.x + a p.y + y): a similarity, linear in its unknowns.
+struct Similar {
+  double a = 1;
+  double b = 0;
+  double x = 0;
+  double y = 0;
+  Point operator()(const Point& p) const { return {a * p.x - b * p.y + x, b * p.x + a * p.y + y}; }
+  [[nodiscard]] Point inverse(const Point& p) const {
+    const double s = a * a + b * b;
+    return {(a * (p.x - x) + b * (p.y - y)) / s, (-b * (p.x - x) + a * (p.y - y)) / s};
+  }
+};
+
+// The middle of an image is (0, 0), x to the right, y up, in mm.
+Point middle_of(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
+
+float bilinear(const Image& image, double column, double row) {
+  const double x = std::clamp(column, 0.0, image.width - 1.001);
+  const double y = std::clamp(row, 0.0, image.height - 1.001);
+  const int i = static_cast<int>(x);
+  const int j = static_cast<int>(y);
+  const auto fx = static_cast<float>(x - i);
+  const auto fy = static_cast<float>(y - j);
+  return (1 - fy) * ((1 - fx) * image(i, j) + fx * image(i + 1, j)) +
+         fy * ((1 - fx) * image(i, j + 1) + fx * image(i + 1, j + 1));
+}
+
+// Signed distance in pixels to where the image crosses the level, positive below it. Between pixel middles a crossing
+// is taken half way; over an outline that is right in the mean.
+Image distance_to(const Image& image, float level) {
+  cv::Mat above(image.height, image.width, CV_8U);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) above.at<unsigned char>(j, i) = image(i, j) >= level ? 1 : 0;
+  }
+  cv::Mat inside;
+  cv::Mat outside;
+  cv::distanceTransform(above, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::distanceTransform(1 - above, outside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  Image distance(image.width, image.height);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      distance(i, j) = image(i, j) >= level ? 0.5F - inside.at<float>(j, i) : outside.at<float>(j, i) - 0.5F;
+    }
+  }
+  return distance;
+}
+
+// Heights above the base; where there is no material, base.
+struct Design {
+  Image above_base_mm;
+  double pixel_mm = 0;
+  double height_mm = 0;
+  std::vector<Point> outline;  // mm about the middle, at half height
+};
+
+Design design_of(const solid::HeightMap& map) {
+  double low = 1e300;
+  double high = -1e300;
+  bool gaps = false;
+  for (int j = 1; j + 1 < map.heights_mm.height; ++j) {  // the rim is empty by construction
+    for (int i = 1; i + 1 < map.heights_mm.width; ++i) {
+      const auto h = static_cast<double>(map.heights_mm(i, j));
+      gaps = gaps || std::isnan(h);
+      if (std::isnan(h)) continue;
+      low = std::min(low, h);
+      high = std::max(high, h);
+    }
+  }
+  Design design{map.heights_mm, map.pixel_mm, high - low, {}};
+  if (!(high > low)) {
+    throw Error{Fault::data, gaps ? "design: its top is even; give it with the base that it stands on"
+                                  : "design: flat, nothing stands out from its base"};
+  }
+  for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(low);
+  const Image& image = design.above_base_mm;
+  const auto half = static_cast<float>(0.5 * design.height_mm);
+  const Point middle = middle_of(image);
+  const auto add = [&](int i, int j, int di, int dj) {
+    const float from = image(i, j);
+    const float to = image(i + di, j + dj);
+    if ((from >= half) == (to >= half)) return;
+    const auto part = static_cast<double>((half - from) / (to - from));
+    design.outline.push_back({(i + part * di - middle.x) * map.pixel_mm, (middle.y - j - part * dj) * map.pixel_mm});
+  };
+  for (int j = 0; j + 1 < image.height; ++j) {
+    for (int i = 0; i + 1 < image.width; ++i) {
+      add(i, j, 1, 0);
+      add(i, j, 0, 1);
+    }
+  }
+  return design;
+}
+
+Point centroid_above(const Image& image, double pixel_mm, float level) {
+  const Point middle = middle_of(image);
+  Point sum;
+  double count = 0;
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      if (image(i, j) < level) continue;
+      sum.x += (i - middle.x) * pixel_mm;
+      sum.y += (middle.y - j) * pixel_mm;
+      count += 1;
+    }
+  }
+  return {sum.x / std::max(count, 1.0), sum.y / std::max(count, 1.0)};
+}
+
+// The print's outline as a field of signed distances in mm.
+class Outline {
+ public:
+  explicit Outline(const Relief& print)
+      : distance_(distance_to(print.heights_mm, static_cast<float>(0.5 * print.plateau_mm))),
+        pixel_mm_(print.pixel_mm),
+        middle_(middle_of(distance_)) {}
+
+  [[nodiscard]] double distance(const Point& p) const {
+    return pixel_mm_ *
+           static_cast<double>(bilinear(distance_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_));
+  }
+  [[nodiscard]] Point gradient(const Point& p) const {
+    const double h = pixel_mm_;
+    return {(distance({p.x + h, p.y}) - distance({p.x - h, p.y})) / (2 * h),
+            (distance({p.x, p.y + h}) - distance({p.x, p.y - h})) / (2 * h)};
+  }
+  [[nodiscard]] double rms(const std::vector<Point>& points, const Similar& pose) const {
+    double sum = 0;
+    for (const Point& p : points) sum += std::pow(distance(pose(p)), 2);
+    return std::sqrt(sum / static_cast<double>(points.size()));
+  }
+
+ private:
+  Image distance_;
+  double pixel_mm_;
+  Point middle_;
+};
+
+// Gauss-Newton on the distances of the placed points; far ones pull with constant force (Huber).
+Similar fit(const std::vector<Point>& points, const Outline& outline, Similar pose, int steps) {
+  double reach = 1e-9;
+  for (const Point& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
+  for (int step = 0; step < steps; ++step) {
+    const double bound = 2.5 * outline.rms(points, pose) + 1e-9;
+    cv::Matx44d normal = cv::Matx44d::zeros();
+    cv::Vec4d right = cv::Vec4d::zeros();
+    for (const Point& p : points) {
+      const Point at = pose(p);
+      const double r = outline.distance(at);
+      const Point g = outline.gradient(at);
+      const cv::Vec4d row((g.x * p.x + g.y * p.y) / reach, (g.y * p.x - g.x * p.y) / reach, g.x, g.y);
+      const double weight = std::min(1.0, bound / (std::abs(r) + 1e-300));
+      normal += weight * row * row.t();
+      right -= weight * r * row;
+    }
+    for (int d = 0; d < 4; ++d) normal(d, d) += 1e-9 * normal(d, d) + 1e-12;  // a ring may turn freely
+    const cv::Vec4d x = normal.solve(right, cv::DECOMP_CHOLESKY);
+    pose.a += x[0] / reach;
+    pose.b += x[1] / reach;
+    pose.x += x[2];
+    pose.y += x[3];
+    if (std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]) + std::abs(x[3]) < 1e-6) break;
+  }
+  return pose;
+}
+
+Similar place(const Design& design, const Relief& print, const Outline& outline, EmbossAlign align) {
+  if (align == EmbossAlign::none) return {};
+  const Point from = centroid_above(design.above_base_mm, design.pixel_mm, static_cast<float>(0.5 * design.height_mm));
+  const Point to = centroid_above(print.heights_mm, print.pixel_mm, static_cast<float>(0.5 * print.plateau_mm));
+  std::vector<Point> few;
+  const std::size_t stride = 1 + design.outline.size() / 500;
+  for (std::size_t i = 0; i < design.outline.size(); i += stride) few.push_back(design.outline[i]);
+  constexpr int turns = 24;
+  Similar best;
+  double best_rms = 1e300;
+  for (int turn = 0; turn < (align == EmbossAlign::any_turn ? turns : 1); ++turn) {
+    const double angle = 2 * std::numbers::pi * turn / turns;
+    Similar start{std::cos(angle), std::sin(angle), 0, 0};
+    const Point there = start(from);
+    start.x = to.x - there.x;
+    start.y = to.y - there.y;
+    const Similar found = fit(few, outline, start, 30);
+    const double rms = outline.rms(few, found);
+    const double size = std::hypot(found.a, found.b);
+    if (size < 0.5 || size > 2 || rms > 0.98 * best_rms) continue;  // of symmetric places the one with the least turn
+    best = found;
+    best_rms = rms;
+  }
+  return fit(design.outline, outline, best, 50);
+}
+
+Image placed(const Design& design, const Similar& pose, const Relief& print) {
+  Image image(print.heights_mm.width, print.heights_mm.height);
+  const Point middle = middle_of(image);
+  const Point design_middle = middle_of(design.above_base_mm);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      const Point p = pose.inverse({(i - middle.x) * print.pixel_mm, (middle.y - j) * print.pixel_mm});
+      image(i, j) = bilinear(design.above_base_mm, design_middle.x + p.x / design.pixel_mm,
+                             design_middle.y - p.y / design.pixel_mm);
+    }
+  }
+  return image;
+}
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Overlap, and the height well inside the design's area.
+void measure_area(const Relief& print, double margin_mm, Emboss& emboss) {
+  const auto half_design = static_cast<float>(0.5 * emboss.design_height_mm);
+  const auto half_print = static_cast<float>(0.5 * print.plateau_mm);
+  const Image distance = distance_to(emboss.design, half_design);
+  std::vector<double> heights;
+  double both = 0;
+  double either = 0;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    if (print.measured.values[i] == 0) continue;
+    const bool wanted = emboss.design.values[i] >= half_design;
+    const bool there = print.heights_mm.values[i] >= half_print;
+    both += wanted && there ? 1 : 0;
+    either += wanted || there ? 1 : 0;
+    if (static_cast<double>(distance.values[i]) * print.pixel_mm < -margin_mm)
+      heights.push_back(static_cast<double>(print.heights_mm.values[i]));
+  }
+  emboss.iou = either > 0 ? both / either : 0;
+  if (heights.empty()) {
+    if (margin_mm > 0) measure_area(print, 0, emboss);
+    return;
+  }
+  emboss.height_mm = median(heights);
+  for (double& h : heights) h = std::abs(h - emboss.height_mm);
+  emboss.height_sigma_mm = 1.4826 * median(heights);
+}
+
+}  // namespace
+
+Emboss compare_emboss(const Relief& print, const solid::HeightMap& map, EmbossAlign align) {
+  const Design design = design_of(map);
+  const Outline outline(print);
+  const Similar pose = place(design, print, outline, align);
+  Emboss emboss;
+  emboss.placing = {std::hypot(pose.a, pose.b), std::atan2(pose.b, pose.a) * deg_per_rad, pose.x, pose.y};
+  emboss.design_height_mm = design.height_mm;
+  const auto n = static_cast<double>(design.outline.size());
+  for (const Point& p : design.outline) {
+    const double d = outline.distance(pose(p));
+    emboss.outline_rms_mm += d * d / n;
+    emboss.outline_mean_mm -= d / n;
+    emboss.outline_max_mm = std::max(emboss.outline_max_mm, std::abs(d));
+  }
+  emboss.outline_rms_mm = std::sqrt(emboss.outline_rms_mm);
+  emboss.design = placed(design, pose, print);
+  constexpr double margin_mm = 0.15;  // a projector's edge is that soft [RAY21 fig 12]
+  measure_area(print, margin_mm, emboss);
+  if (emboss.iou == 0) throw Error{Fault::data, "design: does not meet what stands out in the height picture"};
+  return emboss;
+}
+
+Section section(const Relief& print, const Emboss& emboss, double x0, double y0, double x1, double y1) {
+  Section line;
+  const double length_px = std::hypot(x1 - x0, y1 - y0);
+  const int count = std::max(2, static_cast<int>(2 * length_px));
+  for (int i = 0; i < count; ++i) {
+    const double part = static_cast<double>(i) / (count - 1);
+    const double x = x0 + part * (x1 - x0);
+    const double y = y0 + part * (y1 - y0);
+    line.along_mm.push_back(part * length_px * print.pixel_mm);
+    line.print_mm.push_back(static_cast<double>(bilinear(print.heights_mm, x, y)));
+    line.design_mm.push_back(static_cast<double>(bilinear(emboss.design, x, y)));
+  }
+  return line;
+}
+
+Json to_json(const Relief& print, const Emboss& emboss) {
+  const Placing& p = emboss.placing;
+  return {{"shrinkage_percent", 100 * (1 - p.scale)},
+          {"turn_deg", p.turn_deg},
+          {"shift_mm", {p.shift_x_mm, p.shift_y_mm}},
+          {"outline_rms_mm", emboss.outline_rms_mm},
+          {"outline_mean_mm", emboss.outline_mean_mm},
+          {"outline_max_mm", emboss.outline_max_mm},
+          {"iou", emboss.iou},
+          {"height_mm", emboss.height_mm},
+          {"height_sigma_mm", emboss.height_sigma_mm},
+          {"design_height_mm", emboss.design_height_mm},
+          {"levelled_deg", print.tilt_deg}};
+}
+
+const std::vector<std::string>& emboss_names() {
+  static const std::vector<std::string> names{"rms", "max", "iou", "shrinkage", "height"};
+  return names;
+}
+
+double figure(const Emboss& emboss, const std::string& name) {
+  if (name == "rms") return emboss.outline_rms_mm;
+  if (name == "max") return emboss.outline_max_mm;
+  if (name == "iou") return emboss.iou;
+  if (name == "shrinkage") return 100 * (1 - emboss.placing.scale);
+  return emboss.height_mm;
+}
+
+}  // namespace vam::metrology

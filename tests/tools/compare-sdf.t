@@ -1,0 +1,3 @@
+# vam-sdf against MeshLab, CloudCompare and Open3D on one pair of meshes: those that are installed. Without any of them
+# the test is skipped, aloud.
+"$VAM_SOURCE/scripts/compare-sdf"

@@ -1,0 +1,125 @@
+// The plain form of vam-sdf: print against reference.
+#include "metrology/deviation.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/mesh_file.hpp"
+#include "io/picture.hpp"
+#include "io/plot.hpp"
+#include "io/report.hpp"
+#include "io/resin_record.hpp"
+#include "io/stream.hpp"
+#include "model/conditions.hpp"
+#include "solid/align.hpp"
+#include "vam-sdf/options.hpp"
+
+namespace vam::sdf_tool {
+
+namespace {
+
+solid::Alignment align(const Options& options, const model::TriangleSoup& print,
+                       const model::TriangleSoup& reference_mesh, const solid::Surface& reference) {
+  solid::AlignOptions how;
+  how.with_scale = options.scale;
+  if (options.align == "full") return solid::align(print, reference_mesh, reference, how);
+  if (options.align == "icp") return solid::refine(print, reference, how);
+  solid::Alignment as_it_is;
+  as_it_is.converged = true;
+  return as_it_is;
+}
+
+double figure(const metrology::Comparison& found, const std::string& name) {
+  const auto& d = found.print_to_reference;
+  if (name == "rms") return d.rms_mm;
+  if (name == "mean") return d.mean_mm;
+  if (name == "sigma") return d.sigma_mm;
+  if (name == "mad") return d.mad_mm;
+  if (name == "max") return d.max_abs_mm;
+  if (name == "hausdorff") return found.hausdorff_mm;
+  return 100 * d.rms_mm / found.largest_dimension_mm;  // rms_percent
+}
+
+void write_coloured(const std::string& path, const model::TriangleSoup& print, const solid::Surface& reference,
+                    double limit_mm, const std::string& history) {
+  model::VertexData vertices;
+  vertices.quality = reference.signed_distances(print.points);
+  for (const float distance : vertices.quality) {
+    vertices.colours.push_back(metrology::blue_white_red(static_cast<double>(distance), limit_mm));
+  }
+  io::write_ply(path, print, vertices,
+                {history, "distance in mm, positive outside the reference; colours -" + format_number(limit_mm, 4) +
+                              " (blue) to +" + format_number(limit_mm, 4) + " mm (red)"});
+}
+
+void write_histogram(const Options& options, const metrology::Comparison& found, double limit_mm) {
+  io::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
+  for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
+  const io::Histogram histogram = builder.done();
+  const std::string& path = options.histogram;
+  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
+    io::Plot plot;
+    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_reference.rms_mm, 3) + " mm";
+    plot.x = {"distance to the reference / mm (positive: outside)", -limit_mm, limit_mm};
+    plot.y.label = "share of the area / %";
+    plot.series.push_back({"", histogram.edges, histogram.percent, io::paint::blue, io::SeriesStyle::bars});
+    plot.markers.push_back({0, "reference", io::paint::grey});
+    return io::write_png(path, io::draw(plot));
+  }
+  std::string text = "from_mm,to_mm,area_percent\n";
+  for (std::size_t i = 0; i < histogram.percent.size(); ++i) {
+    text += format_number(histogram.edges[i]) + "," + format_number(histogram.edges[i + 1]) + "," +
+            format_number(histogram.percent[i]) + "\n";
+  }
+  io::write_text(path, text);
+}
+
+}  // namespace
+
+void deviation(const cli::App& app, const Options& options) {
+  if (options.reference.empty()) throw Error{Fault::usage, "REFERENCE: give the design to compare with"};
+  std::vector<model::Condition> conditions;
+  if (!options.require.empty())
+    conditions =
+        model::parse_conditions(options.require, {"rms", "mean", "sigma", "mad", "max", "hausdorff", "rms_percent"});
+  if (options.level && !options.resin_record.empty())
+    throw Error{Fault::usage, "--level and --resin: give one of them, both say where the print's surface is"};
+  const std::optional<double> level =
+      options.resin_record.empty() ? options.level : io::gelation_level(options.resin_record);
+  for (const auto& input : {options.print, options.reference}) {
+    if (!options.output.empty()) io::refuse_same_file(input, options.output);
+  }
+  const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_level);
+  model::TriangleSoup print = read_surface(options.print, level);
+
+  const solid::Surface reference(reference_mesh);
+  const solid::Alignment alignment = align(options, print, reference_mesh, reference);
+  if (!alignment.converged)
+    warn("alignment: still moving after " + std::to_string(alignment.iterations) + " iterations");
+  for (auto& point : print.points) point = alignment.transform(point);
+  const metrology::Comparison found = metrology::compare(print, reference_mesh, reference, options.samples);
+
+  const auto& ends = found.print_to_reference.percentiles_mm;
+  const double limit_mm =
+      options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
+  if (!options.output.empty()) write_coloured(options.output, print, reference, limit_mm, app.history());
+  if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
+  Json figures = metrology::to_json(found);
+  figures["alignment"] = {{"method", options.align},
+                          {"scale", alignment.transform.scale},
+                          {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
+                          {"matrix", alignment.transform.matrix()}};
+  io::write_report(options.report, "vam-sdf/1", figures);
+  for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
+    note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
+         format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
+  }
+  const auto failed = model::unmet(conditions, [&](const std::string& name) { return figure(found, name); });
+  if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
+}
+
+}  // namespace vam::sdf_tool

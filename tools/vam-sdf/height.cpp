@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/contour.hpp"
+#include "io/image_figure.hpp"
+#include "io/picture.hpp"
+#include "io/plot.hpp"
+#include "io/report.hpp"
+#include "io/view_source.hpp"
+#include "metrology/emboss.hpp"
+#include "model/conditions.hpp"
+#include "vam-sdf/options.hpp"
+
+namespace vam::sdf_tool {
+
+namespace {
+
+constexpr double um_per_mm = 1000;
+
+// Heights in mm, not a number where there was no reading; of a mesh or volume what is seen from above.
+Image read_heights(const HeightOptions& options) {
+  const bool picture = io::is_picture(options.picture);
+  const bool stack = options.picture == "-" || options.picture.ends_with(".exr");
+  const double unit_mm = picture || stack ? options.full_mm : 1.0;
+  Image heights =
+      picture || stack
+          ? io::read_field(options.picture)
+          : solid::height_map(read_surface(options.picture, options.reference_level), options.pixel_mm).heights_mm;
+  for (float& h : heights.values) {
+    const bool lost = picture && h == 0;
+    const double mm = static_cast<double>(h) * unit_mm;
+    const bool kept = !lost && !(options.lowest_mm && mm < *options.lowest_mm);
+    h = kept ? static_cast<float>(mm) : std::numeric_limits<float>::quiet_NaN();
+  }
+  return heights;
+}
+
+metrology::EmbossAlign align_of(const std::string& word) {
+  if (word == "none") return metrology::EmbossAlign::none;
+  return word == "icp" ? metrology::EmbossAlign::near : metrology::EmbossAlign::any_turn;
+}
+
+// The ends of the section: as asked, or across the middle row.
+std::vector<double> line_of(const HeightOptions& options, const Image& image) {
+  if (options.line.empty()) return {0, 0.5 * (image.height - 1), image.width - 1.0, 0.5 * (image.height - 1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double end = i % 2 == 0 ? image.width - 1.0 : image.height - 1.0;
+    if (!(options.line[i] >= 0 && options.line[i] <= end))
+      throw Error{Fault::usage, "--line: " + format_number(options.line[i]) + " is outside the picture of " +
+                                    std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels"};
+  }
+  return options.line;
+}
+
+void draw_map(const HeightOptions& options, const metrology::Relief& print, const metrology::Emboss& found,
+              const std::vector<double>& line) {
+  io::ImageFigure figure;
+  Image um = print.heights_mm;
+  for (float& h : um.values) h *= static_cast<float>(um_per_mm);
+  figure.title = "Height of the print, design shrunk by " + format_number(100 * (1 - found.placing.scale), 3) + " %";
+  figure.low = -0.1 * um_per_mm * print.plateau_mm;
+  figure.high = 1.2 * um_per_mm * std::max(print.plateau_mm, found.height_mm);
+  figure.value_label = "height / um";
+  figure.outline_name = "design at half height";
+  figure.pixel_mm = print.pixel_mm;
+  figure.x = {"mm", 0, um.width * print.pixel_mm};
+  figure.y = {"mm", 0, um.height * print.pixel_mm};
+  io::Panel panel{um, "", io::contour(found.design, static_cast<float>(0.5 * found.design_height_mm))};
+  if (!options.plot.empty()) panel.outline.push_back({{line[0], line[1]}, {line[2], line[3]}});
+  figure.panels.push_back(std::move(panel));
+  io::write_png(options.output, io::draw(figure));
+}
+
+void draw_section(const std::string& path, const metrology::Section& section) {
+  io::Plot plot;
+  plot.title = "Height along the line";
+  plot.x = {"mm"};
+  plot.y = {"height / um"};
+  const auto um = [](std::vector<double> mm) {
+    for (double& h : mm) h *= um_per_mm;
+    return mm;
+  };
+  plot.series.push_back({"design", section.along_mm, um(section.design_mm), io::paint::grey});
+  plot.series.push_back({"print", section.along_mm, um(section.print_mm), io::paint::blue});
+  io::write_png(path, io::draw(plot));
+}
+
+}  // namespace
+
+void height(const HeightOptions& options) {
+  if (options.design.empty()) throw Error{Fault::usage, "DESIGN: give the design to compare with"};
+  std::vector<model::Condition> conditions;
+  if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
+  const model::TriangleSoup design = read_surface(options.design, options.reference_level);
+  const Image heights = read_heights(options);
+  const std::vector<double> line = line_of(options, heights);
+  const metrology::Relief print = metrology::levelled(heights, options.pixel_mm);
+  const auto found =
+      metrology::compare_emboss(print, solid::height_map(design, options.pixel_mm), align_of(options.align));
+  if (!options.output.empty()) draw_map(options, print, found, line);
+  if (!options.plot.empty())
+    draw_section(options.plot, metrology::section(print, found, line[0], line[1], line[2], line[3]));
+  io::write_report(options.report, "vam-sdf-height/1", metrology::to_json(print, found));
+  note("shrinkage " + format_number(100 * (1 - found.placing.scale), 3) + " %, outline RMS " +
+       format_number(found.outline_rms_mm, 3) + " mm, height " + format_number(found.height_mm, 3) + " mm of " +
+       format_number(found.design_height_mm, 3) + " mm, overlap " + format_number(100 * found.iou, 3) + " %");
+  const auto failed = model::unmet(conditions, [&](const std::string& name) { return metrology::figure(found, name); });
+  if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
+}
+
+}  // namespace vam::sdf_tool

@@ -1,0 +1,56 @@
+// What the user asks of vam-sdf, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/app.hpp"
+#include "model/mesh.hpp"
+
+namespace vam::sdf_tool {
+
+struct Options {
+  std::string command;
+  std::string print = "-";
+  std::string reference;
+  std::string output;
+  std::string align = "full";
+  bool scale = false;
+  std::optional<double> level;
+  std::string resin_record;
+  double reference_level = 0.5;
+  int samples = 200000;
+  std::string histogram;
+  int bins = 101;
+  std::optional<double> limit_mm;
+  std::string require;
+  std::string report;
+};
+
+/// vam-sdf height.
+struct HeightOptions {
+  std::string picture = "-";
+  std::string design;
+  double pixel_mm = 0.05;
+  double full_mm = 1;
+  std::optional<double> lowest_mm;
+  std::string align = "full";
+  double reference_level = 0.5;
+  std::string output;
+  std::vector<double> line;
+  std::string plot;
+  std::string require;
+  std::string report;
+};
+
+/// A mesh as it is, or the surface of a volume at `level`, in the frame of the part: vam-slice's stretch in z undone.
+[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> level);
+
+/// Print against reference.
+void deviation(const cli::App& app, const Options& options);
+
+/// Height picture against design.
+void height(const HeightOptions& options);
+
+}  // namespace vam::sdf_tool

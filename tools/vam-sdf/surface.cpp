@@ -1,0 +1,28 @@
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/file_type.hpp"
+#include "io/mesh_file.hpp"
+#include "io/vdb.hpp"
+#include "solid/isosurface.hpp"
+#include "vam-sdf/options.hpp"
+
+namespace vam::sdf_tool {
+
+model::TriangleSoup read_surface(const std::string& path, std::optional<double> level) {
+  if (!io::is_volume(path)) return io::read_mesh(path);
+  const std::string name = path == "-" ? "stdin" : path;
+  if (!level) throw Error{Fault::usage, name + ": is a volume; give the surface's value with --level or --resin"};
+  const io::SparseVolume volume = io::read_volume(path, "");
+  model::TriangleSoup mesh = solid::isosurface(
+      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, *level);
+  if (mesh.triangles.empty()) {
+    throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*level)};
+  }
+  const auto stretch = volume.metadata.find("vam:stretch_z");
+  const double factor = stretch == volume.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
+  for (auto& point : mesh.points) point[2] /= factor;
+  return mesh;
+}
+
+}  // namespace vam::sdf_tool
