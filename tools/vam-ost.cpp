@@ -32,10 +32,15 @@ cli::Manual manual() {
        "writes "
        "a volume into the folder -o, a line of JSON to --log, and renews --projections and --page. With --reference it "
        "reports how much of the design is cured, missing and overcured; with --until it prints one line of JSON on "
-       "standard output when the condition holds, and ends: the signal to darken the projector.",
+       "standard output when the condition holds, and ends: the signal to darken the projector. Frames are taken in "
+       "while "
+       "a volume is computed; dark or saturated ones are left out and counted, and before anything has gelled the log "
+       "says that it waits.",
        "vam-ost threshold takes the scattering volume of a printed standard cylinder, of known diameter or measured on "
        "a "
-       "profilometer's picture, and gives I_p with its spread."},
+       "profilometer's picture, and gives I_p with its spread: the mean along the true circle in the overhead mean "
+       "over "
+       "the standard's height. The record serves --resin of vam-ost and vam-sdf."},
       {{"A synthetic cylinder, as a camera would see it, and back:",
         "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
         "vam-sinogram design.vdb --angles 90 | vam-resample -o seen.exr\n"
@@ -50,7 +55,9 @@ cli::Manual manual() {
       {"Memory: the views of one turn and the volume, about four times both. Time: about a second for 180 views of 480 "
        "x "
        "300 pixels on two cores.",
-       "The axis is the centre of symmetry of the mean view, row by row, by least squares; column, tilt and their "
+       "Struts three voxels apart keep a contrast of 29 % with the default window, 14 % with hann, which smooths noise "
+       "more. The axis is the centre of symmetry of the mean view, row by row, by least squares; column, tilt and "
+       "their "
        "standard "
        "deviations are reported.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
@@ -64,7 +71,8 @@ void declare(cli::App& app, Options& o) {
   cli::add_output(app, o.output);
   app.group("Camera");
   app.option("--step", "DEG", o.step_deg, cli::any, "Angle between frames that carry none. Negative: the other way.");
-  app.option("--dark", "FILE", o.dark, "Picture or stack taken in the dark, subtracted.");
+  app.option("--dark", "FILE", o.dark,
+             "Picture or stack without a print (in the dark, or of the vial before it), its mean subtracted.");
   app.option("--flat", "FILE", o.flat,
              "Picture or stack of an even scene, divided out after the dark is subtracted; without it camera.flat.");
   app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels.");
@@ -116,9 +124,13 @@ void once(const cli::App& app, const Options& options) {
   io::ViewSource source(options.views, options.step_deg);
   std::vector<metrology::View> views;
   io::CameraFrame frame;
-  while (source.next(frame)) views.push_back(session.take(frame));
+  while (source.next(frame)) {
+    metrology::require_exposed(frame.image, frame.name);
+    views.push_back(session.take(frame));
+  }
+  metrology::require_alike(views);
   const model::Volume volume = session.reconstruct(views, source.pixel_mm());
-  session.write_print(volume);
+  session.write_print(volume, true);
   session.write(volume, options.output, source.history());
   io::write_report(options.report, "vam-ost/1", session.figures(volume));
 }

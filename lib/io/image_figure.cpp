@@ -122,6 +122,7 @@ RgbImage draw_single(const ImageFigure& figure) {
 
 // The number of columns that makes the sheet about 4 : 3.
 int sheet_columns(const ImageFigure& figure) {
+  if (figure.columns > 0) return figure.columns;
   const Image& image = figure.panels.front().values;
   const double aspect = figure.square_pixels ? static_cast<double>(image.width) / image.height : 4.0 / 3;
   const auto count = static_cast<double>(figure.panels.size());
@@ -139,7 +140,10 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   const double height = std::round(figure.panels.front().values.height * scale.y);
   const double top = figure.title.empty() ? 12 : 48;
   const double foot = figure.outline_name.empty() ? 16 : 44;
-  const double body_width = columns * (width + gap);
+  double cell = width;  // a caption may be wider than its picture
+  for (const Panel& panel : figure.panels)
+    cell = std::max(cell, std::ceil(Canvas::text_width(panel.caption, label_size)));
+  const double body_width = columns * (cell + gap);
   const double body_height = rows * (height + gap + caption);
   const double title = Canvas::text_width(figure.title, title_size) + 40;
   const double total = std::max(20 + body_width + colour_bar_room(figure), title);
@@ -147,7 +151,8 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     const int row = static_cast<int>(i) / columns;
     const int column = static_cast<int>(i) % columns;
-    const Spot corner{20 + column * (width + gap), top + caption + row * (height + gap + caption)};
+    const Spot corner{20 + column * (cell + gap) + std::floor(0.5 * (cell - width)),
+                      top + caption + row * (height + gap + caption)};
     draw_panel(canvas, figure, figure.panels[i], corner, scale);
     canvas.outline({corner.x - 1, corner.y - 1}, {corner.x + width, corner.y + height}, paint::grey);
     canvas.text({corner.x + 0.5 * width, corner.y - 6}, figure.panels[i].caption, label_size, paint::black,

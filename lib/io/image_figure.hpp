@@ -30,6 +30,7 @@ struct ImageFigure {
   std::string value_label;   // beside the colour bar: "dose / mJ cm-3"
   std::string outline_name;  // below the picture; none when empty
   double pixel_mm = 0;       // for a scale bar; none when 0
+  int columns = 0;           // of a sheet; 0: as many as make it about 4 : 3
   int size = 720;            // pixels of the longer side of the picture, about
 };
 

@@ -5,7 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "metrology/emboss.hpp"
 
 namespace vam::metrology {

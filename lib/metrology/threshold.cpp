@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -112,6 +113,29 @@ Circle find_circle(const Image& image) {
     circle = fit(edges);
   }
   return circle;
+}
+
+OverheadMean overhead_mean(const model::Volume& scatter) {
+  const model::Grid& g = scatter.grid;
+  std::vector<double> held(static_cast<std::size_t>(g.nz));
+  for (int k = 0; k < g.nz; ++k)
+    held[static_cast<std::size_t>(k)] = std::accumulate(scatter.slice(k), scatter.slice(k) + g.slice_size(), 0.0);
+  const double half = 0.5 * *std::max_element(held.begin(), held.end());
+  if (!(half > 0)) throw Error{Fault::data, "standard: the volume is empty, nothing scatters"};
+  const auto full = [half](double value) { return value >= half; };
+  const auto first = static_cast<int>(std::find_if(held.begin(), held.end(), full) - held.begin());
+  const auto last = g.nz - 1 - static_cast<int>(std::find_if(held.rbegin(), held.rend(), full) - held.rbegin());
+  const int rim = (last - first + 1) / 10;
+  OverheadMean result{Image(g.nx, g.ny), (last - first + 1) * g.voxel_mm};
+  const float share = 1.0F / static_cast<float>(last - first + 1 - 2 * rim);
+  for (int k = first + rim; k <= last - rim; ++k) {
+    for (int j = 0; j < g.ny; ++j) {
+      float* out = result.mean.row(g.ny - 1 - j);
+      const float* in = scatter.slice(k) + static_cast<std::ptrdiff_t>(j) * g.nx;
+      for (int i = 0; i < g.nx; ++i) out[i] += share * in[i];
+    }
+  }
+  return result;
 }
 
 Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double diameter_mm) {

@@ -3,6 +3,7 @@
 
 #include "base/image.hpp"
 #include "base/json.hpp"
+#include "model/grid.hpp"
 
 namespace vam::metrology {
 
@@ -18,6 +19,14 @@ struct Circle {
 /// least squares on sub-pixel edge points along its radii. Throws Fault::data when there is none with a radius between
 /// 4 pixels and half the picture.
 [[nodiscard]] Circle find_circle(const Image& image);
+
+/// The mean of a volume along z over the standard's own height, and that height: slices that hold at least half of
+/// what the fullest does, without a tenth of them at either end. What lies above and below would thin the mean.
+struct OverheadMean {
+  Image mean;  // columns along x, y upwards
+  double height_mm = 0;
+};
+[[nodiscard]] OverheadMean overhead_mean(const model::Volume& scatter);
 
 /// What the standard says: the mean of the overhead mean projection under the circle of the true diameter, centred on
 /// the circle that the projection itself shows.

@@ -126,18 +126,43 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
   return binned(image, binning);
 }
 
-void require_exposed(const Image& raw, const std::string& subject) {
+std::string exposure_problem(const Image& raw) {
   const auto [low, high] = std::minmax_element(raw.values.begin(), raw.values.end());
-  if (!(*high > *low)) {
-    throw Error{Fault::data, subject + ": dark, every pixel is " + format_number(static_cast<double>(*low)) +
-                                 "; check light and exposure"};
-  }
+  if (!(*high > *low))
+    return "dark, every pixel is " + format_number(static_cast<double>(*low)) + "; check light and exposure";
   const auto full = std::count(raw.values.begin(), raw.values.end(), *high);
   constexpr double allowed = 0.02;
   const double part = static_cast<double>(full) / static_cast<double>(raw.size());
-  if (part > allowed) {
-    throw Error{Fault::data, subject + ": saturated, " + format_number(100 * part, 3) + " % of the pixels are at " +
-                                 format_number(static_cast<double>(*high)) + "; shorten the exposure"};
+  if (part <= allowed) return "";
+  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " +
+         format_number(static_cast<double>(*high)) + "; shorten the exposure";
+}
+
+void require_exposed(const Image& raw, const std::string& subject) {
+  const std::string problem = exposure_problem(raw);
+  if (!problem.empty()) throw Error{Fault::data, subject + ": " + problem};
+}
+
+void require_alike(std::span<const View> views) {
+  std::vector<double> contrast;
+  for (const View& view : views) {
+    double sum = 0;
+    double squares = 0;
+    for (const float v : view.image.values) {
+      sum += static_cast<double>(v);
+      squares += static_cast<double>(v) * static_cast<double>(v);
+    }
+    const auto n = static_cast<double>(view.image.size());
+    contrast.push_back(std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n))));
+  }
+  if (contrast.empty()) return;
+  constexpr double least = 0.2;
+  const double usual = median(contrast);
+  for (std::size_t i = 0; i < contrast.size(); ++i) {
+    if (contrast[i] >= least * usual) continue;
+    throw Error{Fault::data, "views: the frame at " + format_number(views[i].angle_deg, 5) +
+                                 " deg is dark, its contrast is " + format_number(contrast[i], 3) +
+                                 " and the others' " + format_number(usual, 3) + "; leave it out or take it again"};
   }
 }
 

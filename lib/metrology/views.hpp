@@ -28,9 +28,15 @@ struct CameraFields {
 /// is not positive.
 [[nodiscard]] Image corrected(const Image& raw, const CameraFields& fields, int binning, const std::string& subject);
 
-/// Throws Fault::data when a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one
-/// and the same highest value (saturated).
+/// Why a frame cannot be measured: no contrast at all (dark), or more than 2 % of its pixels at one and the same
+/// highest value (saturated). Empty when it can.
+[[nodiscard]] std::string exposure_problem(const Image& raw);
+/// Throws Fault::data for it.
 void require_exposed(const Image& raw, const std::string& subject);
+
+/// Throws Fault::data when a view has less than a fifth of the contrast (standard deviation) of the median view: the
+/// light failed, and only noise is left.
+void require_alike(std::span<const View> views);
 
 /// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
 /// end (last row) is displaced towards higher columns.

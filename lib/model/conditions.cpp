@@ -33,7 +33,8 @@ double number(const std::string& text, const std::string& clause) {
   return value;
 }
 
-Condition parse_clause(const std::string& clause, const std::vector<std::string>& known) {
+Condition parse_clause(const std::string& clause, const std::vector<std::string>& known,
+                       const std::vector<std::string>& in_percent) {
   const auto at = clause.find_first_of("<>=");
   if (at == std::string::npos) {
     throw Error{Fault::usage, "'" + clause + "' has no relation (<=, >=, <, >, =); write for example ver<=0.01"};
@@ -46,13 +47,17 @@ Condition parse_clause(const std::string& clause, const std::vector<std::string>
     throw Error{Fault::usage,
                 "'" + clause + "': no figure is called '" + condition.name + "'; there are " + joined(known)};
   }
-  condition.bound = number(trimmed(clause.substr(at + condition.relation.size())), clause);
+  std::string bound = trimmed(clause.substr(at + condition.relation.size()));
+  const bool percent = std::find(in_percent.begin(), in_percent.end(), condition.name) != in_percent.end();
+  if (percent && bound.ends_with('%')) bound = trimmed(bound.substr(0, bound.size() - 1));
+  condition.bound = number(bound, clause);
   return condition;
 }
 
 }  // namespace
 
-std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known) {
+std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known,
+                                        const std::vector<std::string>& in_percent) {
   std::vector<Condition> conditions;
   for (std::size_t from = 0; from <= text.size();) {
     const auto comma = std::min(text.find(',', from), text.size());
@@ -60,7 +65,7 @@ std::vector<Condition> parse_conditions(const std::string& text, const std::vect
     if (clause.empty()) {
       throw Error{Fault::usage, "'" + text + "' has an empty condition; write for example 'ver<=0.01,pw>=0'"};
     }
-    conditions.push_back(parse_clause(clause, known));
+    conditions.push_back(parse_clause(clause, known, in_percent));
     from = comma + 1;
   }
   return conditions;

@@ -15,8 +15,10 @@ struct Condition {
 };
 
 /// "name relation number" separated by commas; blanks are allowed. Names must be among `known`.
+/// Figures that are in per cent already may say so: "missing<=0.5%".
 /// Throws Fault::usage naming the clause that is wrong and the names that exist.
-[[nodiscard]] std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known);
+[[nodiscard]] std::vector<Condition> parse_conditions(const std::string& text, const std::vector<std::string>& known,
+                                                      const std::vector<std::string>& in_percent = {});
 
 [[nodiscard]] bool holds(const Condition& condition, double value);
 

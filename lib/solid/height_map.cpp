@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "solid/surface.hpp"
 #include "solid/triangle_tree.hpp"
 

@@ -35,6 +35,69 @@ grep -q 'now.png' now.html; report $? 'the page shows the picture'
 event=$(vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
 
+# What follows sees a standard through glass and resin by traced rays, with noise: 3 % of the brightest in each pixel.
+glass='--set vial.radius_mm=12.7 --set vial.wall_mm=1 --set vial.index_glass=1.52 --set camera.distance_mm=200
+  --set camera.index_resin=1.5 --set camera.azimuth_deg=90'
+render=$VAM_BUILD/render_views
+"$render" boat:length=8,wall=0.6 boat.exr noise=0.2 offset=7.4 tilt=0.5 angles=60 columns=320 rows=128 pixel=0.06 step=0.15
+quiet 'traced views with noise' vam-ost boat.exr $glass --binning 2 -o boat.vdb --report boat.json
+holds 'the axis is off by 3.7 px' "$(json boat.json axis_column_px) > 83.1 && $(json boat.json axis_column_px) < 83.3"
+holds 'and leans by 0.5 deg' "$(json boat.json axis_tilt_deg) > 0.45 && $(json boat.json axis_tilt_deg) < 0.55"
+"$render" cylinder:diameter=6,height=4 standard.exr noise=0.2
+quiet 'a standard cylinder' vam-ost standard.exr $glass -o standard.vdb
+quiet 'I_p by its known diameter' vam-ost threshold standard.vdb --diameter 6 -o glass.json
+holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 3.8 && $(json glass.json height_mm) < 4.2"
+python3 - <<'PY'
+import struct, zlib
+def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+n, pixel = 200, 0.05  # the profilometer's picture of the standard: 6 mm, off the middle
+rows = b"".join(b"\0" + bytes(200 if ((x - 103) ** 2 + (y - 96) ** 2) ** 0.5 * pixel < 3 else 20 for x in range(n)) for y in range(n))
+open("profile.png", "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", n, n, 8, 0, 0, 0, 0)) +
+    chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+PY
+quiet 'I_p by a profilometer' vam-ost threshold standard.vdb --profile profile.png --profile-pixel 0.05 -o profile.json
+holds 'measures the standard' "$(json profile.json diameter_mm) > 5.95 && $(json profile.json diameter_mm) < 6.05"
+holds 'and its level lies on the edge' "$(json profile.json level) > 0.3 && $(json profile.json level) < 0.7"
+"$render" cylinder:diameter=4,height=4 other.exr noise=0.2
+quiet 'the record is picked up' vam-ost other.exr $glass --resin glass.json --mesh other.ply -o other.vdb
+diameter=$(python3 - <<'PY'
+import struct
+data = open("other.ply", "rb").read()
+head, body = data.split(b"end_header\n", 1)
+count = int(head.split(b"element vertex ")[1].split()[0])
+points = list(struct.iter_unpack("<3f", body[:12 * count]))
+radii = sorted((x * x + y * y) ** 0.5 for x, y, z in points if abs(z) < 1.5)
+print(2 * radii[len(radii) // 2])
+PY
+)
+holds "another cylinder's diameter is right within 0.1 mm ($diameter)" "$diameter > 3.9 && $diameter < 4.1"
+vam-slice --shape cylinder:diameter=4,height=4 --voxel 0.1 --stretch-z 1 -o four.vdb
+quiet 'vam-sdf takes the same record' vam-sdf other.vdb four.vdb --resin glass.json --align icp --require 'rms<=0.08'
+vam-ost other.exr $glass | vam-sdf - four.vdb --resin glass.json --align icp --require 'rms<=0.08'
+report $? 'also through a pipe'
+quiet 'binned by four, by MLEM' vam-ost other.exr $glass --binning 4 --statistical 10 -o coarse.vdb --report coarse.json
+is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
+
+# A print that grows: nothing at first, then three turns; live through a pipe until it is done.
+"$render" cylinder:diameter=4,height=4 grows.exr noise=0.05 turns=4 growth=0.5 angles=60
+cat grows.exr | vam-ost --live $glass --resin glass.json --reference four.vdb --until 'missing<=5%' \
+  -o turns --log turns.jsonl --projections turns.png --page turns.html >event.json 2>.log/err
+report $? 'a print that grows'
+is 'it says nothing on the way' "$(cat .log/err)" ''
+is 'it stops once' "$(grep -c '"event":"stop"' event.json)" 1
+python3 - <<'PY'
+import json
+missing = [json.loads(line)["missing_percent"] for line in open("turns.jsonl")]
+assert len(missing) >= 3 and missing == sorted(missing, reverse=True) and missing[-1] <= 5 < missing[-2], missing
+PY
+report $? 'what is missing falls from turn to turn'
+is 'a volume for every line' "$(ls turns | wc -l)" "$(wc -l <turns.jsonl)"
+grep -q 'missing_percent' turns.html; report $? 'the page has the figures'
+"$render" cylinder:diameter=4,height=4 faint.exr noise=0.05 turns=2 growth=0 angles=60
+quiet 'live waits while nothing is there' vam-ost faint.exr --live $glass --level 0.5 -o faint --log faint.jsonl
+is 'and says so' "$(grep -c 'nothing to be seen' faint.jsonl)" 1
+fails 65 'no volume' vam-ost views --step 2 $rig --live
+
 fails 64 'give their distance with --step' vam-ost views -o x.vdb
 fails 64 'needs? the threshold' vam-ost views --step 6 --mesh p.ply -o x.vdb
 fails 64 'needs --projections' vam-ost views --step 6 --live --page p.html

@@ -1,9 +1,12 @@
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/event_log.hpp"
 #include "io/stream.hpp"
+#include "io/view_queue.hpp"
 #include "metrology/sliding_turn.hpp"
 #include "model/conditions.hpp"
 #include "vam-ost/session.hpp"
@@ -12,50 +15,104 @@ namespace vam::ost_tool {
 
 namespace {
 
-void write_page(const Options& options) {
+// The operator's page: the figures of the latest turn over the picture, which the browser must not keep.
+void write_page(const Options& options, int index, const Json& line) {
   if (options.page.empty()) return;
-  io::OutputFile page(options.page, io::Content::text);
+  std::string words = "turn " + format_number(line.at("turns").get<double>(), 4);
+  for (const char* name : {"missing_percent", "overcure_percent", "iou"}) {
+    if (line.contains(name)) words += ", " + std::string(name) + " " + format_number(line.at(name).get<double>(), 4);
+  }
   const std::string picture = std::filesystem::path(options.projections).filename().string();
-  page.write(
+  io::write_text(
+      options.page,
       "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\"><title>vam-ost</title>"
-      "<body style=\"margin:0;background:#fff\"><img src=\"" +
-      picture + "\" style=\"max-width:100%\">\n");
-  page.commit();
+      "<body style=\"margin:1em;background:#fff;font-family:sans-serif\"><p>" +
+          words + "</p><img src=\"" + picture + "?" + std::to_string(index) + "\" style=\"max-width:100%\">\n");
 }
+
+std::vector<model::Condition> conditions_of(const Options& options) {
+  if (options.until.empty()) return {};
+  return model::parse_conditions(options.until, metrology::cured_names(), {"missing", "overcure"});
+}
+
+// Everything that a finished turn leaves behind; true when the print is done.
+class Turns {
+ public:
+  Turns(Session& session, const Options& options)
+      : session_(session), options_(options), conditions_(conditions_of(options)), log_(io::open_log(options.log)) {
+    if (options.output != "-") std::filesystem::create_directories(options.output);
+  }
+
+  bool finish(const model::Volume& volume, Json line, const std::vector<std::string>& history) {
+    char name[32];
+    std::snprintf(name, sizeof name, "scatter-%04d.vdb", index_++);
+    if (options_.output != "-")
+      session_.write(volume, (std::filesystem::path(options_.output) / name).string(), history);
+    session_.write_print(volume, false);
+    const auto state = session_.state(volume);
+    if (state) line.update(metrology::to_json(*state));
+    write_page(options_, index_, line);
+    say(line);
+    if (conditions_.empty()) return false;
+    const auto value = [&](const std::string& wanted) { return metrology::figure(*state, wanted); };
+    if (!model::unmet(conditions_, value).empty()) return false;
+    line["event"] = "stop";
+    line["condition"] = options_.until;
+    std::puts(line.dump().c_str());
+    std::fflush(stdout);
+    return true;
+  }
+
+  void say(const Json& line) {
+    if (log_) io::log_line(*log_, line.dump());
+  }
+  [[nodiscard]] int count() const { return index_; }
+
+ private:
+  Session& session_;
+  const Options& options_;
+  std::vector<model::Condition> conditions_;
+  io::EventLog log_;
+  int index_ = 0;
+};
 
 }  // namespace
 
 void live(const cli::App& app, const Options& options) {
-  std::vector<model::Condition> conditions;
-  if (!options.until.empty()) conditions = model::parse_conditions(options.until, metrology::cured_names());
   if (!options.page.empty() && options.projections.empty())
     throw Error{Fault::usage, "--page: needs --projections, the picture that it shows"};
   Session session(app, options);
-  const bool keep = options.output != "-";
-  if (keep) std::filesystem::create_directories(options.output);
-  const auto log = io::open_log(options.log);
+  Turns turns(session, options);
   io::ViewSource source(options.views, options.step_deg);
+  const double pixel_mm = source.pixel_mm();
+  const auto history = source.history();
+  io::ViewQueue frames(source);  // from here on the source is its thread's
   metrology::SlidingTurn turn(options.every_deg);
+  int left_out = 0;
   io::CameraFrame frame;
-  for (int index = 0; source.next(frame);) {
-    if (!turn.push(session.take(frame))) continue;
-    const model::Volume volume = session.reconstruct(turn.views(), source.pixel_mm());
-    char name[32];
-    std::snprintf(name, sizeof name, "scatter-%04d.vdb", index++);
-    if (keep) session.write(volume, (std::filesystem::path(options.output) / name).string(), source.history());
-    session.write_print(volume);
-    write_page(options);
-    Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}};
-    const auto state = session.state(volume);
-    if (state) line.update(metrology::to_json(*state));
-    if (log) io::log_line(*log, line.dump());
-    if (conditions.empty() || !state) continue;
-    if (!model::unmet(conditions, [&](const std::string& wanted) { return metrology::figure(*state, wanted); }).empty())
+  while (frames.next(frame)) {
+    if (!metrology::exposure_problem(frame.image).empty()) {  // a print goes on without a frame or two
+      ++left_out;
       continue;
-    line["event"] = "stop";
-    line["condition"] = options.until;
-    std::puts(line.dump().c_str());
-    break;
+    }
+    const bool due = turn.push(session.take(frame));
+    if (!due) continue;
+    Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
+    const auto views = turn.views();
+    if (!session.ready(views, pixel_mm)) {  // before anything has gelled there is no axis to be seen
+      line["waiting"] = "nothing to be seen yet";
+      turns.say(line);
+      continue;
+    }
+    const model::Volume volume = session.reconstruct(views, pixel_mm);
+    line["frames_waiting"] = frames.waiting();
+    if (turns.finish(volume, std::move(line), history)) return;
+  }
+  if (turns.count() == 0) {
+    throw Error{Fault::data,
+                options.views + ": no volume, " + format_number(turn.turns(), 3) + " turns were seen" +
+                    (left_out > 0 ? " and " + std::to_string(left_out) + " dark or saturated frames left out" : "") +
+                    "; a full turn with something in it is needed"};
   }
 }
 

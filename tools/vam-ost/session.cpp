@@ -7,7 +7,7 @@
 #include "io/image_figure.hpp"
 #include "io/mesh_file.hpp"
 #include "io/picture.hpp"
-#include "io/stream.hpp"
+#include "io/resin_record.hpp"
 #include "metrology/projection_sheet.hpp"
 #include "printer.hpp"
 #include "solid/isosurface.hpp"
@@ -17,12 +17,9 @@ namespace vam::ost_tool {
 namespace {
 
 std::optional<double> level_of(const Options& o) {
-  if (o.level || o.resin_record.empty()) return o.level;
-  try {
-    return Json::parse(io::read_all(o.resin_record)).at("level").get<double>();
-  } catch (const Json::exception& error) {
-    throw Error{Fault::data, o.resin_record + ": not a record of vam-ost threshold (" + error.what() + ")"};
-  }
+  if (o.resin_record.empty()) return o.level;
+  if (o.level) throw Error{Fault::usage, "--level and --resin: give one of them, both say where the print begins"};
+  return io::gelation_level(o.resin_record);
 }
 
 }  // namespace
@@ -50,7 +47,6 @@ Session::Session(const cli::App& app, const Options& options)
 }
 
 metrology::View Session::take(const io::CameraFrame& frame) {
-  metrology::require_exposed(frame.image, frame.name);
   metrology::View view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
   if (width_ == 0) {
     width_ = view.image.width;
@@ -63,6 +59,18 @@ metrology::View Session::take(const io::CameraFrame& frame) {
   }
   return view;
 }
+
+bool Session::ready(std::span<const metrology::View> views, double stack_pixel_mm) {
+  try {
+    if (!rig_ || !certain()) set_up(views, stack_pixel_mm);
+  } catch (const Error& error) {
+    if (error.fault != Fault::data) throw;
+  }
+  return rig_ != nullptr;
+}
+
+// The bars of the axis: a tenth of a pixel and a twentieth of a degree.
+bool Session::certain() const { return axis_.column_sigma < 0.1 && axis_.tilt_sigma_rad < 0.05 * rad_per_deg; }
 
 model::Volume Session::reconstruct(std::span<const metrology::View> views, double stack_pixel_mm) {
   if (!rig_) set_up(views, stack_pixel_mm);
@@ -80,13 +88,14 @@ void Session::write(const model::Volume& volume, const std::string& path,
   io::write_volume(path, sparse);
 }
 
-void Session::write_print(const model::Volume& volume) const {
+void Session::write_print(const model::Volume& volume, bool must) const {
   if (!options_.mesh.empty()) {
     const auto mesh = solid::isosurface(volume, *level_);
-    if (mesh.triangles.empty())
+    if (mesh.triangles.empty() && must)
       throw Error{Fault::data, "no print at this threshold: nothing scatters " + format_number(*level_) + " or more"};
     const bool stl = options_.mesh.size() > 4 && options_.mesh.substr(options_.mesh.size() - 4) == ".stl";
-    stl ? io::write_stl(options_.mesh, mesh) : io::write_ply(options_.mesh, mesh, {}, {app_.history()});
+    if (!mesh.triangles.empty())
+      stl ? io::write_stl(options_.mesh, mesh) : io::write_ply(options_.mesh, mesh, {}, {app_.history()});
   }
   if (options_.projections.empty()) return;
   const auto sheet = metrology::projection_sheet(volume, level_, reference_ ? &*reference_ : nullptr);
@@ -98,6 +107,7 @@ void Session::write_print(const model::Volume& volume) const {
   figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
   figure.value_label = "relative sum";
   figure.pixel_mm = sheet.pixel_mm;
+  figure.columns = 3;
   io::write_png(options_.projections, io::draw(figure));
 }
 
@@ -126,7 +136,10 @@ void Session::place_axis(std::span<const metrology::View> views) {
     column = (*printer_.camera.axis_column + 0.5) / options_.binning - 0.5;  // it counts pixels as captured
   }
   const std::optional<double> tilt_deg = options_.tilt_deg ? options_.tilt_deg : printer_.camera.tilt_deg;
-  if (!column || !tilt_deg) axis_ = metrology::find_axis(metrology::mean_view(views));
+  if (!column || !tilt_deg) {
+    const auto found = metrology::find_axis(metrology::mean_view(views));
+    if (!rig_ || found.column_sigma < axis_.column_sigma) axis_ = found;  // else what is known is better
+  }
   if (column) axis_.pose.column = *column;
   if (tilt_deg) axis_.pose.tilt_rad = *tilt_deg * rad_per_deg;
 }

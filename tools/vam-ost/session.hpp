@@ -23,19 +23,22 @@ class Session {
   /// Reads printer, fields, record and reference: all secondary inputs, before the views.
   Session(const cli::App& app, const Options& options);
 
-  /// A frame as a view: exposure and size checked, corrected, binned.
+  /// A frame as a view: its size checked, corrected, binned.
   metrology::View take(const io::CameraFrame& frame);
+  /// Live: finds the axis as soon as there is something to be seen, and again until it is certain. False before that.
+  bool ready(std::span<const metrology::View> views, double stack_pixel_mm);
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::View> views, double stack_pixel_mm);
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
-  /// --mesh and --projections.
-  void write_print(const model::Volume& volume) const;
+  /// --mesh and --projections. Throws Fault::data when there is no print but must be one.
+  void write_print(const model::Volume& volume, bool must) const;
   [[nodiscard]] Json figures(const model::Volume& volume) const;
   /// Nothing without level and reference.
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
 
  private:
   void place_axis(std::span<const metrology::View> views);
+  [[nodiscard]] bool certain() const;
   void set_up(std::span<const metrology::View> views, double stack_pixel_mm);
 
   const cli::App& app_;

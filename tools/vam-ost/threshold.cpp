@@ -14,10 +14,9 @@ void threshold(const Options& options) {
   if (!options.profile.empty())
     diameter_mm = 2 * options.profile_pixel_mm * metrology::find_circle(io::read_field(options.profile)).radius;
   const model::Volume volume = dense(io::read_volume(options.scatter, ""));
-  Image overhead = metrology::sum_projections(volume).along_z;
-  const auto height_mm = static_cast<float>(volume.grid.nz * volume.grid.voxel_mm);
-  for (float& value : overhead.values) value /= height_mm;
-  Json figures = metrology::to_json(metrology::gelation_threshold(overhead, volume.grid.voxel_mm, diameter_mm));
+  const metrology::OverheadMean overhead = metrology::overhead_mean(volume);
+  Json figures = metrology::to_json(metrology::gelation_threshold(overhead.mean, volume.grid.voxel_mm, diameter_mm));
+  figures["height_mm"] = overhead.height_mm;
   io::write_report(options.record, "vam-resin/1", figures);
 }
 

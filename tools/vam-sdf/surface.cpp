@@ -1,5 +1,4 @@
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/file_type.hpp"
 #include "io/mesh_file.hpp"

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
-#include "base/parallel.hpp"
+#include "base/constants.hpp"
 #include "base/vector3.hpp"
-#include "oracle/camera_views.hpp"
+#include "lib/metrology/synthetic_views.hpp"
 
 using namespace vam;
 using namespace vam::metrology;
@@ -21,52 +21,6 @@ constexpr Vector3 sphere_centre_mm{1.5, -0.8, 0.5};
 double ball(double x, double y, double z) {
   const double r = length(Vector3{x, y, z} - sphere_centre_mm);
   return std::clamp((sphere_radius_mm - r) / 0.1 + 0.5, 0.0, 1.0);  // a surface 0.1 mm thick
-}
-
-model::Printer rig() {
-  model::Printer printer;
-  printer.vial = {.radius_mm = 12.7, .wall_mm = 1, .index_glass = 1.52};
-  printer.camera.distance_mm = 200;
-  printer.camera.index_resin = 1.50;
-  printer.camera.azimuth_deg = 90;
-  return printer;
-}
-
-oracle::CameraBench bench(const model::Printer& printer, int columns, int rows, double pixel_mm) {
-  oracle::CameraBench camera;
-  camera.bench.lens_distance = printer.camera.distance_mm;
-  camera.bench.bath = 1;
-  camera.bench.cylinders = {{printer.vial.radius_mm, printer.vial.index_glass},
-                            {printer.vial.radius_mm - printer.vial.wall_mm, printer.camera.index_resin}};
-  camera.columns = columns;
-  camera.rows = rows;
-  camera.pixel_mm = pixel_mm;
-  camera.axis_column = 0.5 * (columns - 1);
-  camera.azimuth_deg = printer.camera.azimuth_deg;
-  return camera;
-}
-
-std::vector<View> take_views(const oracle::CameraBench& camera, const oracle::Density& density,
-                             const std::vector<double>& angles_deg, double noise, int binning) {
-  const oracle::Camera eye(camera, 0.1, 7);
-  std::vector<View> views(angles_deg.size());
-  parallel_for(static_cast<int>(views.size()), [&](int i) {
-    Image raw(camera.columns, camera.rows);
-    raw.values = eye.view(density, angles_deg[static_cast<std::size_t>(i)]);
-    std::mt19937 random(static_cast<unsigned>(i) + 1);
-    std::normal_distribution<float> normal(0, static_cast<float>(noise));
-    if (noise > 0) {
-      for (float& value : raw.values) value += normal(random);
-    }
-    views[static_cast<std::size_t>(i)] = {corrected(raw, {}, binning, "view"), angles_deg[static_cast<std::size_t>(i)]};
-  });
-  return views;
-}
-
-std::vector<double> even_angles(int count) {
-  std::vector<double> angles;
-  for (int i = 0; i < count; ++i) angles.push_back(360.0 * i / count);
-  return angles;
 }
 
 float value_at(const model::Volume& volume, const Vector3& p) {
@@ -114,10 +68,11 @@ double surface_rms_mm(const model::Volume& volume) {
 }  // namespace
 
 TEST_CASE("a sphere seen through glass and resin, with noise and binning, comes back within 1 % of its size") {
-  const model::Printer printer = rig();
+  const model::Printer printer = test::glass_rig();
   const double pixel_mm = 0.08;
-  const auto camera = bench(printer, 256, 128, pixel_mm);
-  const auto views = take_views(camera, ball, even_angles(120), 0.05, 2);  // noise 1 % of the brightest pixel
+  const auto camera = test::camera_bench(printer, 256, 128, pixel_mm);
+  const auto views =
+      test::take_views(camera, ball, test::even_angles(120), 0.05, 2);  // noise 1 % of the brightest pixel
   OstOptions options;
   const AxisEstimate axis = find_axis(mean_view(views));
   CHECK(std::abs(axis.pose.column - 0.5 * 127) < 0.1);
@@ -132,8 +87,8 @@ TEST_CASE("a sphere seen through glass and resin, with noise and binning, comes 
 }
 
 TEST_CASE("missing, repeated and jittered frames with true stamps cost at most a fifth") {
-  const model::Printer printer = rig();
-  const auto camera = bench(printer, 128, 64, 0.16);
+  const model::Printer printer = test::glass_rig();
+  const auto camera = test::camera_bench(printer, 128, 64, 0.16);
   std::vector<double> uneven;
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -144,8 +99,21 @@ TEST_CASE("missing, repeated and jittered frames with true stamps cost at most a
   }
   const AxisPose axis{0.5 * 127, 0};
   const OstReconstructor reconstructor(printer, 0.16, 128, 64, axis, {});
-  const double even = surface_rms_mm(reconstructor.reconstruct(take_views(camera, ball, even_angles(180), 0.05, 1)));
-  const double rms = surface_rms_mm(reconstructor.reconstruct(take_views(camera, ball, uneven, 0.05, 1)));
+  const double even =
+      surface_rms_mm(reconstructor.reconstruct(test::take_views(camera, ball, test::even_angles(180), 0.05, 1)));
+  const double rms = surface_rms_mm(reconstructor.reconstruct(test::take_views(camera, ball, uneven, 0.05, 1)));
   MESSAGE("surface RMS ", rms, " mm; with even frames ", even, " mm");
   CHECK(rms < 1.2 * even);
+}
+
+TEST_CASE("axis offset of 3.7 px and tilt of 0.5 deg are found in traced views within 0.1 px and 0.05 deg") {
+  auto camera = test::camera_bench(test::glass_rig(), 256, 96, 0.1);
+  camera.axis_column += 3.7;
+  camera.tilt_rad = 0.5 * rad_per_deg;
+  const auto views = test::take_views(camera, ball, test::even_angles(60), 0.1, 1);  // 2 % of the brightest
+  const AxisEstimate found = find_axis(mean_view(views));
+  MESSAGE("column off by ", found.pose.column - camera.axis_column, " +- ", found.column_sigma, " px, tilt by ",
+          found.pose.tilt_rad * deg_per_rad - 0.5, " +- ", found.tilt_sigma_rad * deg_per_rad, " deg");
+  CHECK(std::abs(found.pose.column - camera.axis_column) < 0.1);
+  CHECK(std::abs(found.pose.tilt_rad * deg_per_rad - 0.5) < 0.05);
 }
