@@ -211,9 +211,9 @@ metrology::LightSeen expose(io::StackReader& in, const metrology::Simulation& si
     metrology::shine(light, slices, seen);
     std::vector<Image> doses(slices.size());
     simulation.dose(slices, doses);
-    for (Image& dose : doses) {
+    for (const Image& dose : doses) {
       if (blur_px > 0) {
-        blur.push(std::move(dose));
+        blur.push(dose);
       } else {
         sink.add(dose);
       }
