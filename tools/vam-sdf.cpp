@@ -81,7 +81,7 @@ void declare_height(cli::App& app, HeightOptions& options) {
              "How the design is laid onto the print: middle on middle, from there, or from any turn.");
   app.option("-o,--output", "FILE.png", options.output, "The levelled heights with the design's outline.");
   app.option("--line", "X0,Y0,X1,Y1", options.line, 4, "Ends of a section, in pixels from the top left.");
-  app.option("--plot", "FILE.png", options.plot, "The heights along it; without --line across the middle.");
+  app.option("--plot", "FILE.png", options.plot, "The heights along it; without --line down the middle.");
   app.option("--require", "CONDITIONS", options.require,
              "Conditions on rms and max (mm), iou, shrinkage (%), height (mm).");
   cli::add_report(app, options.report);

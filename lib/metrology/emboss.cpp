@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
@@ -75,24 +76,13 @@ struct Design {
 };
 
 Design design_of(const solid::HeightMap& map) {
-  double low = 1e300;
-  double high = -1e300;
-  bool gaps = false;
-  for (int j = 1; j + 1 < map.heights_mm.height; ++j) {  // the rim is empty by construction
-    for (int i = 1; i + 1 < map.heights_mm.width; ++i) {
-      const auto h = static_cast<double>(map.heights_mm(i, j));
-      gaps = gaps || std::isnan(h);
-      if (std::isnan(h)) continue;
-      low = std::min(low, h);
-      high = std::max(high, h);
-    }
-  }
-  Design design{map.heights_mm, map.pixel_mm, high - low, {}};
-  if (!(high > low)) {
-    throw Error{Fault::data, gaps ? "design: its top is even; give it with the base that it stands on"
-                                  : "design: flat, nothing stands out from its base"};
-  }
-  for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(low);
+  std::vector<float> heights;
+  std::copy_if(map.heights_mm.values.begin(), map.heights_mm.values.end(), std::back_inserter(heights),
+               [](float h) { return std::isfinite(h); });
+  const auto found = plateaus(heights);
+  if (!found) throw Error{Fault::data, "design: flat, nothing stands out; give it with the base that it stands on"};
+  Design design{map.heights_mm, map.pixel_mm, found->top_mm - found->base_mm, {}};
+  for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(found->base_mm);
   const Image& image = design.above_base_mm;
   const auto half = static_cast<float>(0.5 * design.height_mm);
   const Point middle = middle_of(image);

@@ -19,6 +19,14 @@ struct Relief {
   double plateau_mm = 0;  // median of what stands above half of itself
 };
 
+/// The medians of what lies below and above Otsu's threshold. Nothing where they are less than four spreads of the base
+/// apart: noise alone, cut in two, is 2.4 apart.
+struct Plateaus {
+  double base_mm = 0;
+  double top_mm = 0;
+};
+[[nodiscard]] std::optional<Plateaus> plateaus(const std::vector<float>& heights_mm);
+
 /// Takes off the plane through the base: what lies below Otsu's threshold, found and fitted in turns. Heights that are
 /// not a number are gaps. Throws Fault::data when fewer than a tenth of the pixels are readings or nothing stands out.
 [[nodiscard]] Relief levelled(const Image& heights_mm, double pixel_mm);

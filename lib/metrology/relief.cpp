@@ -104,7 +104,7 @@ Image without(const Plane& plane, const Image& heights) {
 
 // Gaps become the mean of their neighbours, from the rim inwards; what is deeper than `rounds` pixels becomes base.
 void fill_gaps(Image& heights) {
-  constexpr int rounds = 50;
+  constexpr int rounds = 3;
   bool gaps = true;
   for (int round = 0; gaps && round < rounds; ++round) {
     gaps = false;
@@ -135,22 +135,21 @@ double median(std::vector<float> values) {
   return static_cast<double>(*middle);
 }
 
-// The median of what stands above the base. Noise alone, cut in two by Otsu, is 2.4 of its lower half's spread apart.
-double plateau_of(const std::vector<float>& heights) {
+}  // namespace
+
+std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
+  if (heights.empty()) return std::nullopt;
   const double limit = otsu(heights);
   std::vector<float> base;
   std::vector<float> above;
   for (const float h : heights) (static_cast<double>(h) < limit ? base : above).push_back(h);
-  if (!base.empty() && !above.empty()) {
-    const double ground = median(base);
-    for (float& h : base) h = std::fabs(h - static_cast<float>(ground));
-    const double plateau = median(above);
-    if (plateau - ground > 4 * 1.4826 * median(base) && plateau > 1e-5) return plateau;
-  }
-  throw Error{Fault::data, "height picture: flat, nothing stands out from its base"};
+  if (base.empty() || above.empty()) return std::nullopt;
+  const Plateaus found{median(base), median(above)};
+  for (float& h : base) h = std::fabs(h - static_cast<float>(found.base_mm));
+  const double apart = found.top_mm - found.base_mm;
+  if (!(apart > 4 * 1.4826 * median(base) && apart > 1e-5)) return std::nullopt;
+  return found;
 }
-
-}  // namespace
 
 Relief levelled(const Image& heights_mm, double pixel_mm) {
   const std::vector<float> values = readings(heights_mm);
@@ -171,7 +170,9 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
   for (std::size_t i = 0; i < heights_mm.size(); ++i) {
     if (!std::isfinite(heights_mm.values[i])) relief.measured.values[i] = 0;
   }
-  relief.plateau_mm = plateau_of(readings(relief.heights_mm));
+  const auto found = plateaus(readings(relief.heights_mm));
+  if (!found) throw Error{Fault::data, "height picture: flat, nothing stands out from its base"};
+  relief.plateau_mm = found->top_mm;
   fill_gaps(relief.heights_mm);
   return relief;
 }

@@ -44,9 +44,9 @@ metrology::EmbossAlign align_of(const std::string& word) {
   return word == "icp" ? metrology::EmbossAlign::near : metrology::EmbossAlign::any_turn;
 }
 
-// The ends of the section: as asked, or across the middle row.
+// The ends of the section: as asked, or down the middle column [RAY21 fig 8].
 std::vector<double> line_of(const HeightOptions& options, const Image& image) {
-  if (options.line.empty()) return {0, 0.5 * (image.height - 1), image.width - 1.0, 0.5 * (image.height - 1)};
+  if (options.line.empty()) return {0.5 * (image.width - 1), 0, 0.5 * (image.width - 1), image.height - 1.0};
   for (std::size_t i = 0; i < 4; ++i) {
     const double end = i % 2 == 0 ? image.width - 1.0 : image.height - 1.0;
     if (!(options.line[i] >= 0 && options.line[i] <= end))
