@@ -87,8 +87,10 @@ void check_usb_memory(std::size_t needed_bytes) {
 double monotonic_s(std::uint64_t system_ns, Clock& clock) {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
-  const double age_s = static_cast<double>(now.tv_sec) - static_cast<double>(system_ns / 1000000000) +
-                       1e-9 * (static_cast<double>(now.tv_nsec) - static_cast<double>(system_ns % 1000000000));
+  const std::uint64_t whole_s = system_ns / 1000000000;
+  const std::uint64_t rest_ns = system_ns % 1000000000;
+  const double age_s = static_cast<double>(now.tv_sec) - static_cast<double>(whole_s) +
+                       1e-9 * (static_cast<double>(now.tv_nsec) - static_cast<double>(rest_ns));
   return clock.now_s() - std::clamp(age_s, 0.0, 10.0);
 }
 
