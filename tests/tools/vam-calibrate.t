@@ -57,7 +57,7 @@ calibrate() {  # calibrate SCAN PATTERN...: on a bench out of adjustment
     sleep 5
   done
   quiet "$scan" vam-calibrate --screen sdl:0 --light sim: --scans "$scan" --keep keep --log events --pitch 2 --sweep-exposure 20000
-  kill $camera 2>/dev/null; wait $camera 2>/dev/null
+  kill -KILL $camera 2>/dev/null; wait $camera 2>/dev/null
 }
 glow() { scan=$1; shift; calibrate "$scan" --shown "keep/$scan.flips" --lit 1e9 "$@"; }
 glow latency --pattern ramp --steps 2

@@ -103,7 +103,7 @@ print --run-up 0.2 --frames-per-turn 3600 --missed 0.2 --views 10 --run run 2>er
 is 'the print ends well' $? 0
 is 'without a word' "$(cat errors)" ''
 wait $watcher
-kill $camera; wait $camera 2>/dev/null
+kill -KILL $camera; wait $camera 2>/dev/null
 ok 'the table stands' stood
 is 'the light came on once and went off' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 is 'the screen is black' "$($screen now)" black
