@@ -22,7 +22,7 @@ quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-s
 holds "every voxel of it is right" "$(value handle.json ver) == 0"
 is "all of it can be lit" "$(value handle.json dark_part_voxels)" 0
 
-quiet "in the vial's own light" vam-optimize --geometry vial --angles 180 --method apg --iterations 10 --report vial.json part.vdb -o vial.exr
+quiet "in the vial's own light" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json part.vdb -o vial.exr
 quiet "and by way of parallel light" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 part.vdb -o parallel.exr
 vam-resample parallel.exr -o resampled.exr
 for how in vial resampled; do
@@ -32,12 +32,12 @@ is "its print has no error" "$(value judged-vial.json ver)" 0.0
 holds "the judge of chief rays sees what the optimiser saw" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"
 holds "and a wider window than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*leave vam-resample out' vam-resample vial.exr -o twice.exr
-fails 64 '--columns: has no meaning with --geometry vial' vam-optimize --geometry vial --columns 100 part.vdb -o out.exr
+fails 64 '--columns: has no meaning with --geometry vial' vam-optimize --columns 100 part.vdb -o out.exr
 fails 65 'none of its 1024 columns' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
 
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do
-  quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --absorption $how $absorbing part.vdb -o light.exr
+  quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --geometry parallel --absorption $how $absorbing part.vdb -o light.exr
   vam-dose light.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
 done
 holds "the judge sees the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
@@ -45,13 +45,13 @@ is "and no error" "$(value exact.json ver)" 0.0
 
 blurring="--set resin.psf_mm=0.12"  # the judge blurs in its own way
 for how in "" --no-blur; do
-  quiet "blur: $how" vam-optimize --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o light.exr
+  quiet "blur: $how" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o light.exr
   vam-dose light.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur$how.json" >table
 done
 holds "light made up for the blur prints under it" "$(value blur.json pw) > 0 && $(value blur.json ver) == 0"
 holds "light that was not does not" "$(value blur--no-blur.json pw) < 0"
 
-ok "through pipes" sh -c 'vam-optimize --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
+ok "through pipes" sh -c 'vam-optimize --geometry parallel --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
 vam-optimize --method dose-norm --angles 90 --threads 1 --compression none part.vdb -o one.exr
 vam-optimize --method dose-norm --angles 90 --threads 2 --compression none part.vdb -o one2.exr && mv one2.exr two.exr
@@ -126,7 +126,7 @@ fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
 fails 65 '90 angles' vam-optimize --angles 80 --init cal.exr part.vdb -o out.exr
-fails 65 'projector' vam-optimize --angles 90 --init projector.exr part.vdb -o out.exr
+fails 65 'projector' vam-optimize --geometry parallel --angles 90 --init projector.exr part.vdb -o out.exr
 fails 65 'light reaches only' vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
 head -c 3000 part.vdb >cut.vdb
 fails 65 'cut.vdb' vam-optimize cut.vdb -o out.exr

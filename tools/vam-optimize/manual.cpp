@@ -9,11 +9,11 @@ cli::Manual manual() {
       {"Light only adds up, so no set of projections gives exactly the dose that a part asks for. vam-optimize reads "
        "the "
        "target (VDB, coverage 0...1) and looks for non-negative projections whose dose separates part from void, so "
-       "that a resin with a threshold prints the part. It writes a virtual (parallel-beam) sinogram stack, one image a "
-       "slice; vam-resample takes it to a real projector. With --geometry vial it works with the projector's own chief "
-       "rays, "
-       "diverging from the lens and refracted on their way, and writes a projector's stack: no resampling blurs it "
-       "afterwards.",
+       "that a resin with a threshold prints the part. It works with the projector's own chief rays, diverging from "
+       "the lens and refracted on their way, and writes a projector's sinogram stack, one image a slice, ready for "
+       "vam-project. With --geometry parallel it writes a virtual (parallel-beam) stack instead, which vam-resample "
+       "takes to a projector: three to four times faster, but resampling then costs the print half of its process "
+       "window.",
        "Methods: fbp is filtered back-projection with negative light set to 0. dose-norm raises the void to a "
        "background and divides the target once by the dose that it gets: quick and good. cal descends the gradient of "
        "the print's error with the resin's threshold inside the loop. osmo corrects a model of the part by the dose's "
@@ -54,7 +54,9 @@ cli::Manual manual() {
        "out "
        "slice by slice. In --trace and --until PW is that of the worst slice, IPDR the largest, the others are means "
        "by voxel count.",
-       "Speed: identical slices are computed once. Parallel light gives the same dose from either side, so for an even "
+       "Speed: identical slices are computed once. Two projections of 64 slices of 256 x 256 voxels at 360 angles take "
+       "0.2 s on two cores in the vial, 0.06 s in parallel light. Parallel light gives the same dose from either side, "
+       "so for an even "
        "number of angles half of them are computed and mirrored. Memory: 64 slices at a time, three arrays of a slice "
        "and three of a sinogram each, plus at most 512 MiB of finished slices that come again; with --bits and without "
        "--peak all projections.",

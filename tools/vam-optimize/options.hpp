@@ -15,7 +15,7 @@ struct Options {
   std::string input = "-";
   std::string output = "-";
   std::string method = "auto";
-  std::string geometry = "parallel";
+  std::string geometry = "vial";
   int angles = 360;
   std::optional<int> columns;
   optimize::Demands demands;  // what is asked of the print
