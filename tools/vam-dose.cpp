@@ -17,7 +17,10 @@
 #include "io/stream.hpp"
 #include "io/vdb.hpp"
 #include "metrology/exposure.hpp"
+#include "metrology/exposure_plan.hpp"
 #include "metrology/simulation.hpp"
+#include "model/circle.hpp"
+#include "model/dose_metrics.hpp"
 #include "optics/blur.hpp"
 #include "printer.hpp"
 
@@ -36,6 +39,7 @@ struct Options {
   std::optional<double> seconds;
   bool no_blur = false;
   bool keep_negative = false;
+  bool exposure_plan = false;
   double angle_offset_deg = 0;
   optics::Alignment alignment;
   std::string report;
@@ -56,7 +60,9 @@ cli::Manual manual() {
        "resin "
        "has resin.critical_dose_mj_cm3 and resin.absorption_per_mm: then the largest value of the stack, or "
        "--full-scale, is taken as projector.max_intensity_mw_cm2, and the report says how many turns and seconds the "
-       "print takes at stage.speed_deg_s.",
+       "print takes at stage.speed_deg_s. With --exposure-plan the dose is that of a whole print: the fewest turns in "
+       "which the middle of the process window reaches the critical dose, with the light dimmed to reach it exactly; "
+       "vam-project --peak takes the report's peak_value.",
        "The point spread of the beam (resin.psf_mm) and the diffusion of dose while it prints (resin.diffusion_mm2_s) "
        "blur the volume; beyond its faces it is taken as dark."},
       {{"Will the disc grid print?",
@@ -99,6 +105,9 @@ void declare(cli::App& app, Options& options) {
              "Without it the largest value of the stack, and no light at grey 0.");
   app.option("--seconds", "S", options.seconds, cli::non_negative,
              "Time for which dose diffuses. Without it the time of stage.turns turns.");
+  app.flag("--exposure-plan", options.exposure_plan,
+           "Choose whole turns and a fraction of full light that put the critical dose in the middle of the process "
+           "window, and write the dose of that exposure. Needs --like with a target.");
   app.flag("--no-blur", options.no_blur, "Leave out point spread and diffusion.");
   app.flag("--keep-negative", options.keep_negative,
            "Take a projector's negative light as it is; no projector can show it. A virtual sinogram's always is.");
@@ -115,8 +124,9 @@ void declare(cli::App& app, Options& options) {
 // Takes doses slice by slice into the volume, eight at a time, and into the report.
 class Sink {
  public:
-  Sink(io::SparseVolume& volume, const io::SparseVolume* target, int first)
-      : volume_(volume), target_(target), next_(first) {}
+  /// judged: where part and void are told apart, if at all.
+  Sink(io::SparseVolume& volume, const io::SparseVolume* target, int first, std::optional<model::Circle> judged)
+      : volume_(volume), target_(target), next_(first), judged_(judged) {}
 
   void add(const Image& dose) {
     Image part;
@@ -125,6 +135,7 @@ class Sink {
       target_->read_slices(next_ + pending_, 1, part.values.data());
     }
     range_.add(dose, part);
+    if (judged_) judge(dose, part);
     buffer_.insert(buffer_.end(), dose.values.begin(), dose.values.end());
     if (++pending_ + next_ % 8 == 8) flush();
   }
@@ -135,14 +146,26 @@ class Sink {
     buffer_.clear();
   }
   [[nodiscard]] const metrology::DoseRange& range() const { return range_; }
+  [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
 
  private:
+  void judge(const Image& dose, const Image& part) {
+    for (int y = 0; y < dose.height; ++y) {
+      for (int x = 0; x < dose.width; ++x) {
+        const auto label = model::label_of(part(x, y));
+        if (label == model::Label::part || judged_->contains(x, y)) statistics_.add(dose(x, y), label);
+      }
+    }
+  }
+
   io::SparseVolume& volume_;
   const io::SparseVolume* target_;
   int next_;
   int pending_ = 0;
   std::vector<float> buffer_;
   metrology::DoseRange range_;
+  std::optional<model::Circle> judged_;
+  model::DoseStatistics statistics_;
 };
 
 void scale_volume(io::SparseVolume& volume, double factor) {
@@ -225,6 +248,19 @@ metrology::LightSeen expose(io::StackReader& in, const metrology::Simulation& si
   return seen;
 }
 
+metrology::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
+                                const Options& options) {
+  if (doses.part == 0 || doses.void_ == 0) {
+    throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " voxels of part and " +
+                                 std::to_string(doses.void_) + " of void; --exposure-plan needs both"};
+  }
+  if (doses.min_part <= doses.max_void) {
+    warn("exposure: void takes up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 a turn, part from " +
+         format_number(scale * doses.min_part, 4) + "; there is no process window, the best threshold is planned for");
+  }
+  return metrology::plan_exposure(scale * metrology::window_middle(doses), printer);
+}
+
 void simulate(const cli::App& app, const Options& options, const model::Printer& printer) {
   io::StackReader in(options.input);
   const model::StackInfo& info = in.info();
@@ -235,7 +271,12 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
   const metrology::Simulation simulation(printer, options.alignment, info, place.grid);
   io::SparseVolume volume = empty_volume(app, place, info);
   volume.metadata["vam:printer"] = io::printer_settings(printer);
-  Sink sink(volume, place.target, first);
+  if (options.exposure_plan && place.target == nullptr) {
+    throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan needs the part"};
+  }
+  std::optional<model::Circle> judged;
+  if (options.exposure_plan) judged = model::writable_circle(place.grid, printer);
+  Sink sink(volume, place.target, first, judged);
   const double sigma_mm = blur_mm(options, printer);
   const metrology::Light light{projector && !options.keep_negative, options.full_scale,
                                printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
@@ -245,15 +286,24 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
   const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : seen.peak;
   const double scale = per_radian && full > 0 ? *per_radian / full : 1.0;
+  std::optional<metrology::ExposurePlan> plan;
+  if (options.exposure_plan) plan = planned(sink.judged(), scale, printer, options);
   if (per_radian) {
-    scale_volume(volume, scale);
+    scale_volume(volume, plan ? scale * plan->turns * plan->multiplier : scale);
     volume.units = "mJ/cm3";
   }
+  if (plan) volume.metadata["vam:full_light_turns"] = format_number(plan->turns * plan->multiplier, 9);
   io::write_volume(options.output, volume);
 
   Json figures = sink.range().figures(printer, per_radian.has_value(), scale);
   figures["model"] = projector ? "chief rays" : "parallel";
   figures["full_scale"] = options.full_scale.value_or(seen.peak);
+  figures["light_efficiency"] = seen.efficiency.value();
+  figures["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
+  if (plan) {
+    metrology::add_to(figures, *plan);
+    figures["peak_value"] = options.full_scale.value_or(seen.peak) / plan->multiplier;
+  }
   figures["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   figures["blur_sigma_mm"] = sigma_mm;
   figures["absorption_per_mm"] = printer.resin.absorption_per_mm;
@@ -265,6 +315,14 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  if (options.exposure_plan && options.like.empty()) {
+    throw Error{Fault::usage, "--exposure-plan: needs to know the part; name its volume with --like"};
+  }
+  if (options.exposure_plan && !metrology::dose_per_radian_mj_cm3(printer)) {
+    throw Error{Fault::usage,
+                "--exposure-plan: needs resin.critical_dose_mj_cm3 and resin.absorption_per_mm, without which doses "
+                "have no unit"};
+  }
   if (!options.like.empty() && options.size_mm) {
     throw Error{Fault::usage, "--size: --like already says which voxels"};
   }

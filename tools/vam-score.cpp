@@ -50,6 +50,9 @@ cli::Manual manual() {
        "sigma_G / mean_G. IoU = |print and part| / |print or part| at the threshold where it is best.",
        "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures "
        "take the ALPHA/2 and 1 - ALPHA/2 percentiles for the extremes, so that single voxels count for less.",
+       "A dose in mJ/cm3, of a turn in full light or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 also "
+       "give the exposure: the fewest whole turns, their time, and the fraction of full light with which the critical "
+       "dose lies in the middle of the process window.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are judged only with --surface.",
        "With --require the exit status is 1 when a condition does not hold, so that a Makefile can refuse a part "
        "that will not print."},
@@ -183,6 +186,10 @@ void run(Options& options) {
   check_same_place(options, in.dose().grid(), in.target().grid());
   options.how.circle = model::writable_circle(in.target().grid(), printer);
   if (!options.how.threshold && in.dose().units == "mJ/cm3") options.how.threshold = printer.resin.critical_dose_mj_cm3;
+  if (in.dose().units == "mJ/cm3" && printer.resin.critical_dose_mj_cm3) {
+    const auto turns = in.dose().metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan
+    options.how.exposure = {printer, turns == in.dose().metadata.end() ? 1.0 : std::stod(turns->second)};
+  }
   metrology::Score result = score(in, options.how);
   if (!options.sinogram.empty()) {
     io::StackReader light(options.sinogram);

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "metrology/exposure_plan.hpp"
 #include "model/figures.hpp"
 
 namespace vam::metrology {
@@ -39,6 +40,10 @@ const std::vector<Figure>& figure_list() {
       {"cured_void", "at the critical dose: fraction of the void that cures"},
       {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
       {"cured_wrong", "at the critical dose: wrong voxels, of all"},
+      {"turns", "whole turns that put the critical dose in the middle of the process window"},
+      {"seconds", "the time they take"},
+      {"multiplier", "of full light, with which they do"},
+      {"peak_intensity", "of the brightest pixel then, mW/cm2"},
       {"efficiency", "mean / largest value of the projections"}};
   return all;
 }
@@ -93,6 +98,15 @@ double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
   if (name == "trimmed_ver") return statistics_.trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return statistics_.trimmed(options_.trim, !options_.absolute).pw;
+  if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_intensity") {
+    if (!options_.exposure) return none;
+    const double middle = window_middle(statistics_.metrics(false)) / options_.exposure->full_light_turns;
+    if (!(middle > 0)) return none;
+    const ExposurePlan plan = plan_exposure(middle, options_.exposure->printer);
+    if (name == "turns") return plan.turns;
+    if (name == "seconds") return plan.seconds;
+    return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
+  }
   if (name.starts_with("cured_")) {
     const auto at = statistics_.at_threshold();
     if (!at) return none;

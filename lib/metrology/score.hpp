@@ -8,15 +8,23 @@
 #include "base/json.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/printer.hpp"
 
 namespace vam::metrology {
 
+/// What the dose was given with.
+struct Exposure {
+  model::Printer printer;       // with a critical dose
+  double full_light_turns = 1;  // turns of full light that give the dose
+};
+
 struct ScoreOptions {
-  model::Circle circle;             // the writable one; void outside it is not judged
-  bool surface = false;             // surface voxels count too: part when at least half covered, else void
-  bool absolute = false;            // PW and IPDR in the dose's unit instead of fractions of the largest dose
-  double trim = 0.02;               // alpha: extremes are also given at the alpha/2 percentiles
-  std::optional<double> threshold;  // the resin's critical dose, in the dose's unit
+  model::Circle circle;              // the writable one; void outside it is not judged
+  bool surface = false;              // surface voxels count too: part when at least half covered, else void
+  bool absolute = false;             // PW and IPDR in the dose's unit instead of fractions of the largest dose
+  double trim = 0.02;                // alpha: extremes are also given at the alpha/2 percentiles
+  std::optional<double> threshold;   // the resin's critical dose, in the dose's unit
+  std::optional<Exposure> exposure;  // known when the dose is in mJ/cm3
 };
 
 /// Gathers slices in ascending order; each is judged on a thread of its own.

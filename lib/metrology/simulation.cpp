@@ -173,6 +173,7 @@ void shine(const Light& light, std::span<Image> sinograms, LightSeen& seen) {
       if (light.full_scale) value = std::min(value, 1.0F);
     }
     seen.values += static_cast<double>(image.size());
+    seen.efficiency.add(image.values);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
@@ -51,6 +52,7 @@ struct Light {
 /// What there was to see in the values.
 struct LightSeen {
   double peak = 0;
+  model::LightEfficiency efficiency;  // of the light that was left
   double least = 0;
   double values = 0;
   double negative = 0;

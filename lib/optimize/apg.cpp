@@ -81,6 +81,7 @@ class Apg final : public Method {
     momentum_ = constant(iterate.g.size(), 1.0F);
     half_width_ = constant(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
     loss_ = losses(problem, light, iterate);
+    while (widen(problem)) loss_ = losses(problem, light, iterate);
   }
 
   /// t_{k+1} = (1 + sqrt(1 + 4 t_k^2)) / 2, beta = (t_k - 1) / t_{k+1}.
@@ -118,7 +119,7 @@ class Apg final : public Method {
         length_[s][lane] *= shorter;
       }
     }
-    if (widen(problem)) loss_ = losses(problem, light, iterate);
+    while (widen(problem)) loss_ = losses(problem, light, iterate);
   }
 
   [[nodiscard]] PerSlice losses(const Problem& problem, const Operator& light, const Iterate& iterate) const {

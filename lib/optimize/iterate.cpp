@@ -43,7 +43,7 @@ std::string look(const Problem& problem, const Limits& limits, const Iterate& st
   if (watch || !last) {  // looking costs little, but a plain fbp need not be looked at
     const auto slices = metrics(state.dose, problem);
     if (watch) watch(course.iteration, slices);
-    if (reached(limits.until, slices)) return "goal";
+    if (course.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
     if (!last && lost_patience(course, limits, merit(slices))) return "no progress";
   }
   return last ? "iterations" : "";

@@ -1,13 +1,16 @@
-// What prints, with which method, and how fast: prints a table. Argument: target, stack or osmo; all without.
+// What prints, with which method, and how fast: prints a table. Arguments: parts [SIZE], target, stack or osmo; all
+// without.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "lib/optimize/parts.hpp"
+#include "lib/optimize/printed_part.hpp"
 #include "oracle/part_2d.hpp"
 
 namespace {
@@ -82,10 +85,33 @@ void osmo() {
   std::printf("osmo, 31 Mvoxels, 360 angles, one iteration: %.2f s\n", time);
 }
 
+struct Row {
+  std::string method;
+  bool resampled;
+};
+
+/// Test parts in the vial, optimised and judged by chief rays; the last row went by way of parallel light.
+void printed(int size) {
+  const model::Printer printer;
+  const std::vector<Row> rows{{"fbp", false}, {"dose-norm", false}, {"auto", false}, {"auto", true}};
+  for (const auto& shape : parts::printed_shapes()) {
+    const parts::Part part = parts::make_part(shape, size);
+    for (const Row& row : rows) {
+      const parts::Light light = parts::make_light(part, printer, 360, row.method, row.resampled);
+      const model::DoseMetrics m = parts::judge(part, printer, light);
+      std::printf("%-16s %3d x %3d x %3d  %-10s %-9s %3d iterations  VER %.1e  PW %+.4f  IoU %.5f  %7.2f s\n",
+                  shape.c_str(), part.grid.nx, part.grid.ny, part.grid.nz, row.method.c_str(),
+                  row.resampled ? "resampled" : "vial", light.iterations, m.ver, m.pw, m.iou, light.seconds);
+      std::fflush(stdout);
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
+  if (only.empty() || only == "parts") printed(argc > 2 ? std::atoi(argv[2]) : 128);
   if (only.empty() || only == "target") target();
   if (only.empty() || only == "stack") stack();
   if (only.empty() || only == "osmo") osmo();

@@ -42,6 +42,24 @@ is "seconds" "$(json flat.json seconds_to_critical_max)" 108.0
 ok "half the light at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
 holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
 
+# An exposure: whole turns, and the critical dose in the middle of the process window
+resin="--set resin.absorption_per_mm=0.01 --set resin.critical_dose_mj_cm3=100"
+ok "a turn in full light" vam-dose frames.exr --like part.vdb $resin -o turn.vdb --report turn.json
+ok "its score knows the exposure" vam-score turn.vdb --target part.vdb $resin --sinogram frames.exr --report turn-score.json
+quiet "a planned exposure" vam-dose frames.exr --like part.vdb $resin --exposure-plan -o planned.vdb --report plan.json
+ok "its score" vam-score planned.vdb --target part.vdb $resin --absolute --report planned.json
+holds "the critical dose is in the middle of the window" \
+  "(($(json planned.json min_part) + $(json planned.json max_void)) / 200 - 1)^2 < 1e-8 && $(json planned.json pw) > 0"
+holds "all cures, and nothing else" "$(json planned.json cured_wrong) == 0"
+is "whole turns, the same from either dose" "$(json turn-score.json turns) $(json planned.json turns)" "$(json plan.json turns).0 $(json plan.json turns).0"
+holds "no less would do" "$(json plan.json multiplier) <= 1 && $(json plan.json multiplier) * $(json plan.json turns) > $(json plan.json turns) - 1"
+holds "their time" "$(json plan.json seconds) == 36 * $(json plan.json turns)"
+holds "the brightest pixel" "($(json plan.json peak_intensity_mw_cm2) / (3.8 * $(json plan.json multiplier)) - 1)^2 < 1e-12"
+holds "light efficiency, from either tool" "($(json plan.json light_efficiency) / $(json turn-score.json efficiency) - 1)^2 < 1e-8"
+fails 64 'name its volume with --like' vam-dose frames.exr $resin --exposure-plan -o x.vdb
+fails 64 'needs resin.critical_dose_mj_cm3' vam-dose frames.exr --like part.vdb --exposure-plan -o x.vdb
+fails 65 "has no grid 'target'" vam-dose frames.exr --like turn.vdb $resin --exposure-plan -o x.vdb
+
 # Blur
 ok "point spread and diffusion" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --set resin.diffusion_mm2_s=0.0005 --report blur.json -o blur.vdb
 holds "sqrt(0.3^2 + 2 * 0.0005 * 36)" "($(json blur.json blur_sigma_mm) - 0.3549648)^2 < 1e-12"

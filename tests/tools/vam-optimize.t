@@ -22,11 +22,12 @@ quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-s
 holds "every voxel of it is right" "$(value handle.json ver) == 0"
 is "all of it can be lit" "$(value handle.json dark_part_voxels)" 0
 
-quiet "in the vial's own light" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json part.vdb -o vial.exr
-quiet "and by way of parallel light" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 part.vdb -o parallel.exr
+vam-slice --shape boat --voxel 0.2 -o boat.vdb
+quiet "in the vial's own light" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json boat.vdb -o vial.exr
+quiet "and by way of parallel light" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 boat.vdb -o parallel.exr
 vam-resample parallel.exr -o resampled.exr
 for how in vial resampled; do
-  vam-dose $how.exr --like part.vdb -o dose.vdb && vam-score dose.vdb --target part.vdb --report judged-$how.json >table
+  vam-dose $how.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 is "its print has no error" "$(value judged-vial.json ver)" 0.0
 holds "the judge of chief rays sees what the optimiser saw" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"

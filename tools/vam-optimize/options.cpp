@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/csv_table.hpp"
+#include "optimize/automatic.hpp"
 #include "optimize/slice_figures.hpp"
 
 namespace vam::optimize_tool {
@@ -16,10 +17,9 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output);
   std::vector<std::string> methods{"auto"};
   methods.insert(methods.end(), optimize::method_names().begin(), optimize::method_names().end());
-  app.choice(
-      "--method", options.method, methods,
-      "How to look for projections; auto is apg, the best of tests/bench/printability, until the part prints with "
-      "a process window of 0.05.");
+  app.choice("--method", options.method, methods,
+             "How to look for projections; auto is apg, the best of tests/bench/printability, for 8 iterations at "
+             "least and until the part prints with a process window of 0.05.");
   app.choice(
       "--geometry", options.geometry, {"vial", "parallel"},
       "Whose light: vial works with the projector's own rays, as lens, bath, glass and resin bend them, and makes "
@@ -91,9 +91,10 @@ namespace {
 /// auto is the method that measures best, stopped where the part prints with room to spare unless the user says when.
 void settle_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
-  options.method = "apg";
+  options.method = optimize::automatic_method;
   if (!options.until.empty() || app.given("--iterations")) return;
-  options.until = options.demands.grey ? "ver=0" : "ver=0,pw>=0.05";
+  options.limits.at_least = optimize::automatic_iterations;
+  options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
 }
 
 void refuse_contradictions(const Options& options, const optimize::Method& method) {

@@ -1,0 +1,11 @@
+// What --method auto stands for: the method that measures best in tests/bench/printability, until the part prints with
+// room to spare, and a few iterations at least: what prints from the start gets a wider window than simpler methods give.
+#pragma once
+
+namespace vam::optimize {
+
+inline constexpr const char* automatic_method = "apg";
+inline constexpr const char* automatic_until = "ver=0,pw>=0.05";
+inline constexpr int automatic_iterations = 8;
+
+}  // namespace vam::optimize

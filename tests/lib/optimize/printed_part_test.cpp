@@ -1,0 +1,37 @@
+#include "printed_part.hpp"
+
+#include <doctest/doctest.h>
+
+using parts::judge;
+using parts::make_light;
+
+// The table of tests/bench/printability at an eighth of its voxels.
+TEST_CASE("test parts print under method auto, judged by chief rays, and no worse than by fbp or dose-norm") {
+  const vam::model::Printer printer;
+  for (const auto& shape : parts::printed_shapes()) {
+    CAPTURE(shape);
+    const parts::Part part = parts::make_part(shape, 64);
+    const auto best = judge(part, printer, make_light(part, printer, 180, "auto", false));
+    CHECK(best.ver <= 1e-4);
+    CHECK(best.iou >= 0.995);
+    for (const char* method : {"fbp", "dose-norm"}) {
+      CAPTURE(method);
+      const auto other = judge(part, printer, make_light(part, printer, 180, method, false));
+      CHECK(best.ver <= other.ver);
+      CHECK(best.pw >= other.pw);
+      CHECK(best.iou >= other.iou);
+    }
+  }
+}
+
+TEST_CASE("light made for the vial itself prints with a wider window than resampled light") {
+  const vam::model::Printer printer;
+  for (const char* shape : {"gyroid", "boat"}) {
+    CAPTURE(shape);
+    const parts::Part part = parts::make_part(shape, 64);
+    const auto vial = judge(part, printer, make_light(part, printer, 180, "auto", false));
+    const auto resampled = judge(part, printer, make_light(part, printer, 180, "auto", true));
+    CHECK(vial.pw > resampled.pw + 0.01);
+    CHECK(vial.ver <= resampled.ver);
+  }
+}
