@@ -117,17 +117,37 @@ Point centroid_above(const Image& image, double pixel_mm, float level) {
   return {sum.x / std::max(count, 1.0), sum.y / std::max(count, 1.0)};
 }
 
+// 1 where the outline may be judged: 0 in gaps of five pixels and more, and near them, where the print's outline is the
+// end of the readings.
+Image judged(const Relief& print) {
+  cv::Mat gaps(print.measured.height, print.measured.width, CV_8U);
+  for (int j = 0; j < gaps.rows; ++j) {
+    for (int i = 0; i < gaps.cols; ++i) gaps.at<unsigned char>(j, i) = print.measured(i, j) == 0 ? 1 : 0;
+  }
+  cv::erode(gaps, gaps, cv::Mat::ones(5, 5, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
+  cv::dilate(gaps, gaps, cv::Mat::ones(13, 13, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
+  Image known(gaps.cols, gaps.rows);
+  for (int j = 0; j < gaps.rows; ++j) {
+    for (int i = 0; i < gaps.cols; ++i) known(i, j) = gaps.at<unsigned char>(j, i) == 0 ? 1.0F : 0.0F;
+  }
+  return known;
+}
+
 // The print's outline as a field of signed distances in mm.
 class Outline {
  public:
   explicit Outline(const Relief& print)
       : distance_(distance_to(print.heights_mm, static_cast<float>(0.5 * print.plateau_mm))),
+        judged_(judged(print)),
         pixel_mm_(print.pixel_mm),
         middle_(middle_of(distance_)) {}
 
   [[nodiscard]] double distance(const Point& p) const {
     return pixel_mm_ *
            static_cast<double>(bilinear(distance_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_));
+  }
+  [[nodiscard]] bool judges(const Point& p) const {
+    return bilinear(judged_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_) > 0.999F;
   }
   [[nodiscard]] Point gradient(const Point& p) const {
     const double h = pixel_mm_;
@@ -136,12 +156,18 @@ class Outline {
   }
   [[nodiscard]] double rms(const std::vector<Point>& points, const Similar& pose) const {
     double sum = 0;
-    for (const Point& p : points) sum += std::pow(distance(pose(p)), 2);
-    return std::sqrt(sum / static_cast<double>(points.size()));
+    double count = 0;
+    for (const Point& p : points) {
+      if (!judges(pose(p))) continue;
+      sum += std::pow(distance(pose(p)), 2);
+      count += 1;
+    }
+    return count > 0 ? std::sqrt(sum / count) : 1e300;
   }
 
  private:
   Image distance_;
+  Image judged_;
   double pixel_mm_;
   Point middle_;
 };
@@ -156,6 +182,7 @@ Similar fit(const std::vector<Point>& points, const Outline& outline, Similar po
     cv::Vec4d right = cv::Vec4d::zeros();
     for (const Point& p : points) {
       const Point at = pose(p);
+      if (!outline.judges(at)) continue;
       const double r = outline.distance(at);
       const Point g = outline.gradient(at);
       const cv::Vec4d row((g.x * p.x + g.y * p.y) / reach, (g.y * p.x - g.x * p.y) / reach, g.x, g.y);
@@ -256,14 +283,17 @@ Emboss compare_emboss(const Relief& print, const solid::HeightMap& map, EmbossAl
   Emboss emboss;
   emboss.placing = {std::hypot(pose.a, pose.b), std::atan2(pose.b, pose.a) * deg_per_rad, pose.x, pose.y};
   emboss.design_height_mm = design.height_mm;
-  const auto n = static_cast<double>(design.outline.size());
+  double count = 0;
   for (const Point& p : design.outline) {
+    if (!outline.judges(pose(p))) continue;
     const double d = outline.distance(pose(p));
-    emboss.outline_rms_mm += d * d / n;
-    emboss.outline_mean_mm -= d / n;
+    count += 1;
+    emboss.outline_mean_mm -= d;
     emboss.outline_max_mm = std::max(emboss.outline_max_mm, std::abs(d));
   }
-  emboss.outline_rms_mm = std::sqrt(emboss.outline_rms_mm);
+  if (count == 0) throw Error{Fault::data, "design: its outline does not meet the readings of the height picture"};
+  emboss.outline_mean_mm /= count;
+  emboss.outline_rms_mm = outline.rms(design.outline, pose);
   emboss.design = placed(design, pose, print);
   constexpr double margin_mm = 0.15;  // a projector's edge is that soft [RAY21 fig 12]
   measure_area(print, margin_mm, emboss);
