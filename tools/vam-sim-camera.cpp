@@ -169,5 +169,6 @@ int main(int argc, char** argv) {
   options.pattern.name.clear();
   cli::App app(manual());
   declare(app, options);
-  return app.run(argc, argv, [&] { device::interruptible([&] { run(options); }); });
+  // A signal may end it as it is: nothing is to be made safe, and waiting for Aravis' threads can take for ever.
+  return app.run(argc, argv, [&] { run(options); });
 }

@@ -182,7 +182,7 @@ void cover_block(const Field& field, const model::Grid& grid, int k0, Span x, Sp
     return;
   }
   constexpr int side = block + 1;
-  std::array<double, side * side * side> lattice{};  // field at voxel corners
+  std::array<double, static_cast<std::size_t>(side) * side * side> lattice{};  // field at voxel corners
   const auto node = [&](int i, int j, int k) -> double& {
     return lattice[static_cast<std::size_t>((k * side + j) * side + i)];
   };
