@@ -241,7 +241,7 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   const std::vector<Vector3d> all = points_of(print, options.samples);
   const Frame from = principal_frame(all);
   const Frame to = principal_frame(points_of(reference_mesh, options.samples));
-  const std::vector<Vector3d> few = points_of(print, 400);
+  const std::vector<Vector3d> few = points_of(print, 200);
   const double size = bounding_box(reference_mesh).largest_side();
   AlignOptions rigid = options;
   rigid.with_scale = false;
@@ -257,25 +257,24 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
       if (options.with_scale) pose.scale = to.spread.norm() / from.spread.norm();
       pose.rotation = to.axes * turn * cube * from.axes.transpose();
       pose.shift = to.centre - pose.scale * (pose.rotation * from.centre);
-      starts.push_back({pair_up(few, pose, reference).rms, pose});
+      starts.push_back({0, pose});
     }
   }
-  const auto better = [](const Start& a, const Start& b) { return a.rms < b.rms; };
-  const auto keep = [&](std::size_t count) {
-    std::sort(starts.begin(), starts.end(), better);
+  // Ever fewer starts are looked at ever more closely.
+  const auto keep = [&](std::size_t count, const auto& rms_of) {
+    parallel_for(static_cast<int>(starts.size()), [&](int i) {
+      Start& start = starts[static_cast<std::size_t>(i)];
+      start.rms = rms_of(start.pose);
+    });
+    std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
     starts.resize(std::min(starts.size(), count));
   };
-  keep(96);
-  for (Start& start : starts) start.rms = iterate(few, reference, rigid, 6, size, start.pose).rms_mm;
-  keep(12);
-  for (Start& start : starts) start.rms = iterate(few, reference, rigid, 20, size, start.pose).rms_mm;
-  keep(3);
-
+  keep(96, [&](Pose& pose) { return pair_up(few, pose, reference).rms; });
+  keep(12, [&](Pose& pose) { return iterate(few, reference, rigid, 6, size, pose).rms_mm; });
+  keep(3, [&](Pose& pose) { return iterate(few, reference, rigid, 20, size, pose).rms_mm; });
   // The best at a tenth of the points, then all points from there.
   const std::vector<Vector3d> some = points_of(print, std::max(400, options.samples / 10));
-  for (Start& start : starts)
-    start.rms = iterate(some, reference, options, options.max_iterations, size, start.pose).rms_mm;
-  keep(1);
+  keep(1, [&](Pose& pose) { return iterate(some, reference, options, options.max_iterations, size, pose).rms_mm; });
   return iterate(all, reference, options, options.max_iterations, size, starts.front().pose);
 }
 
