@@ -20,45 +20,32 @@ cli::Manual manual() {
       "vam-capture",
       "take camera frames with their times and stage angles",
       {"Takes frames of the camera beside the vial. Each carries its time on CLOCK_MONOTONIC, which all processes of "
-       "the "
-       "machine share, and, with --follow, the angle of the stage at that time, from the lines of vam-stage spin or "
-       "follow. Pixels are fractions of full scale.",
+       "the machine share, and, with --follow, the angle of the stage at that time, from the lines of vam-stage spin "
+       "or follow. Pixels are fractions of full scale.",
        "The name of the output chooses the form. A name in .exr is a frame stack of --frames images, and so is "
-       "standard "
-       "output; with --live every frame is sent as a stack of its own as soon as it is there, for vam-ost --live. A "
-       "name without an ending, or that ends in /, is a folder of numbered PNG files with manifest.jsonl: a frame is "
-       "on "
-       "the disk before its line in the manifest is. The same command again takes only the frames that are missing "
-       "there.",
+       "standard output; with --live every frame is sent as a stack of its own as soon as it is there, for vam-ost "
+       "--live. A name without an ending, or that ends in /, is a folder of numbered PNG files with manifest.jsonl: a "
+       "frame is on the disk before its line in the manifest is. The same command again takes only the frames that are "
+       "missing there.",
        "Without --every, frames are taken as they come; in a folder, a frame that was lost leaves its number free. "
-       "With "
-       "--every DEG the frame nearest to each multiple of that angle is kept, over --turns turns from angle 0.",
+       "With --every DEG the frame nearest to each multiple of that angle is kept, over --turns turns from angle 0.",
        "A device is a scheme, a place and options. aravis:IP-or-ID is a GenICam camera on USB3 Vision or GigE Vision "
        "(?packet_size=8000, ?buffers=20); aravis: the only one there is. v4l2:/dev/video0 is a Video4Linux camera. "
        "replay:PLACE is a folder of vam-capture, a folder of numbered pictures or an EXR frame stack, as fast as it "
-       "can "
-       "be read, or with ?pace=real in step. sim: is a vial with a growing print, simulated in the tool; its options "
-       "are "
-       "those of vam-sim-camera(1), with underscores, and pace=virtual.",
+       "can be read, or with ?pace=real in step. sim: is a vial with a growing print, simulated in the tool; its "
+       "options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
        "The scans edges, response, flat, beam, axis and latency read frames that were captured while vam-project "
-       "showed a "
-       "test pattern, and what its --log says was on when (--flips), and write a calibration record; check says which "
-       "records are in force. vam-calibrate(1) runs them all.",
+       "showed a test pattern, and what its --log says was on when (--flips), and write a calibration record; check "
+       "says which records are in force. vam-calibrate(1) runs them all.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
-       "cal-INSTRUMENT-SCAN-UTC.json, "
-       "with each value's unit, sigma, number of readings and method, the hashes of the frames, how long it is valid "
-       "and "
-       "for which instrument and vial. The link current-SCAN.json points to the one in force, which every tool that "
-       "reads "
-       "the printer file takes up: flag, then --set, then record, then file. A stale or foreign record is refused "
-       "(status "
-       "65). A scan whose result is not to be trusted is recorded, but not put in force (status 1). Without a folder "
-       "the "
-       "record goes to standard output. The latency takes the camera's time stamps as true: find their --latency "
-       "first.",
+       "cal-INSTRUMENT-SCAN-UTC.json, with each value's unit, sigma, number of readings and method, the hashes of the "
+       "frames, how long it is valid and for which instrument and vial. The link current-SCAN.json points to the one "
+       "in force, which every tool that reads the printer file takes up: flag, then --set, then record, then file. A "
+       "stale or foreign record is refused (status 65). A scan whose result is not to be trusted is recorded, but not "
+       "put in force (status 1). Without a folder the record goes to standard output. The latency takes the camera's "
+       "time stamps as true: find their --latency first.",
        "Lost frames are never hidden: the count of frames that were dropped and of those that came incomplete is said "
-       "on "
-       "standard error, in --report and in --log; an incomplete frame is marked in the manifest and in the stack "
+       "on standard error, in --report and in --log; an incomplete frame is marked in the manifest and in the stack "
        "(vam:incomplete), where it keeps the parts that came, and vam-ost leaves it out. A gap in vam:number is frames "
        "that were dropped."},
       {{"Which camera is it?", "vam-capture identify"},
@@ -67,12 +54,10 @@ cli::Manual manual() {
         "views.exr"},
        {"Where the rotation axis is in frames of a bead (here a piece of print) over a turn:",
         "vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 "
-        "--speed "
-        "90 --every 10 -o turn.exr && vam-capture axis --from turn.exr --bands 3"},
+        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-capture axis --from turn.exr --bands 3"},
        {"Half a turn into a folder; the second call finds nothing missing and takes nothing:",
-        "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/\n"
-        "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/"}},
+        "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/\nvam-capture "
+        "--device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/"}},
       {"Settings. Exposure, frame rate and binning that are not given are those of the printer file's [camera]; every "
        "one is read back, and a camera that does something else ends the capture (status 76).",
        "Time. The time of a frame is the camera's own time stamp, carried over to the machine's clock by the shortest "

@@ -18,8 +18,7 @@ cli::Manual manual() {
       "vam-curethrough",
       "model and correct cure-through in continuous stereolithography",
       {"In continuous stereolithography light that passes through the slice at the window cures the resin behind it. "
-       "In "
-       "a clear, fast resin the gaps above each feature close (cure-through) while its bottom edge stays soft "
+       "In a clear, fast resin the gaps above each feature close (cure-through) while its bottom edge stays soft "
        "(undercure). vam-curethrough computes the dose that a stack of slices leaves in the part, and the grey slices "
        "that cure the part and nothing else, exactly and column by column.",
        "Direction: slice 0 is the lowest slice of the volume (--platform top: the highest). It sticks to the platform "
@@ -37,12 +36,11 @@ cli::Manual manual() {
        "light in the part, the least outside). A voxel is cured where the dose at its centre is at least 1. The height "
        "error of a feature is what is undercured inside it plus what is cured in the gap above it.",
        "working-curve: cured thickness against exposure gives the absorbance height h_a and the gelation dose. "
-       "response: "
-       "photodiode readings become the table that projector.response names. sweep: how the height errors of a ladder "
-       "depend on the critical dose that is assumed and on omega-max."},
+       "response: photodiode readings become the table that projector.response names. sweep: how the height errors of "
+       "a ladder depend on the critical dose that is assumed and on omega-max."},
       {{"The ladder of the paper and what ordinary slices make of it:",
-        std::string(ladder) + " && vam-curethrough model ladder.vdb --max-intensity 110 --min-intensity 0.2 --plane "
-                              "ordinary.png"},
+        std::string(ladder) +
+            " && vam-curethrough model ladder.vdb --max-intensity 110 --min-intensity 0.2 --plane ordinary.png"},
        {"Its corrected slices, exact and as 8-bit pictures:",
         "vam-curethrough correct ladder.vdb --max-intensity 110 --min-intensity 0.2 -o slices.exr --png slices"},
        {"What those make of it:",
@@ -66,10 +64,9 @@ cli::Manual manual() {
        "the cores, most of it compression. --quantise keeps all slices (2 bytes a pixel). Memory of model: one bit and "
        "an eighth of a byte a voxel and some slices, 1.0 GiB there, and the dose volume when it is asked for.",
        "Grey levels: an ordinary rounding to 8 bits shifts the dose inside features by up to half a level of Phi, "
-       "which "
-       "is more than a percent. The levels of --png and --quantise are chosen from the last slice up, each the lowest "
-       "that still reaches the dose after the levels below it; so the dose is never short, and over by at most one "
-       "level's share of a single slice.",
+       "which is more than a percent. The levels of --png and --quantise are chosen from the last slice up, each the "
+       "lowest that still reaches the dose after the levels below it; so the dose is never short, and over by at most "
+       "one level's share of a single slice.",
        "Timing: slice n is shown from n / fps on, fps = speed / slice height. The stack has the attributes vam:fps, "
        "vam:speed_mm_h and a time for each slice, the folder an index frames.csv, in the form of vam-project's.",
        "Accuracy: the recursion agrees with the integral of Beer's law over time to 1e-6, and the correction with a "

@@ -15,54 +15,39 @@ cli::Manual manual() {
       "vam-ost",
       "see the print: scattering volume from camera views of the turning vial",
       {"Liquid resin is clear and the solidifying part scatters light. A camera beside the vial sees that light; over "
-       "a "
-       "full turn its views hold the whole volume. vam-ost corrects the views (dark, flat field, binning), finds the "
+       "a full turn its views hold the whole volume. vam-ost corrects the views (dark, flat field, binning), finds the "
        "rotation axis in them, undoes refraction and perspective with the exact ray map, and reconstructs the "
-       "scattering "
-       "density by filtered back-projection into a volume 'scatter', in view units per mm.",
+       "scattering density by filtered back-projection into a volume 'scatter', in view units per mm.",
        "VIEWS is an EXR frame stack of a camera, a folder of numbered pictures, or a video; the latter two need "
-       "--step. "
-       "Each frame's own angle counts: frames that are missing, repeated or uneven are weighted, and a gap of more "
-       "than "
-       "15 degrees is refused. Image rows run downwards along the axis; the middle row is z = 0.",
+       "--step. Each frame's own angle counts: frames that are missing, repeated or uneven are weighted, and a gap of "
+       "more than 15 degrees is refused. Image rows run downwards along the axis; the middle row is z = 0.",
        "With a level I_p (--level, or --resin with a record that vam-ost threshold wrote) the print is { scatter >= "
-       "I_p "
-       "}: --mesh writes its surface, --projections the operator's picture.",
+       "I_p }: --mesh writes its surface, --projections the operator's picture.",
        "--live reads frames as they come, keeps the last full turn, and for every turn (or every --every degrees) "
-       "writes "
-       "a volume into the folder -o, a line of JSON to --log, and renews --projections and --page. With --reference it "
-       "reports how much of the design is cured, missing and overcured; with --until it prints one line of JSON on "
-       "standard output when the condition holds, and ends: the signal to darken the projector. Frames are taken in "
-       "while "
-       "a volume is computed; dark or saturated ones are left out and counted, and before anything has gelled the log "
-       "says that it waits.",
+       "writes a volume into the folder -o, a line of JSON to --log, and renews --projections and --page. With "
+       "--reference it reports how much of the design is cured, missing and overcured; with --until it prints one line "
+       "of JSON on standard output when the condition holds, and ends: the signal to darken the projector. Frames are "
+       "taken in while a volume is computed; dark or saturated ones are left out and counted, and before anything has "
+       "gelled the log says that it waits.",
        "vam-ost threshold takes the scattering volume of a printed standard cylinder, of known diameter or measured on "
-       "a "
-       "profilometer's picture, and gives I_p with its spread: the mean along the true circle in the overhead mean "
-       "over "
-       "the standard's height. The record serves --resin of vam-ost and vam-sdf."},
+       "a profilometer's picture, and gives I_p with its spread: the mean along the true circle in the overhead mean "
+       "over the standard's height. The record serves --resin of vam-ost and vam-sdf."},
       {{"A synthetic cylinder, as a camera would see it, and back:",
-        "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\n"
-        "vam-sinogram design.vdb --angles 90 | vam-resample -o seen.exr\n"
-        "vam-project seen.exr -o views --set projector.fps=2.5"},
+        "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
+        "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},
        {"Reconstruct from a folder of pictures taken every 4 degrees:",
-        "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 "
-        "-o scatter.vdb --projections seen.png"},
+        "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+        "scatter.vdb --projections seen.png"},
        {"Calibrate the threshold with it, and use it:",
-        "vam-ost threshold scatter.vdb --diameter 6 -o resin.json\n"
-        "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --resin resin.json "
-        "--mesh print.ply -o again.vdb"}},
+        "vam-ost threshold scatter.vdb --diameter 6 -o resin.json\nvam-ost views --step 4 --pixel 0.065 --set "
+        "camera.distance_mm=119.808 --resin resin.json --mesh print.ply -o again.vdb"}},
       {"Memory: the views of one turn and the volume, about four times both. Time: about a second for 180 views of 480 "
-       "x "
-       "300 pixels on two cores.",
+       "x 300 pixels on two cores.",
        "Struts three voxels apart keep a contrast of 29 % with the default window, 14 % with hann, which smooths noise "
        "more. The axis is the centre of symmetry of the mean view, row by row, by least squares; column, tilt and "
-       "their "
-       "standard "
-       "deviations are reported.",
+       "their standard deviations are reported.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
-       "maximum "
-       "likelihood reconstruction, 1982 (--statistical)."},
+       "maximum likelihood reconstruction, 1982 (--statistical)."},
       {"vam-capture", "vam-sdf", "vam-view", "vam-resample"}};
 }
 

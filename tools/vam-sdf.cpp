@@ -29,14 +29,14 @@ cli::Manual manual() {
        "by the plane through its base, the design's outline at half height is laid onto the print's, with a scale that "
        "is reported as shrinkage, and outline, overlap and height are measured."},
       {{"Two boxes, one a little larger:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
-        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
-        "vam-sdf print.vdb design.vdb --level 0.5 -o deviation.ply --report deviation.json"},
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
+        "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --level 0.5 -o deviation.ply --report "
+        "deviation.json"},
        {"A verdict for a script:", "vam-sdf print.vdb design.vdb --level 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
        {"An embossed badge as a print would show it, 1 % too small, against its design:",
-        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\n"
-        "vam-slice --shape resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\n"
-        "vam-sdf height seen.vdb badge.vdb --pixel 0.1 -o outline.png --plot section.png"}},
+        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
+        "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
+        "--pixel 0.1 -o outline.png --plot section.png"}},
       {"Signs come from the generalised winding number, so that a reference with holes works. Distances are exact to "
        "the triangles; the fine percentiles depend on --samples.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and table "

@@ -35,31 +35,25 @@ struct Options {
 };
 
 cli::Manual manual() {
-  return {
-      "vam-sim-camera",
-      "simulate a GigE Vision camera beside the vial",
-      {"Behaves like a GenICam camera on GigE Vision, on a network address of this machine: it prints that address "
-       "when "
-       "it is ready, and answers any GenICam client until a signal ends it. It looks at a simulated vial, which "
-       "refracts: "
-       "the print in it scatters and grows with the light it got, and what the projector shows glows in the resin.",
-       "The vial turns as the log of vam-sim-stage says (--angles), or at a steady --speed. The projector shows what "
-       "the "
-       "log of vam-project says (--shown): its frames are those of --pattern or --frames, and its light makes the "
-       "print "
-       "grow. Without that log the first of them is shown all the time.",
-       "Its own log tells what it truly sent, to judge the tools by: for every frame its number, the angle, the "
-       "seconds "
-       "of light so far and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
-       "An address has one camera at a time: GigE Vision's control port is always 3956."},
-      {{"A camera, asked who it is",
-        "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
-      {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
-       "some. "
-       "--vanish N pulls the cable before frame N: the program ends without a word to its client. The bench itself may "
-       "be out of adjustment; the options of that group are what vam-capture's scans have to find.",
-       "The fake camera of Aravis, which serves, keeps up with about 50 frames of 0.3 megapixels a second."},
-      {"vam-capture", "vam-sim-stage", "vam-project"}};
+  return {"vam-sim-camera",
+          "simulate a GigE Vision camera beside the vial",
+          {"Behaves like a GenICam camera on GigE Vision, on a network address of this machine: it prints that address "
+           "when it is ready, and answers any GenICam client until a signal ends it. It looks at a simulated vial, "
+           "which refracts: the print in it scatters and grows with the light it got, and what the projector shows "
+           "glows in the resin.",
+           "The vial turns as the log of vam-sim-stage says (--angles), or at a steady --speed. The projector shows "
+           "what the log of vam-project says (--shown): its frames are those of --pattern or --frames, and its light "
+           "makes the print grow. Without that log the first of them is shown all the time.",
+           "Its own log tells what it truly sent, to judge the tools by: for every frame its number, the angle, the "
+           "seconds of light so far and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
+           "An address has one camera at a time: GigE Vision's control port is always 3956."},
+          {{"A camera, asked who it is",
+            "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
+          {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
+           "some. --vanish N pulls the cable before frame N: the program ends without a word to its client. The bench "
+           "itself may be out of adjustment; the options of that group are what vam-capture's scans have to find.",
+           "The fake camera of Aravis, which serves, keeps up with about 50 frames of 0.3 megapixels a second."},
+          {"vam-capture", "vam-sim-stage", "vam-project"}};
 }
 
 void declare(cli::App& app, Options& o) {

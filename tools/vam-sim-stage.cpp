@@ -35,10 +35,8 @@ cli::Manual manual() {
       "vam-sim-stage",
       "simulate a rotation stage on a pseudo-terminal",
       {"Behaves like a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a "
-       "pseudo-terminal, "
-       "prints its path, and answers GCS 2.0 commands until a signal ends it. The table has inertia and limits, must "
-       "be "
-       "switched on and referenced, and refuses with the error codes of the controller.",
+       "pseudo-terminal, prints its path, and answers GCS 2.0 commands until a signal ends it. The table has inertia "
+       "and limits, must be switched on and referenced, and refuses with the error codes of the controller.",
        "Its log tells what really happened, to judge the tools by: one JSON line per command received, per start, "
        "standstill and zeroing of the table, and the true angle every 10 ms while it moves, all on CLOCK_MONOTONIC.",
        "libserialport, which vam-stage uses, accepts no pseudo-terminals; a small library to preload changes its mind. "
@@ -49,8 +47,8 @@ cli::Manual manual() {
       {"Faults. --fault KIND@COMMAND[:N] spoils the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): garbage, "
        "truncated, late (3 s) or silent answers, wrong-sender (an answer of controller 7), error (the command is "
        "refused), unplug (the cable is pulled; the motion goes on, as with the real one) and power-loss (the "
-       "controller "
-       "dies and the table coasts to a stop) and block (the table is held fast while the controller talks on)."},
+       "controller dies and the table coasts to a stop) and block (the table is held fast while the controller talks "
+       "on)."},
       {"vam-stage", "vam-sim-camera"}};
 }
 

@@ -36,21 +36,20 @@ cli::Manual manual() {
       "vam-stage",
       "turn the rotation stage and report its angle",
       {"Drives a rotation stage and prints where it is. spin makes the motion of a print: it ramps up, turns one "
-       "run-up "
-       "turn at constant speed, then the whole turns of the print, and stops. While it turns it prints one JSON line a "
-       "sample, {\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, which all "
-       "processes of the machine share, the angle at that time, and its standard deviation in degrees. vam-project "
-       "--follow reads these lines. The angle is 0 where the light may go on, negative before, and 360 times the turns "
-       "where it must be off again. An angle of 0 is always the same position of the table: its reference after home.",
+       "run-up turn at constant speed, then the whole turns of the print, and stops. While it turns it prints one JSON "
+       "line a sample, {\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, "
+       "which all processes of the machine share, the angle at that time, and its standard deviation in degrees. "
+       "vam-project --follow reads these lines. The angle is 0 where the light may go on, negative before, and 360 "
+       "times the turns where it must be off again. An angle of 0 is always the same position of the table: its "
+       "reference after home.",
        "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
        "example C-863 with M-060.PD) on a serial or USB port; its baud rate is found by asking unless ?baud=115200 is "
        "given; ?address=2 talks to one controller of a daisy chain and ?axis=NAME to an axis of another name. "
        "grbl:/dev/ttyACM0 is a GRBL 1.1 board with the table on axis X, in degrees (?axis=Y for another). "
        "tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial number may be left "
-       "out when there is one. "
-       "sim: is the PI controller simulated inside the tool; its options speed_error, ripple (relative), jitter_ms, "
-       "latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log make it as bad as wanted. "
-       "vam-sim-stage(1) puts this simulator behind a pseudo-terminal.",
+       "out when there is one. sim: is the PI controller simulated inside the tool; its options speed_error, ripple "
+       "(relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log make it as "
+       "bad as wanted. vam-sim-stage(1) puts this simulator behind a pseudo-terminal.",
        "A device has one user at a time: the second one exits with status 75 and names the process that has it."},
       {{"Which controller is it, and what can it do?", "vam-stage identify"},
        {"Find the reference and turn to 20 degrees from it", "vam-stage move --home --to 20"},
@@ -64,8 +63,7 @@ cli::Manual manual() {
        "turns asked for. Wire a hardware interlock that cuts the light and the motor where people can reach either.",
        "Accuracy. A sample's time is the middle of question and answer; sigma is what the time between them leaves "
        "open. spin refuses to begin printing (status 76) when the speed is off by more than --speed-tolerance, and "
-       "ends "
-       "when the table leaves its own line by more than 2 degrees. The port's latency matters: at 25 deg/s, 16 ms "
+       "ends when the table leaves its own line by more than 2 degrees. The port's latency matters: at 25 deg/s, 16 ms "
        "(the FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
        "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
       {"vam-project", "vam-sim-stage", "vam-capture"}};

@@ -7,9 +7,8 @@ cli::Manual manual() {
       "vam-optimize",
       "find projections that print a part",
       {"Light only adds up, so no set of projections gives exactly the dose that a part asks for. vam-optimize reads "
-       "the "
-       "target (VDB, coverage 0...1) and looks for non-negative projections whose dose separates part from void, so "
-       "that a resin with a threshold prints the part. It works with the projector's own chief rays, diverging from "
+       "the target (VDB, coverage 0...1) and looks for non-negative projections whose dose separates part from void, "
+       "so that a resin with a threshold prints the part. It works with the projector's own chief rays, diverging from "
        "the lens and refracted on their way, and writes a projector's sinogram stack, one image a slice, ready for "
        "vam-project. With --geometry parallel it writes a virtual (parallel-beam) stack instead, which vam-resample "
        "takes to a projector: three to four times faster, but resampling then costs the print half of its process "
@@ -19,16 +18,14 @@ cli::Manual manual() {
        "the print's error with the resin's threshold inside the loop. osmo corrects a model of the part by the dose's "
        "errors, void and part in turn. pm minimises how far doses are on the wrong side of LOW and HIGH, to the power "
        "P; bclp how far the resin's response is outside a band around the target. apg, the best of them, asks the void "
-       "to stay "
-       "below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; a slice "
-       "that has reached both is asked for a wider window. No method has a step length to choose.",
+       "to stay below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; a "
+       "slice that has reached both is asked for a wider window. No method has a step length to choose.",
        "The dose that the projections give is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "
        "light * (angle step in radian) over all angles along the rays gives this dose.",
        "A grid 'insert' in the same file is an opaque object to print around (overprinting): rays carry no light "
-       "behind "
-       "it. Part voxels that no light can reach are counted in the report and left out.",
+       "behind it. Part voxels that no light can reach are counted in the report and left out.",
        "A resin that absorbs (resin.absorption_per_mm) weakens light on its way: e^(-mu s) is then part of the dose "
        "that the method works with, s the path from where the ray enters the resin, and light is what enters there.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void: they are asked for nothing, "
@@ -51,24 +48,20 @@ cli::Manual manual() {
        {"Made up for a beam that is 0.1 mm wide, and safe to interrupt:",
         "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"}},
       {"Figures of merit (physics of the field: VER, PW, IPDR, CV, IoU; vam-score has their definitions) are worked "
-       "out "
-       "slice by slice. In --trace and --until PW is that of the worst slice, IPDR the largest, the others are means "
-       "by voxel count.",
+       "out slice by slice. In --trace and --until PW is that of the worst slice, IPDR the largest, the others are "
+       "means by voxel count.",
        "Speed: identical slices are computed once. Two projections of 64 slices of 256 x 256 voxels at 360 angles take "
        "0.2 s on two cores in the vial, 0.06 s in parallel light. Parallel light gives the same dose from either side, "
-       "so for an even "
-       "number of angles half of them are computed and mirrored. Memory: 64 slices at a time, three arrays of a slice "
-       "and three of a sinogram each, plus at most 512 MiB of finished slices that come again; with --bits and without "
-       "--peak all projections.",
+       "so for an even number of angles half of them are computed and mirrored. Memory: 64 slices at a time, three "
+       "arrays of a slice and three of a sinogram each, plus at most 512 MiB of finished slices that come again; with "
+       "--bits and without --peak all projections.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017, eq 3 and fig 2; Kelly et al., Science 2019, eq 4; "
-       "Orth "
-       "et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where the text "
-       "floors the projections at the background, but the figures show them non-negative: --floor 0 is right); Rackson "
-       "et al., Object-space optimization of tomographic reconstructions, 2021 (osmo); Bhattacharya et al., High "
-       "fidelity volumetric additive manufacturing, 2021 (pm); Li, Toombs, Taylor and Wallin, Tomographic projection "
-       "optimization for "
-       "volumetric additive manufacturing with general band constraint Lp-norm minimization, 2024 (bclp); Beck "
-       "and Teboulle, FISTA, 2009, and Bertsekas, two-metric projection, 1982 (apg)."},
+       "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where the "
+       "text floors the projections at the background, but the figures show them non-negative: --floor 0 is right); "
+       "Rackson et al., Object-space optimization of tomographic reconstructions, 2021 (osmo); Bhattacharya et al., "
+       "High fidelity volumetric additive manufacturing, 2021 (pm); Li, Toombs, Taylor and Wallin, Tomographic "
+       "projection optimization for volumetric additive manufacturing with general band constraint Lp-norm "
+       "minimization, 2024 (bclp); Beck and Teboulle, FISTA, 2009, and Bertsekas, two-metric projection, 1982 (apg)."},
       {"vam-slice", "vam-sinogram", "vam-resample", "vam-dose", "vam-score"}};
 }
 
