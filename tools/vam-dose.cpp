@@ -22,7 +22,9 @@
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "optics/blur.hpp"
+#include "optics/insert_shadow.hpp"
 #include "printer.hpp"
+#include "vam-dose/insert.hpp"
 
 namespace {
 
@@ -56,6 +58,10 @@ cli::Manual manual() {
        "column whose ray passes through the voxel, refraction and Fresnel losses included, its light per width by the "
        "density of the rays at that depth, and absorption along the way through the resin. Virtual sinograms "
        "(vam-sinogram, vam-optimize) are back-projected along parallel rays, with absorption if the resin has any.",
+       "A grid 'insert' in the volume of --like is an opaque object that is printed around (overprinting; vam-slice "
+       "--insert): every ray ends at the first voxel that is at least half insert, so that all behind it is in shadow, "
+       "and the insert itself takes up no dose. Voxels of the part that no ray reaches are counted "
+       "(dark_part_voxels of the report) and warned about.",
        "The dose is in units of light times radian (an even light of 1 gives 2 pi at most), or in mJ/cm3 when the "
        "resin "
        "has resin.critical_dose_mj_cm3 and resin.absorption_per_mm: then the largest value of the stack, or "
@@ -72,6 +78,9 @@ cli::Manual manual() {
        {"What a telecentric correction would do on a projector that is not:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.telecentric=true | "
         "vam-dose --like part.vdb -o wrong.vdb"},
+       {"A handle printed around the shaft of a screwdriver:",
+        "vam-slice --shape handle --insert-shape screwdriver --voxel 0.8 -o handle.vdb && vam-optimize --angles 60 "
+        "handle.vdb | vam-dose --like handle.vdb | vam-score --target handle.vdb"},
        {"The time a print takes in a resin that absorbs:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
         "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"}},
@@ -94,7 +103,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_report(app, options.report);
   app.group("Volume");
   app.option("--like", "FILE", options.like,
-             "Volume (VDB) whose voxels the dose takes; its grid 'target', if there, is the part of the report.");
+             "Volume (VDB) whose voxels the dose takes; its grid 'target', if there, is the part of the report, its "
+             "grid 'insert' an opaque object in the light.");
   app.option(
       "--size", "MM", options.size_mm, cli::positive,
       "Edge of the square around the axis. Without it all that is lit from every side (projector), or as wide as "
@@ -125,10 +135,13 @@ void declare(cli::App& app, Options& options) {
 class Sink {
  public:
   /// judged: where part and void are told apart, if at all.
-  Sink(io::SparseVolume& volume, const io::SparseVolume* target, int first, std::optional<model::Circle> judged)
-      : volume_(volume), target_(target), next_(first), judged_(judged) {}
+  Sink(io::SparseVolume& volume, const io::SparseVolume* target, const dose_tool::Insert& insert, int first,
+       std::optional<model::Circle> judged)
+      : volume_(volume), target_(target), insert_(insert), next_(first), judged_(judged) {}
 
-  void add(const Image& dose) {
+  void add(Image& dose) {
+    const std::vector<Image> inserts = insert_.slices(next_ + pending_, 1);
+    if (!inserts.empty()) optics::darken(inserts, {&dose, 1});  // also of what blur has brought in
     Image part;
     if (target_ != nullptr) {
       part = Image(dose.width, dose.height);
@@ -160,6 +173,7 @@ class Sink {
 
   io::SparseVolume& volume_;
   const io::SparseVolume* target_;
+  const dose_tool::Insert& insert_;
   int next_;
   int pending_ = 0;
   std::vector<float> buffer_;
@@ -190,6 +204,7 @@ void warn_about(const Options& options, const metrology::LightSeen& seen, bool p
 struct Place {
   std::vector<io::SparseVolume> like;
   const io::SparseVolume* target = nullptr;
+  const io::SparseVolume* insert = nullptr;
   model::Grid grid;
 };
 
@@ -202,6 +217,7 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
   place.like = io::read_volumes(options.like);
   for (const io::SparseVolume& volume : place.like) {
     if (volume.name() == "target") place.target = &volume;
+    if (volume.name() == "insert") place.insert = &volume;
   }
   place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
   return place;
@@ -225,16 +241,19 @@ double blur_mm(const Options& options, const model::Printer& printer) {
 }
 
 metrology::LightSeen expose(io::StackReader& in, const metrology::Simulation& simulation, const metrology::Light& light,
-                            double blur_px, Sink& sink) {
+                            double blur_px, int first, dose_tool::Insert& insert, Sink& sink) {
   metrology::LightSeen seen;
-  optics::VolumeBlur blur(blur_px, [&](const Image& dose) { sink.add(dose); });
+  optics::VolumeBlur blur(blur_px, [&](Image dose) { sink.add(dose); });
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
     metrology::shine(light, slices, seen);
     std::vector<Image> doses(slices.size());
-    simulation.dose(slices, doses);
-    for (const Image& dose : doses) {
+    const std::vector<Image> inserts = insert.slices(first, static_cast<int>(slices.size()));
+    simulation.dose(slices, doses, inserts);
+    insert.look_for_dark(simulation, first, inserts);
+    first += static_cast<int>(slices.size());
+    for (Image& dose : doses) {
       if (blur_px > 0) {
         blur.push(dose);
       } else {
@@ -276,12 +295,17 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
   }
   std::optional<model::Circle> judged;
   if (options.exposure_plan) judged = model::writable_circle(place.grid, printer);
-  Sink sink(volume, place.target, first, judged);
+  dose_tool::Insert insert(place.insert, place.target, place.grid, info);
+  Sink sink(volume, place.target, insert, first, judged);
   const double sigma_mm = blur_mm(options, printer);
   const metrology::Light light{projector && !options.keep_negative, options.full_scale,
                                printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
-  const metrology::LightSeen seen = expose(in, simulation, light, sigma_mm / place.grid.voxel_mm, sink);
+  const metrology::LightSeen seen = expose(in, simulation, light, sigma_mm / place.grid.voxel_mm, first, insert, sink);
   warn_about(options, seen, projector);
+  if (insert.dark_part_voxels() > 0) {
+    warn(options.like + ": " + std::to_string(insert.dark_part_voxels()) +
+         " voxels of the part lie in the insert's shadow from all sides; no light prints them");
+  }
 
   const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : seen.peak;
@@ -305,6 +329,7 @@ void simulate(const cli::App& app, const Options& options, const model::Printer&
     figures["peak_value"] = options.full_scale.value_or(seen.peak) / plan->multiplier;
   }
   figures["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
+  if (insert.there() && place.target != nullptr) figures["dark_part_voxels"] = insert.dark_part_voxels();
   figures["blur_sigma_mm"] = sigma_mm;
   figures["absorption_per_mm"] = printer.resin.absorption_per_mm;
   // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.

@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "metrology/shadowed_turn.hpp"
+#include "optics/insert_shadow.hpp"
 #include "optics/trace.hpp"
 #include "tomo/radon.hpp"
 
@@ -25,8 +27,11 @@ struct Parallel {
   std::vector<float> entry;          // per column: e^{-mu sqrt(R^2 - t^2)}, 0 beside the resin
   std::vector<unsigned char> resin;  // per voxel: is it there
   double step_rad = 0;
+  model::Grid grid;
+  double pixel_mm = 0;
 
-  void dose(std::span<const Image> sinograms, std::span<Image> doses) const;
+  void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const;
+  void back_project(std::span<const tomo::Slab> in, std::span<tomo::Slab> out, std::span<const Image> inserts) const;
 };
 
 Parallel make_parallel(const model::Printer& printer, const model::StackInfo& info, const model::Grid& grid) {
@@ -52,6 +57,8 @@ Parallel make_parallel(const model::Printer& printer, const model::StackInfo& in
                      info.angle_step_deg * rad_per_deg,
                      -mu * grid.voxel_mm};
   result.step_rad = std::abs(info.angle_step_deg) * rad_per_deg;
+  result.grid = grid;
+  result.pixel_mm = info.pixel_mm;
   const optics::Detector detector = optics::centred_detector(info.width, info.pixel_mm);
   for (int c = 0; c < info.width; ++c) {
     const double square = radius * radius - detector.x_mm(c) * detector.x_mm(c);
@@ -63,7 +70,21 @@ Parallel make_parallel(const model::Printer& printer, const model::StackInfo& in
   return result;
 }
 
-void Parallel::dose(std::span<const Image> sinograms, std::span<Image> doses) const {
+void Parallel::back_project(std::span<const tomo::Slab> in, std::span<tomo::Slab> out,
+                            std::span<const Image> inserts) const {
+  if (inserts.empty()) {
+    tomo::adjoint(geometry, in, out);
+    return;
+  }
+  ShadowedTurn turn(geometry, grid, pixel_mm);
+  for (std::size_t g = 0; g < in.size(); ++g) {
+    const std::size_t first = g * tomo::lanes;
+    turn.back_project(in[g], inserts.subspan(first, std::min<std::size_t>(tomo::lanes, inserts.size() - first)),
+                      out[g]);
+  }
+}
+
+void Parallel::dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const {
   const int groups = (static_cast<int>(sinograms.size()) + tomo::lanes - 1) / tomo::lanes;
   const auto slices_of = [&](int group) {
     return std::min<std::size_t>(tomo::lanes, sinograms.size() - static_cast<std::size_t>(group * tomo::lanes));
@@ -80,7 +101,7 @@ void Parallel::dose(std::span<const Image> sinograms, std::span<Image> doses) co
       }
     }
   });
-  tomo::adjoint(geometry, in, out);
+  back_project(in, out, inserts);
   parallel_for(groups, [&](int g) {
     for (std::size_t s = 0; s < slices_of(g); ++s) {
       Image& image = doses[static_cast<std::size_t>(g * tomo::lanes) + s];
@@ -91,6 +112,7 @@ void Parallel::dose(std::span<const Image> sinograms, std::span<Image> doses) co
       }
     }
   });
+  if (!inserts.empty()) optics::darken(inserts, doses);
 }
 
 optics::TraceSetup trace_setup(const model::Printer& printer, const optics::Alignment& alignment,
@@ -130,8 +152,8 @@ Simulation::Simulation(const model::Printer& printer, const optics::Alignment& a
 
 Simulation::~Simulation() = default;
 
-void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses) const {
-  std::visit([&](const auto& engine) { engine.dose(sinograms, doses); }, state_->engine);
+void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const {
+  std::visit([&](const auto& engine) { engine.dose(sinograms, doses, inserts); }, state_->engine);
 }
 
 model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info, std::optional<double> size_mm) {

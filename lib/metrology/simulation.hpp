@@ -27,7 +27,8 @@ namespace vam::metrology {
 
 /// The dose of slices, one turn, in units of the sinogram times radian [physics section 4]; zero outside the resin.
 /// Projector stacks: optics::Tracer. Virtual stacks: back-projection, light entering at the resin's wall:
-/// D(r) = |step| sum over theta of F(t, theta) e^{-mu (sqrt(R^2 - t^2) + u)}.
+/// D(r) = |step| sum over theta of F(t, theta) e^{-mu (sqrt(R^2 - t^2) + u)}. Around an opaque insert (coverage nx x
+/// ny, one a slice, or none at all) light ends where its column's ray meets it [CAL19 fig 4]; the insert gets no dose.
 class Simulation {
  public:
   /// Throws Fault::data: angles that are not one turn, a camera stack, columns that are not the printer's, or voxels
@@ -35,7 +36,7 @@ class Simulation {
   Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
              const model::Grid& grid);
   ~Simulation();
-  void dose(std::span<const Image> sinograms, std::span<Image> doses) const;
+  void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
 
  private:
   struct State;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <new>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
 #include "base/text.hpp"
+#include "optics/insert_shadow.hpp"
 #include "optics/trace_kernel.hpp"
 
 namespace vam::optics {
@@ -99,11 +101,35 @@ struct Tracer::State {
     }
   }
 
+  // What voxels take their light from.
+  struct Lit {
+    const float* slab;
+    int lanes;
+    const InsertShadow* rays;  // null without inserts
+  };
+
+  [[nodiscard]] InsertShadow all_rays() const;
   void fill_row(std::span<const Image> sinograms, int row, int lanes, float* to) const;
-  void dose_tile(const float* slab, int lanes, int tile, std::span<Image> doses) const;
-  void trace_voxel(const Kernels& kernel, const LitTable::Zone& zone, double place, double psi, const float* slab,
-                   int row, int rows, float* dose) const;
+  void dose_tile(const Lit& lit, int tile, std::span<Image> doses) const;
+  void trace_voxel(const Kernels& kernel, const LitTable::Zone& zone, int i, int j, const Lit& lit, int row, int rows,
+                   float* dose) const;
+  void add_unshadowed(const Lit& lit, const TraceEntries& entries, int count, int i, int j, float* dose) const;
 };
+
+// The rays of the padded columns at all stage angles.
+InsertShadow Tracer::State::all_rays() const {
+  std::vector<double> angles;
+  for (int row = 0; row < setup.turn.rows; ++row) {
+    angles.push_back(setup.direction * (setup.turn.start_rad + row * setup.turn.step_rad) + setup.angle_offset_rad);
+  }
+  std::vector<RayLine> lines;
+  for (int c = -padding; c < setup.projector.columns + padding; ++c) {
+    const int column = std::clamp(c, 0, setup.projector.columns - 1);  // beside the projector it is dark
+    const ChiefRay ray = chief_ray(setup.view, setup.projector.x_mm(column));
+    lines.push_back({ray.hits, ray.x_v_mm, ray.delta_rad});
+  }
+  return {setup.grid, angles, lines};
+}
 
 // One stage angle of the slab: [column][lane], each slice smoothed by the shadow of a voxel.
 void Tracer::State::fill_row(std::span<const Image> sinograms, int row, int lanes, float* to) const {
@@ -125,9 +151,28 @@ void Tracer::State::fill_row(std::span<const Image> sinograms, int row, int lane
   }
 }
 
-// Adds the light of stage angles [row, row + rows) on a voxel at polar angle psi, `place` rows into a zone.
-void Tracer::State::trace_voxel(const Kernels& kernel, const LitTable::Zone& zone, double place, double psi,
-                                const float* slab, int row, int rows, float* dose) const {
+// Adds the light of those of the voxel's rays that have not yet met the insert.
+void Tracer::State::add_unshadowed(const Lit& lit, const TraceEntries& entries, int count, int i, int j,
+                                   float* dose) const {
+  const double x = setup.grid.x_mm(i);
+  const double y = setup.grid.y_mm(j);
+  const InsertShadow& rays = *lit.rays;
+  for (int e = 0; e < count; ++e) {
+    const int row = entries.cell[e] / stride;
+    const int column = entries.cell[e] % stride;
+    const float* light = lit.slab + Index{entries.cell[e]} * lit.lanes;
+    rays.add(row, column, rays.depth_mm(x, y, row, column), entries.left[e], light, dose);
+    rays.add(row, column + 1, rays.depth_mm(x, y, row, column + 1), entries.right[e], light + lit.lanes, dose);
+  }
+}
+
+// Adds the light of stage angles [row, row + rows) on a voxel of a zone.
+void Tracer::State::trace_voxel(const Kernels& kernel, const LitTable::Zone& zone, int i, int j, const Lit& lit,
+                                int row, int rows, float* dose) const {
+  const double x = setup.grid.x_mm(i);
+  const double y = setup.grid.y_mm(j);
+  const double psi = std::atan2(y, x);
+  const double place = (std::hypot(x, y) - zone.first_mm) / zone.pitch_mm;
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup.direction * setup.turn.start_rad + setup.angle_offset_rad;
   const int directions = table.angles * table.phases;
@@ -153,23 +198,27 @@ void Tracer::State::trace_voxel(const Kernels& kernel, const LitTable::Zone& zon
       source.strength[corner] = zone.strength.data() + series;
     }
     kernel.entries(source, columns, row, rows, entries);
-    int lit = rows;
+    int count = rows;
     if (nearest) {  // most directions of a fold have no ray
-      lit = 0;
-      for (int i = 0; i < rows; ++i) {
-        if (entries.left[i] == 0 && entries.right[i] == 0) continue;
-        entries.cell[lit] = entries.cell[i];
-        entries.left[lit] = entries.left[i];
-        entries.right[lit++] = entries.right[i];
+      count = 0;
+      for (int e = 0; e < rows; ++e) {
+        if (entries.left[e] == 0 && entries.right[e] == 0) continue;
+        entries.cell[count] = entries.cell[e];
+        entries.left[count] = entries.left[e];
+        entries.right[count++] = entries.right[e];
       }
     }
-    kernel.add(slab, entries, lit, dose);
+    if (lit.rays == nullptr) {
+      kernel.add(lit.slab, entries, count, dose);
+    } else {
+      add_unshadowed(lit, entries, count, i, j, dose);
+    }
   }
 }
 
-void Tracer::State::dose_tile(const float* slab, int lanes, int tile, std::span<Image> doses) const {
+void Tracer::State::dose_tile(const Lit& lit, int tile, std::span<Image> doses) const {
   const model::Grid& grid = setup.grid;
-  const Kernels kernel = kernels(lanes);
+  const Kernels kernel = kernels(lit.lanes);
   const int tiles_x = (grid.nx + tile_edge - 1) / tile_edge;
   const int i0 = tile % tiles_x * tile_edge;
   const int j0 = tile / tiles_x * tile_edge;
@@ -177,21 +226,18 @@ void Tracer::State::dose_tile(const float* slab, int lanes, int tile, std::span<
   const int j1 = std::min(j0 + tile_edge, grid.ny);
   alignas(64) float sums[tile_edge * tile_edge * 64] = {};
   const auto sums_of = [&](int i, int j) {
-    return sums + static_cast<std::ptrdiff_t>((j - j0) * tile_edge + (i - i0)) * lanes;
+    return sums + static_cast<std::ptrdiff_t>((j - j0) * tile_edge + (i - i0)) * lit.lanes;
   };
   // Angles outside, voxels inside: the light of a few angles on the tile stays in the cache.
   for (int row = 0; row < setup.turn.rows; row += trace_rows) {
     const int rows = std::min(trace_rows, setup.turn.rows - row);
     for (int j = j0; j < j1; ++j) {
       for (int i = i0; i < i1; ++i) {
-        const double x = grid.x_mm(i);
-        const double y = grid.y_mm(j);
-        const double r = std::hypot(x, y);
+        const double r = std::hypot(grid.x_mm(i), grid.y_mm(j));
         if (r >= table.edge_mm) continue;
         const bool outside = r >= table.reach_mm && table.outer.rows > 0;
         const LitTable::Zone& zone = outside ? table.outer : table.inner;
-        trace_voxel(kernel, zone, (r - zone.first_mm) / zone.pitch_mm, std::atan2(y, x), slab, row, rows,
-                    sums_of(i, j));
+        trace_voxel(kernel, zone, i, j, lit, row, rows, sums_of(i, j));
       }
     }
   }
@@ -216,7 +262,7 @@ Tracer::Tracer(const TraceSetup& setup) {
 Tracer::~Tracer() = default;
 Tracer::Tracer(Tracer&&) noexcept = default;
 
-void Tracer::dose(std::span<const Image> sinograms, std::span<Image> doses) const {
+void Tracer::dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const {
   const State& state = *state_;
   const model::Grid& grid = state.setup.grid;
   const int rows = state.setup.turn.rows;
@@ -228,8 +274,11 @@ void Tracer::dose(std::span<const Image> sinograms, std::span<Image> doses) cons
                                    " columns and the stack " + std::to_string(rows) + " angles"};
     }
   }
-  for (std::size_t first = 0; first < sinograms.size(); first += 64) {
-    const std::size_t count = std::min<std::size_t>(64, sinograms.size() - first);
+  std::optional<InsertShadow> rays;
+  if (!inserts.empty()) rays = state.all_rays();
+  const std::size_t most = rays ? InsertShadow::lanes : 64;
+  for (std::size_t first = 0; first < sinograms.size(); first += most) {
+    const std::size_t count = std::min(most, sinograms.size() - first);
     const int lanes = count <= 16 ? 16 : count <= 32 ? 32 : 64;
     const auto in = sinograms.subspan(first, count);
     const auto out = doses.subspan(first, count);
@@ -237,8 +286,11 @@ void Tracer::dose(std::span<const Image> sinograms, std::span<Image> doses) cons
     const Index row_size = Index{state.stride} * lanes;
     const Floats slab = make_floats(row_size * rows);
     parallel_for(rows, [&](int row) { state.fill_row(in, row, lanes, slab.get() + row * row_size); });
+    if (rays) rays->cast(inserts.subspan(first, count));
+    const State::Lit lit{slab.get(), lanes, rays ? &*rays : nullptr};
     const int tiles = ((grid.nx + tile_edge - 1) / tile_edge) * ((grid.ny + tile_edge - 1) / tile_edge);
-    parallel_for(tiles, [&](int tile) { state.dose_tile(slab.get(), lanes, tile, out); });
+    parallel_for(tiles, [&](int tile) { state.dose_tile(lit, tile, out); });
+    if (rays) darken(inserts.subspan(first, count), out);
   }
 }
 

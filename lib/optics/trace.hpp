@@ -39,8 +39,9 @@ class Tracer {
   Tracer(Tracer&&) noexcept;
 
   /// Doses (nx x ny, resized) of slices whose sinograms are columns x rows, negative light as it is. Throws Fault::data
-  /// where a sinogram has another shape. 64 slices a call are fastest.
-  void dose(std::span<const Image> sinograms, std::span<Image> doses) const;
+  /// where a sinogram has another shape. 64 slices a call are fastest. With inserts (coverage nx x ny, one a slice)
+  /// light ends where its column's ray meets the insert of the slice, and voxels at least half inside it get none.
+  void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
 
  private:
   struct State;

@@ -97,11 +97,12 @@ class Run {
     const Operator* light = &light_;
     std::unique_ptr<Operator> around;
     if (!inserts.empty()) light = (around = go_around(problem, pass, inserts, work)).get();
+    const Operator& sharp = *light;  // whose rows are the iterate's: fewer than the image's where half a turn is enough
     std::unique_ptr<Operator> blurred;
     if (halo_ > 0) light = (blurred = std::make_unique<BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
     if (!work.method) {
       work.method = task_.make();
-      if (task_.initial) work.state.g = initial(pass);
+      if (task_.initial) work.state.g = initial(pass, sharp);
     }
     Watch watch;
     if (task_.watch) {
@@ -114,7 +115,7 @@ class Run {
       return false;
     }
     ledger_.end(outcome);
-    finish(problem, work.state, pass);
+    finish(problem, work.state, pass, sharp);
     return true;
   }
 
@@ -153,8 +154,8 @@ class Run {
     return light;
   }
 
-  [[nodiscard]] std::vector<Slab> initial(const Pass& pass) const {
-    const Shape shape = light_.image();
+  [[nodiscard]] std::vector<Slab> initial(const Pass& pass, const Operator& light) const {
+    const Shape shape = light.image();
     std::vector<Slab> g;
     for (int first = pass.low; first < pass.high; first += lanes) {
       const int used = std::min(lanes, pass.high - first);
@@ -165,8 +166,8 @@ class Run {
       }
       Slab packed(shape.width, shape.height);
       tomo::pack(images.data(), used, packed);
-      g.emplace_back(light_.sinogram().width, light_.sinogram().height);
-      light_.collapse(packed, g.back());
+      g.emplace_back(light.sinogram().width, light.sinogram().height);
+      light.collapse(packed, g.back());
     }
     return g;
   }
@@ -180,12 +181,12 @@ class Run {
   }
 
   /// Brings the slices to the common threshold, but never beyond the largest light.
-  void bring_to_threshold(const Problem& problem, Iterate& state) const {
+  void bring_to_threshold(const Problem& problem, Iterate& state, const Operator& light) const {
     if (halo_ > 0) return;  // slices that share dose are to scale already
     PerSlice factor = to_common_threshold(metrics(state.dose, problem), problem);
     if (task_.max_light > 0) {
       const PerSlice brightest = largest(state.g);
-      const auto most = static_cast<float>(task_.max_light * light_.row_angle_rad());
+      const auto most = static_cast<float>(task_.max_light * light.row_angle_rad());
       for (std::size_t s = 0; s < factor.size(); ++s) {
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
@@ -197,18 +198,18 @@ class Run {
   }
 
   /// Takes the finished slices out of the pass.
-  void finish(const Problem& problem, Iterate& state, const Pass& pass) {
-    bring_to_threshold(problem, state);
+  void finish(const Problem& problem, Iterate& state, const Pass& pass, const Operator& light) {
+    bring_to_threshold(problem, state, light);
     const auto doses = statistics(state.dose, problem);
     const auto figures = metrics(state.dose, problem);
-    const Shape shape = light_.image();
+    const Shape shape = light.image();
     std::vector<Image> images;
     Slab image(shape.width, shape.height);
     std::vector<float> values(pixels(shape) * lanes);
     for (int i = 0; i < pass.slices(); ++i) {
       const int lane = i % lanes;
       if (lane == 0) {
-        light_.expand(state.g[static_cast<std::size_t>(i / lanes)], image);
+        light.expand(state.g[static_cast<std::size_t>(i / lanes)], image);
         tomo::unpack(image, std::min(lanes, pass.slices() - i), values.data());
       }
       const int job = pass.low + i;

@@ -72,6 +72,31 @@ vam-sinogram part.vdb --filter ram-lak | vam-resample --keep-negative >negative.
 ok "negative light" vam-dose negative.exr --like part.vdb -o x.vdb; rm x.vdb
 is "is said to be taken as 0" "$(grep -c 'taken as 0' .log/err)" 1
 
+# Around an insert (overprinting): as many voxels as 128 cubed, then coarsely by way of parallel light
+vam-slice --shape handle --insert-shape screwdriver --voxel 0.106 -o fine.vdb
+vam-optimize --angles 180 fine.vdb -o fine.exr
+quiet "a handle around a screwdriver" vam-dose fine.exr --like fine.vdb --report fine.json -o fine-dose.vdb
+ok "is scored" vam-score fine-dose.vdb --target fine.vdb --report fine-score.json
+holds "98 % of its voxels are right" "1 - $(json fine-score.json ver) >= 0.98 && $(json fine-score.json iou) >= 0.995"
+is "none is in the dark" "$(json fine.json dark_part_voxels)" 0
+holds "only an insert has a shadow" "$(grep -c dark_part_voxels report.json) == 0"
+rm fine*
+vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb
+vam-optimize --geometry parallel --angles 180 handle.vdb -o around.exr
+vam-resample around.exr -o resampled.exr
+for light in around resampled; do
+  vam-dose $light.exr --like handle.vdb -o around.vdb
+  vam-score around.vdb --target handle.vdb --report $light.json >table
+  holds "parallel light prints it too ($light)" "1 - $(json $light.json ver) >= 0.98 && $(json $light.json iou) >= 0.99"
+done
+vam-slice --shape cylinder:diameter=6,height=4 --insert-shape hollow-cylinder:outer=12,inner=9,height=8 \
+  --extent writable --voxel 0.4 -o hidden.vdb
+vam-sinogram hidden.vdb --filter ram-lak --negative clip -o hidden.exr
+ok "a part within a tube" vam-dose hidden.exr --like hidden.vdb --report hidden.json -o hidden-dose.vdb
+is "is told to lie in the dark" "$(grep -c 'shadow from all sides' .log/err)" 1
+holds "all of it" "$(json hidden.json dark_part_voxels) == $(json hidden.json part_voxels) && $(json hidden.json part_voxels) > 0"
+holds "and takes up no light" "$(json hidden.json part_dose_per_turn_mean_relative) == 0"
+
 # Wrong inputs
 head -c 100000 frames.exr >cut.exr
 $exr make camera.exr space=camera

@@ -1,0 +1,64 @@
+#include "vam-dose/insert.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "model/dose_metrics.hpp"
+#include "optics/insert_shadow.hpp"
+
+namespace vam::dose_tool {
+
+namespace {
+
+Image read_slice(const io::SparseVolume& volume, int k, int nx, int ny) {
+  Image image(nx, ny);
+  volume.read_slices(k, 1, image.values.data());
+  return image;
+}
+
+}  // namespace
+
+Insert::Insert(const io::SparseVolume* insert, const io::SparseVolume* target, const model::Grid& grid,
+               const model::StackInfo& light)
+    : insert_(insert), target_(target), nx_(grid.nx), ny_(grid.ny) {
+  if (insert_ == nullptr) return;
+  if (!(insert_->grid() == grid)) {
+    throw Error{Fault::data,
+                "insert: its voxels are not those of 'target'; slice both together (vam-slice --insert) or with the "
+                "same --voxel and size"};
+  }
+  even_ = Image(light.width, light.height, 1.0F);
+}
+
+std::vector<Image> Insert::slices(int first, int count) const {
+  std::vector<Image> slices;
+  if (insert_ == nullptr) return slices;
+  bool opaque = false;
+  for (int k = first; k < first + count; ++k) {
+    slices.push_back(read_slice(*insert_, k, nx_, ny_));
+    opaque = opaque || std::ranges::any_of(slices.back().values, optics::opaque);
+  }
+  if (!opaque) slices.clear();
+  return slices;
+}
+
+void Insert::look_for_dark(const metrology::Simulation& simulation, int first, std::span<const Image> inserts) {
+  if (target_ == nullptr || inserts.empty()) return;
+  std::vector<Image> distinct;  // a shaft is the same in many slices
+  std::vector<std::size_t> which;
+  for (const Image& insert : inserts) {
+    if (distinct.empty() || distinct.back().values != insert.values) distinct.push_back(insert);
+    which.push_back(distinct.size() - 1);
+  }
+  std::vector<Image> lit(distinct.size());
+  simulation.dose(std::vector<Image>(distinct.size(), even_), lit, distinct);
+  for (std::size_t s = 0; s < inserts.size(); ++s) {
+    const Image part = read_slice(*target_, first + static_cast<int>(s), nx_, ny_);
+    for (std::size_t p = 0; p < part.size(); ++p) {
+      const bool wanted = model::label_of(part.values[p]) == model::Label::part;
+      if (wanted && !(lit[which[s]].values[p] > 0)) ++dark_;
+    }
+  }
+}
+
+}  // namespace vam::dose_tool
