@@ -128,8 +128,10 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
 
 std::string exposure_problem(const Image& raw) {
   const auto [low, high] = std::minmax_element(raw.values.begin(), raw.values.end());
-  if (!(*high > *low))
-    return "dark, every pixel is " + format_number(static_cast<double>(*low)) + "; check light and exposure";
+  if (!(*high > *low)) {
+    return std::string(*low > 0 ? "without contrast" : "dark") + ", every pixel is " +
+           format_number(static_cast<double>(*low)) + "; check light and exposure";
+  }
   const auto full = std::count(raw.values.begin(), raw.values.end(), *high);
   constexpr double allowed = 0.02;
   const double part = static_cast<double>(full) / static_cast<double>(raw.size());

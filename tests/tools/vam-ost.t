@@ -107,15 +107,21 @@ fails 65 'the turn is incomplete' vam-ost views --step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
 fails 65 'not a record' vam-ost views --step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
 fails 66 'absent' vam-ost absent.exr -o x.vdb
-mkdir dark; cp views/* dark
-first=$(ls dark | head -n 1)
-python3 - "dark/$first" <<'PY'
+cat >flat.py <<'PY'
 import struct, sys, zlib
 def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-w, h = 333, 40
-open(sys.argv[1], "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, 8, 0, 0, 0, 0)) +
-    chunk(b"IDAT", zlib.compress(b"".join(b"\0" + bytes(w) for _ in range(h)))) + chunk(b"IEND", b""))
+path, w, h, level = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), int(sys.argv[4])  # the left half at that level
+row = b"\0" + bytes([level]) * (w // 2) + bytes(w - w // 2)
+open(path, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", w, h, 8, 0, 0, 0, 0)) +
+    chunk(b"IDAT", zlib.compress(row * h)) + chunk(b"IEND", b""))
 PY
+for wrong in dark saturated sizes; do mkdir $wrong; cp views/* $wrong; done
+first=$(ls views | head -n 1); last=$(ls views | grep png | tail -n 1)
+python3 flat.py "dark/$first" 333 40 0
+python3 flat.py "saturated/$first" 333 40 255
+python3 flat.py "sizes/$last" 300 40 100
+fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --step 6 $rig -o x.vdb
+fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --step 6 $rig -o x.vdb
 fails 65 'dark, every pixel' vam-ost dark --step 6 $rig -o x.vdb
 
 done_testing
