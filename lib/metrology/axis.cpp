@@ -98,7 +98,8 @@ Normal normal_of(const Image& image, double column, double bound) {
   for (int y = 1; y + 1 < image.height; ++y) {
     const float* rows[3] = {image.row(y - 1), image.row(y), image.row(y + 1)};
     const double along = y - middle;
-    for (double x = 0.5; x < reach; x += 1) {
+    for (int pixel = 0; pixel + 0.5 < reach; ++pixel) {
+      const double x = pixel + 0.5;
       const double right = column + x;
       const double left = column - x;
       const auto m = [&](int row, double where) { return at(rows[row], image.width, where); };

@@ -192,10 +192,10 @@ std::vector<Matrix3d> undetermined_turns(const Vector3d& spread) {
   const bool high_pair = spread[2] - spread[1] < alike * spread[2];
   std::vector<Matrix3d> turns{Matrix3d::Identity()};
   if (low_pair && high_pair) {
-    constexpr double coarse_deg = 30;
-    for (double a = 0; a < 90; a += coarse_deg) {
-      for (double b = 0; b < 90; b += coarse_deg) {
-        for (double c = 0; c < 90; c += coarse_deg) {
+    constexpr int coarse_deg = 30;
+    for (int a = 0; a < 90; a += coarse_deg) {
+      for (int b = 0; b < 90; b += coarse_deg) {
+        for (int c = 0; c < 90; c += coarse_deg) {
           if (a + b + c == 0) continue;
           const double rad = std::numbers::pi / 180;
           turns.push_back(

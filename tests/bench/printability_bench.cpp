@@ -52,16 +52,34 @@ void target() {
   }
 }
 
-/// 64 different slices: gyroid sections of different height.
+/// The resolution target in one of 64 places: mirrored in x, in y, along the diagonal, and moved by up to 7 pixels.
+std::vector<float> target_in_place(const std::vector<float>& target, int size, int place) {
+  std::vector<float> moved(target.size(), 0.0F);
+  const auto at = [size](int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x);
+  };
+  const int shift = place / 8;
+  for (int y = 0; y < size; ++y) {
+    for (int x = shift; x < size; ++x) {
+      const int u = (place & 1) != 0 ? size - 1 - (x - shift) : x - shift;
+      const int v = (place & 2) != 0 ? size - 1 - y : y;
+      moved[at(x, y)] = (place & 4) != 0 ? target[at(v, u)] : target[at(u, v)];
+    }
+  }
+  return moved;
+}
+
+/// 64 different slices of one pass.
 void stack() {
   const int size = 512;
+  const auto target = oracle::resolution_target(size);
   std::vector<std::vector<float>> slices;
-  for (int k = 0; k < 64; ++k) slices.push_back(oracle::gyroid(size, 3, 0.1 * k, 0.4));
+  for (int k = 0; k < 64; ++k) slices.push_back(target_in_place(target, size, k));
   std::vector<model::DoseMetrics> m;
   const Budget& budget = budgets().back();
   const double time = seconds([&] { m = parts::run(slices, size, 360, budget.method, {}, budget.iterations); });
-  print("64 gyroid slices", budget, *std::min_element(m.begin(), m.end(), [](auto& a, auto& b) { return a.pw < b.pw; }),
-        time, 64);
+  print("64 resolution slices", budget,
+        *std::min_element(m.begin(), m.end(), [](auto& a, auto& b) { return a.pw < b.pw; }), time, 64);
 }
 
 /// One osmo iteration on 315^3 voxels: five passes of at most 64 slices, start left out.
