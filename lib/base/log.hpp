@@ -5,8 +5,6 @@
 #include <chrono>
 #include <string>
 
-#include "base/text.hpp"
-
 namespace vam {
 
 /// The name that begins every line on stderr ("vam-slice: ..."); set once by cli::App.

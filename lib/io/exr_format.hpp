@@ -6,6 +6,8 @@
 
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>   // whole, so that nobody takes io::InputFile and io::OutputFile for what
+#include <OpenEXR/ImfOutputFile.h>  // ImfForward.h announces
 
 #include <bit>
 #include <cstddef>

@@ -48,16 +48,18 @@ CoordBBox box_of(const FloatGrid& sparse) {
   if (const auto shape = sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
     const openvdb::Vec3i size = shape->value();
     const auto origin = sparse.getMetadata<openvdb::Vec3IMetadata>(first_key);
-    const Coord first = origin ? Coord(origin->value()) : Coord(0);
+    const openvdb::Vec3i first = origin ? origin->value() : openvdb::Vec3i(0);
     bool sane = true;
     for (int axis = 0; axis < 3; ++axis) {
       sane = sane && size[axis] >= 1 && size[axis] <= max_side && std::abs(first[axis]) < (1 << 30);
     }
     if (!sane) throw std::runtime_error("grid '" + sparse.getName() + "' has an impossible vam:shape");
-    box.expand(CoordBBox(first, first + Coord(size) - Coord(1)));
+    box.expand(CoordBBox(Coord(first), Coord(first + size) - Coord(1)));
   }
   if (box.empty()) throw std::runtime_error("grid '" + sparse.getName() + "' is empty");
-  const auto side = [&box](int axis) { return std::int64_t{box.max()[axis]} - box.min()[axis] + 1; };
+  const auto side = [low = box.min().asVec3i(), high = box.max().asVec3i()](int axis) {
+    return std::int64_t{high[axis]} - low[axis] + 1;
+  };
   if (side(0) > max_side || side(1) > max_side || side(2) > max_side || side(0) * side(1) > max_slice) {
     throw std::runtime_error("grid '" + sparse.getName() + "' spans " + std::to_string(side(0)) + " x " +
                              std::to_string(side(1)) + " x " + std::to_string(side(2)) +

@@ -17,7 +17,7 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr int slabs_a_pass = 4;  // tomo shares its weights among four slabs
+constexpr int slices_a_pass = 4 * tomo::lanes;  // tomo shares its weights among four slabs
 
 // Camera sinograms of all z slices, k = 0 lowest: columns x angles.
 std::vector<Image> camera_sinograms(std::span<const View> views, const AngleGrid& turn, const AxisPose& axis,
@@ -57,6 +57,24 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
   }
 }
 
+// As many slabs as it takes, 16 slices in each.
+std::vector<tomo::Slab> packed(std::span<const Image> slices) {
+  constexpr std::size_t lanes = tomo::lanes;
+  const Image& first = slices.front();
+  std::vector<tomo::Slab> slabs((slices.size() + lanes - 1) / lanes, tomo::Slab(first.width, first.height));
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    float* out = slabs[k / lanes].values.data() + k % lanes;
+    for (std::size_t i = 0; i < slices[k].size(); ++i) out[i * lanes] = slices[k].values[i];
+  }
+  return slabs;
+}
+
+void scale(std::vector<tomo::Slab>& slabs, float factor) {
+  for (auto& slab : slabs) {
+    for (float& value : slab.values) value *= factor;
+  }
+}
+
 }  // namespace
 
 struct OstReconstructor::State {
@@ -84,6 +102,8 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<Image> virtual_sinograms(const std::vector<Image>& sinograms) const;
   void refine(const tomo::ParallelGeometry& geometry, const std::vector<tomo::Slab>& sinograms,
               std::vector<tomo::Slab>& images) const;
+  [[nodiscard]] std::vector<tomo::Slab> densities(const tomo::ParallelGeometry& geometry, const tomo::Filter& filter,
+                                                  const std::vector<tomo::Slab>& sinograms) const;
 };
 
 OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows,
@@ -168,51 +188,46 @@ void OstReconstructor::State::refine(const tomo::ParallelGeometry& geometry, con
   }
 }
 
+// Filtered back-projection, where asked for the start of MLEM; densities in 1/mm.
+std::vector<tomo::Slab> OstReconstructor::State::densities(const tomo::ParallelGeometry& geometry,
+                                                           const tomo::Filter& filter,
+                                                           const std::vector<tomo::Slab>& sinograms) const {
+  std::vector<tomo::Slab> filtered = sinograms;
+  for (auto& slab : filtered) filter.apply(slab);
+  std::vector<tomo::Slab> images(sinograms.size(), tomo::Slab(geometry.nx, geometry.ny));
+  tomo::adjoint(geometry, filtered, images);
+  const float to_density = static_cast<float>(0.5 * geometry.angle_step_rad / grid.voxel_mm);
+  const bool statistical = options.statistical > 0;
+  scale(images, statistical ? to_density * static_cast<float>(grid.voxel_mm) : to_density);
+  if (options.non_negative) {
+    for (auto& image : images) {
+      for (float& x : image.values) x = std::max(x, 0.0F);
+    }
+  }
+  if (statistical) {
+    refine(geometry, sinograms, images);
+    scale(images, static_cast<float>(1 / grid.voxel_mm));
+  }
+  return images;
+}
+
 model::Volume OstReconstructor::reconstruct(std::span<const View> views) const {
   const State& s = *state_;
   std::vector<double> angles_deg;
   for (const View& view : views) angles_deg.push_back(view.angle_deg);
   const AngleGrid turn(angles_deg, 0);
-  const int angles = turn.summary().angles;
   const auto sinograms = s.virtual_sinograms(camera_sinograms(views, turn, s.axis, s.row_stretch, s.grid.nz));
 
-  const auto geometry = s.geometry(angles);
+  const auto geometry = s.geometry(turn.summary().angles);
   const tomo::Filter filter(geometry.columns, {.window = tomo::window_from_name(s.options.window)});
-  const float to_density = static_cast<float>(0.5 * geometry.angle_step_rad / s.grid.voxel_mm);
-  const auto per_voxel = static_cast<float>(1 / s.grid.voxel_mm);
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
-  const int slabs = (s.grid.nz + tomo::lanes - 1) / tomo::lanes;
-  for (int first = 0; first < slabs; first += slabs_a_pass) {
-    const int count = std::min(slabs_a_pass, slabs - first);
-    std::vector<tomo::Slab> measured(static_cast<std::size_t>(count), tomo::Slab(geometry.columns, angles));
-    std::vector<tomo::Slab> images(static_cast<std::size_t>(count), tomo::Slab(geometry.nx, geometry.ny));
-    for (int b = 0; b < count; ++b) {
-      const int k0 = (first + b) * tomo::lanes;
-      for (int lane = 0; lane < std::min(tomo::lanes, s.grid.nz - k0); ++lane) {
-        const Image& sinogram = sinograms[static_cast<std::size_t>(k0 + lane)];
-        float* out = measured[static_cast<std::size_t>(b)].values.data() + lane;
-        for (std::size_t i = 0; i < sinogram.size(); ++i) out[i * tomo::lanes] = sinogram.values[i];
-      }
-    }
-    std::vector<tomo::Slab> filtered = measured;
-    for (auto& slab : filtered) filter.apply(slab);
-    tomo::adjoint(geometry, filtered, images);
-    const bool statistical = s.options.statistical > 0;
-    for (auto& image : images) {
-      for (float& x : image.values) {
-        x *= statistical ? to_density * static_cast<float>(s.grid.voxel_mm) : to_density;
-        if (s.options.non_negative) x = std::max(x, 0.0F);
-      }
-    }
-    if (statistical) {
-      s.refine(geometry, measured, images);
-      for (auto& image : images) {
-        for (float& x : image.values) x *= per_voxel;
-      }
-    }
-    for (int b = 0; b < count; ++b) {
-      const int k0 = (first + b) * tomo::lanes;
-      tomo::unpack(images[static_cast<std::size_t>(b)], std::min(tomo::lanes, s.grid.nz - k0), volume.slice(k0));
+  for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
+    const int count = std::min(slices_a_pass, s.grid.nz - first);
+    const auto slices = std::span(sinograms).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    const auto images = s.densities(geometry, filter, packed(slices));
+    for (int k = 0; k < count; k += tomo::lanes) {
+      const auto& image = images[static_cast<std::size_t>(k / tomo::lanes)];
+      tomo::unpack(image, std::min(tomo::lanes, count - k), volume.slice(first + k));
     }
   }
   return volume;

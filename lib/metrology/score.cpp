@@ -50,8 +50,7 @@ const std::vector<Figure>& figure_list() {
 
 }  // namespace
 
-Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options), width_(width), height_(height), statistics_(options.threshold) {
+Score::Score(const ScoreOptions& options, int width, int height) : options_(options), statistics_(options.threshold) {
   inside_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

@@ -48,8 +48,7 @@ class Score {
 
  private:
   ScoreOptions options_;
-  int width_, height_;
-  std::vector<bool> inside_;
+  std::vector<bool> inside_;  // of a slice, whether the circle has it
   model::DoseStatistics statistics_;
   model::LightEfficiency light_;
   std::int64_t surface_ = 0;

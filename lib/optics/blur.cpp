@@ -22,7 +22,7 @@ void add_row(float* to, const float* from, float weight, int count) {
 // Row blurred along x; outside it is dark.
 void blur_row(const float* from, const std::vector<float>& weights, int width, std::vector<float>& padded, float* to) {
   const int reach = static_cast<int>(weights.size()) - 1;
-  padded.assign(static_cast<std::size_t>(width + 2 * reach), 0.0F);
+  padded.assign(static_cast<std::size_t>(width) + 2 * (weights.size() - 1), 0.0F);
   std::copy_n(from, width, padded.data() + reach);
   std::fill_n(to, width, 0.0F);
   for (int n = -reach; n <= reach; ++n) {

@@ -108,6 +108,7 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
   slice.first = std::clamp(low, 0, place_.columns);
   slice.width = std::max(std::min(high + 1, place_.columns) - slice.first, 0);
   slice.values.reserve(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(sinogram.height));
+  float* peak = column_peak_.data() + place_.columns;
   for (int a = 0; a < sinogram.height; ++a) {
     const float* row = sinogram.row(a);
     for (int x = low; x <= high; ++x) {
@@ -116,8 +117,7 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
         const int c = x + taps.first + t;
         if (c >= 0 && c < sinogram.width) value += taps.weights[static_cast<std::size_t>(t)] * row[c];
       }
-      float& most = column_peak_[static_cast<std::size_t>(x + place_.columns)];
-      most = std::max(most, value);
+      peak[x] = std::max(peak[x], value);
       if (x >= 0 && x < place_.columns) slice.values.push_back(value);
     }
   }
@@ -126,8 +126,9 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
 void FrameComposer::check_columns(float dark) const {
   int low = 2 * place_.columns;
   int high = -place_.columns - 1;
+  const float* peak = column_peak_.data() + place_.columns;
   for (int x = -place_.columns; x < 2 * place_.columns; ++x) {
-    if (column_peak_[static_cast<std::size_t>(x + place_.columns)] <= dark) continue;
+    if (peak[x] <= dark) continue;
     low = std::min(low, x);
     high = std::max(high, x);
   }

@@ -116,7 +116,7 @@ void resample(const ResamplePlan& plan, std::span<const Image> in, std::span<Ima
   parallel_for(groups * tiles, [&](int item) {
     const int first = item % tiles * tile_columns;
     const int last = std::min(first + tile_columns, plan.columns_out);
-    const auto slice = static_cast<std::size_t>(item / tiles * lanes);
+    const auto slice = static_cast<std::size_t>(item / tiles) * lanes;
     const auto count = std::min<std::size_t>(lanes, in.size() - slice);
     resample_tile(plan, kernel, first, last, in.subspan(slice, count), out.subspan(slice, count));
   });

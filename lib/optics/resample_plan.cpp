@@ -80,9 +80,8 @@ void add_source(ResamplePlan& plan, Interpolation interpolation, double column, 
   source.first = std::max(first, 0);
   source.count = std::max(0, std::min(last, plan.columns_in - 1) - source.first + 1);
   source.weights = plan.weights.size();
-  for (int k = 0; k < source.count; ++k) {
-    plan.weights.push_back(static_cast<float>(weight * taps[static_cast<std::size_t>(source.first - first + k)]));
-  }
+  const double* inside = taps.data() + (source.first - first);
+  for (int k = 0; k < source.count; ++k) plan.weights.push_back(static_cast<float>(weight * inside[k]));
   // Output row a wants input position row + sense * a: four taps around it, the first one row below.
   const double below = std::floor(row);
   const double part = row - below;

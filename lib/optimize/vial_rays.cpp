@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/simd.hpp"
+#include "base/text.hpp"
 #include "optics/resample_stack.hpp"
 
 namespace vam::optimize {

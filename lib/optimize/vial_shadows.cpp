@@ -45,13 +45,28 @@ float VialShadows::depth(int i, int j, int row, int column) const {
   return static_cast<float>(y * ray.cosine - x * ray.sine);
 }
 
+VialShadows::Sight VialShadows::sight(const VialTaps& taps, int r, int row) const {
+  const int cell = taps.cell[r] - r * stride_;
+  const float light = taps.left[r] + taps.right[r];
+  const double place = cell + (light > 0 ? static_cast<double>(taps.right[r] / light) : 0.0);
+  const Direction& part = rows_[static_cast<std::size_t>(row)];
+  const Direction& ray = columns_[static_cast<std::size_t>(cell)];
+  const double c = part.cosine * ray.cosine - part.sine * ray.sine;  // of theta + delta
+  const double s = part.sine * ray.cosine + part.cosine * ray.sine;
+  const double extent = std::abs(c) + std::abs(s);  // of a voxel, across and along the ray
+  const double half = half_[static_cast<std::size_t>(cell)] * extent;
+  return {std::max(static_cast<int>(std::ceil(place - half)), 0),
+          std::min(static_cast<int>(std::floor(place + half)), stride_ - 1),
+          static_cast<float>(0.5 * extent * grid_.voxel_mm)};
+}
+
 /// Every column that sees part of an opaque voxel ends at the voxel's near side.
 void VialShadows::cast(const VialRays& rays, const tomo::Slab& insert, tomo::Slab& reach) const {
   std::fill(reach.values.begin(), reach.values.end(), far_away);
   const int blocks = (reach.height + vial_rows - 1) / vial_rows;
   parallel_for(blocks, [&](int block) {
-    const int row = block * vial_rows;
-    const int rows = std::min(vial_rows, reach.height - row);
+    const int first = block * vial_rows;
+    const int rows = std::min(vial_rows, reach.height - first);
     VialRays::Voxel voxel{};
     VialTaps taps;
     for (int j = 0; j < grid_.ny; ++j) {
@@ -59,22 +74,13 @@ void VialShadows::cast(const VialRays& rays, const tomo::Slab& insert, tomo::Sla
         const float* coverage = insert.at(i, j);
         if (std::none_of(coverage, coverage + lanes, [](float v) { return v >= opaque; })) continue;
         if (!rays.find(i, j, voxel)) continue;
-        rays.taps(voxel, row, rows, taps);
+        rays.taps(voxel, first, rows, taps);
         for (int r = 0; r < rows; ++r) {
-          const int cell = taps.cell[r] - r * stride_;
-          const float light = taps.left[r] + taps.right[r];
-          const double place = cell + (light > 0 ? static_cast<double>(taps.right[r] / light) : 0.0);
-          const Direction& part = rows_[static_cast<std::size_t>(row + r)];
-          const Direction& ray = columns_[static_cast<std::size_t>(cell)];
-          const double c = part.cosine * ray.cosine - part.sine * ray.sine;  // of theta + delta
-          const double s = part.sine * ray.cosine + part.cosine * ray.sine;
-          const double extent = std::abs(c) + std::abs(s);  // of a voxel, across and along the ray
-          const double half = half_[static_cast<std::size_t>(cell)] * extent;
-          const auto near = static_cast<float>(0.5 * extent * grid_.voxel_mm);
-          const int last = std::min(static_cast<int>(std::floor(place + half)), stride_ - 1);
-          for (int at = std::max(static_cast<int>(std::ceil(place - half)), 0); at <= last; ++at) {
-            float* ends = reach.at(at, row + r);
-            const float u = depth(i, j, row + r, at) - near;
+          const int row = first + r;
+          const Sight seen = sight(taps, r, row);
+          for (int column = seen.first; column <= seen.last; ++column) {
+            float* ends = reach.at(column, row);
+            const float u = depth(i, j, row, column) - seen.near_mm;
             for (int lane = 0; lane < lanes; ++lane) {
               if (coverage[lane] >= opaque) ends[lane] = std::min(ends[lane], u);
             }
@@ -85,32 +91,31 @@ void VialShadows::cast(const VialRays& rays, const tomo::Slab& insert, tomo::Sla
   });
 }
 
-void VialShadows::gather(std::size_t slab, int i, int j, int row, int rows, const VialTaps& taps, const float* light,
-                         float* voxel) const {
+template <class Visit>
+void VialShadows::each_ray(const tomo::Slab& reach, int i, int j, int row, int rows, const VialTaps& taps,
+                           const Visit& visit) const {
   for (int r = 0; r < rows; ++r) {
     for (const int side : {0, 1}) {
       const int column = taps.cell[r] - r * stride_ + side;
       const float weight = side == 0 ? taps.left[r] : taps.right[r];
       const float u = depth(i, j, row + r, column);
-      const float* ends = reach_[slab].at(column, row + r);
-      const float* from = light + static_cast<std::ptrdiff_t>(taps.cell[r] + side) * lanes;
-      for (int lane = 0; lane < lanes; ++lane) voxel[lane] += u < ends[lane] ? weight * from[lane] : 0.0F;
+      const float* ends = reach.at(column, row + r);
+      const auto at = static_cast<std::ptrdiff_t>(taps.cell[r] + side) * lanes;
+      for (int lane = 0; lane < lanes; ++lane) visit(at, lane, u < ends[lane] ? weight : 0.0F);
     }
   }
 }
 
+void VialShadows::gather(std::size_t slab, int i, int j, int row, int rows, const VialTaps& taps, const float* light,
+                         float* voxel) const {
+  each_ray(reach_[slab], i, j, row, rows, taps,
+           [&](std::ptrdiff_t at, int lane, float weight) { voxel[lane] += weight * light[at + lane]; });
+}
+
 void VialShadows::scatter(std::size_t slab, int i, int j, int row, int rows, const VialTaps& taps, const float* voxel,
                           float* light) const {
-  for (int r = 0; r < rows; ++r) {
-    for (const int side : {0, 1}) {
-      const int column = taps.cell[r] - r * stride_ + side;
-      const float weight = side == 0 ? taps.left[r] : taps.right[r];
-      const float u = depth(i, j, row + r, column);
-      const float* ends = reach_[slab].at(column, row + r);
-      float* to = light + static_cast<std::ptrdiff_t>(taps.cell[r] + side) * lanes;
-      for (int lane = 0; lane < lanes; ++lane) to[lane] += u < ends[lane] ? weight * voxel[lane] : 0.0F;
-    }
-  }
+  each_ray(reach_[slab], i, j, row, rows, taps,
+           [&](std::ptrdiff_t at, int lane, float weight) { light[at + lane] += weight * voxel[lane]; });
 }
 
 }  // namespace vam::optimize

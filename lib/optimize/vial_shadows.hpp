@@ -26,8 +26,18 @@ class VialShadows {
                float* light) const;
 
  private:
+  /// The columns that see a voxel at stage angle `row`, and how far its near side is before its middle.
+  struct Sight {
+    int first, last;
+    float near_mm;
+  };
+  [[nodiscard]] Sight sight(const VialTaps& taps, int r, int row) const;
   void cast(const VialRays& rays, const tomo::Slab& insert, tomo::Slab& reach) const;
   [[nodiscard]] float depth(int i, int j, int row, int column) const;
+  /// visit(offset of the ray's light, lane, weight), weight 0 in the shadow: what gather and scatter share.
+  template <class Visit>
+  void each_ray(const tomo::Slab& reach, int i, int j, int row, int rows, const VialTaps& taps,
+                const Visit& visit) const;
 
   struct Direction {
     double cosine, sine;

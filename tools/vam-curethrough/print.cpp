@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/response_file.hpp"
 #include "printer.hpp"
 
