@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "optimize/pass.hpp"
+#include "model/circle.hpp"
+#include "optimize/per_slice.hpp"
 #include "optimize/preconditioner.hpp"
 
 namespace vam::optimize {
@@ -83,7 +84,7 @@ void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> s
 /// the disc, is divided out of the objects.
 void AttenuatedOperator::divide_by_disc_dose(std::span<Slab> objects) const {
   std::vector<Slab> disc = slabs(1, dose_.nx, dose_.ny);
-  const Circle circle{dose_.axis_x, dose_.axis_y, std::min(radius_, 0.5 * dose_.columns - 1)};
+  const model::Circle circle{dose_.axis_x, dose_.axis_y, std::min(radius_, 0.5 * dose_.columns - 1)};
   for (int y = 0; y < dose_.ny; ++y) {
     for (int x = 0; x < dose_.nx; ++x) std::fill_n(disc[0].at(x, y), lanes, circle.contains(x, y) ? 1.0F : 0.0F);
   }

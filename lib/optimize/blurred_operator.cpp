@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "optics/blur.hpp"
-#include "optimize/pass.hpp"
+#include "optimize/per_slice.hpp"
 
 namespace vam::optimize {
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "optimize/method.hpp"
+#include "optimize/metrics.hpp"
 
 namespace vam::optimize {
 

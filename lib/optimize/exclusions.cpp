@@ -1,7 +1,6 @@
-#include <algorithm>
+#include "optimize/exclusions.hpp"
 
-#include "optimize/operator.hpp"
-#include "optimize/pass.hpp"
+#include <algorithm>
 
 namespace vam::optimize {
 

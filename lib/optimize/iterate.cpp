@@ -1,6 +1,7 @@
 #include "optimize/iterate.hpp"
 
 #include "model/figures.hpp"
+#include "optimize/metrics.hpp"
 #include "optimize/slice_figures.hpp"
 
 namespace vam::optimize {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "optimize/pass.hpp"
+#include "optimize/problem.hpp"
 
 namespace vam::optimize {
 
@@ -33,8 +33,5 @@ inline float loss(const Problem& problem, const Window& window, std::size_t s, s
   const float miss = bounds(problem, window, s, i).miss(dose);
   return 0.5F * problem.weight_at(s, i) * miss * miss;
 }
-
-/// The loss of each slice: the sum over its voxels.
-[[nodiscard]] PerSlice loss(std::span<const Slab> dose, const Problem& problem);
 
 }  // namespace vam::optimize

@@ -7,7 +7,7 @@
 
 #include "optimize/archive.hpp"
 #include "optimize/operator.hpp"
-#include "optimize/pass.hpp"
+#include "optimize/problem.hpp"
 
 namespace vam::optimize {
 

@@ -1,5 +1,6 @@
 #include "base/error.hpp"
 #include "optimize/method.hpp"
+#include "optimize/metrics.hpp"
 
 namespace vam::optimize {
 

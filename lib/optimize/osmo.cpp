@@ -4,6 +4,7 @@
 
 #include "optimize/loss.hpp"
 #include "optimize/method.hpp"
+#include "optimize/metrics.hpp"
 #include "optimize/safeguard.hpp"
 
 namespace vam::optimize {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
-#include "optimize/pass.hpp"
+#include "optimize/per_slice.hpp"
 #include "optimize/preconditioner.hpp"
 
 namespace vam::optimize {

@@ -1,14 +1,19 @@
 #include "optimize/slice_reader.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.hpp"
+#include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "optimize/pass.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::optimize {
 
 namespace {
+
+using model::Circle;
+using tomo::lanes;
 
 /// What the checks want to know of one slice.
 struct Findings {
@@ -27,6 +32,17 @@ long overlap(const SliceData& slice) {
     shared += slice.target[i] + slice.insert[i] > more_than_full ? 1 : 0;
   }
   return shared;
+}
+
+/// Distance from the axis to the farthest voxel centre with coverage, in voxels; -1 for an empty slice.
+double reach(const float* slice, int width, int height, double axis_x, double axis_y) {
+  double farthest = -1;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      if (*slice++ > model::coverage_rounding) farthest = std::max(farthest, std::hypot(x - axis_x, y - axis_y));
+    }
+  }
+  return farthest;
 }
 
 bool void_inside(const float* slice, Shape shape, const Circle& circle) {

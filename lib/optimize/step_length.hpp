@@ -2,7 +2,7 @@
 #pragma once
 
 #include "optimize/operator.hpp"
-#include "optimize/pass.hpp"
+#include "optimize/problem.hpp"
 
 namespace vam::optimize {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "optimize/pass.hpp"
+#include "optimize/per_slice.hpp"
 
 namespace vam::optimize {
 

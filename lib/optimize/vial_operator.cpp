@@ -5,7 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
-#include "optimize/pass.hpp"
+#include "optimize/per_slice.hpp"
 #include "optimize/preconditioner.hpp"
 
 namespace vam::optimize {

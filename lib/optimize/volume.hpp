@@ -9,19 +9,11 @@
 
 #include "base/image.hpp"
 #include "base/json.hpp"
+#include "optimize/interruption.hpp"
 #include "optimize/iterate.hpp"
 #include "optimize/slice_reader.hpp"
 
 namespace vam::optimize {
-
-/// How a run can be broken off and go on. What goes out through `to` is all that `from` needs to go on as if nothing
-/// had happened; a finished run leaves nothing of use there.
-struct Interruption {
-  Pause pause;              // may be empty
-  Archive* to = nullptr;    // where the state goes; none: nothing is kept
-  Archive* from = nullptr;  // the state to go on from; none: from the start
-  std::string job;          // what the state must be of: method, options, light
-};
 
 struct VolumeTask {
   VolumeSource source;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optimize/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "optics/blur.hpp"
+#include "optimize/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "optimize/loss.hpp"
+#include "optimize/metrics.hpp"
 #include "optimize/surface_band.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"

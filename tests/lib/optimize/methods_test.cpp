@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "optimize/loss.hpp"
+#include "optimize/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 
@@ -17,6 +18,12 @@ constexpr int size = 192;
 std::vector<std::vector<float>> some_parts() {
   return {oracle::disc_grid(size, 0.65), oracle::gyroid(size, 3, 0.7, 0.4), oracle::wheel(size),
           oracle::resolution_target(size)};
+}
+
+PerSlice losses(const std::vector<Slab>& dose, const Problem& problem) {
+  return summed(dose, [&](std::size_t s, std::size_t i) {
+    return loss(problem, problem.demands.window, s, i, dose[s].values[i]);
+  });
 }
 
 }  // namespace
@@ -65,10 +72,10 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
   const auto method = make_method("apg", options);
   Iterate state;
   method->start(problem, light, state);
-  PerSlice before = loss(state.dose, problem);
+  PerSlice before = losses(state.dose, problem);
   for (int i = 0; i < 20; ++i) {
     method->step(problem, light, state);
-    const PerSlice now = loss(state.dose, problem);
+    const PerSlice now = losses(state.dose, problem);
     for (std::size_t s = 0; s < 4; ++s) CHECK(now[0][s] <= before[0][s]);
     before = now;
   }
@@ -118,10 +125,10 @@ TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's lo
   const auto method = make_method("pm", {});  // p = 2: twice the one-sided loss
   Iterate state;
   method->start(problem, light, state);
-  float before = loss(state.dose, problem)[0][0];
+  float before = losses(state.dose, problem)[0][0];
   for (int i = 0; i < 15; ++i) {
     method->step(problem, light, state);
-    const float now = loss(state.dose, problem)[0][0];
+    const float now = losses(state.dose, problem)[0][0];
     CHECK(now <= before * 1.00001F);  // the same sum, rounded in another way
     before = now;
   }
@@ -145,7 +152,7 @@ TEST_CASE("osmo's and cal's loss never rises: osmo's by itself, cal's by line se
     Iterate state;
     method->start(problem, light, state);
     const auto now = [&] {
-      return name == "osmo" ? loss(state.dose, problem) : summed(state.dose, [&](std::size_t s, std::size_t i) {
+      return name == "osmo" ? losses(state.dose, problem) : summed(state.dose, [&](std::size_t s, std::size_t i) {
         return cross(s, i, state.dose[s].values[i]);
       });
     };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "optimize/iterate.hpp"
+#include "optimize/metrics.hpp"
 #include "optimize/parallel_operator.hpp"
 
 namespace parts {

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "optimize/attenuated_operator.hpp"
+#include "optimize/exclusions.hpp"
+#include "optimize/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "parts.hpp"
 
