@@ -1,4 +1,3 @@
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -9,12 +8,11 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "device/display_backends.hpp"
+#include "device/drm_output.hpp"
 #include "device/interrupt.hpp"
 
 namespace vam::device {
@@ -25,87 +23,11 @@ constexpr double flip_timeout_s = 0.25;  // less than the guardian's patience
 
 std::string reason() { return std::string(" (") + std::strerror(errno) + ")"; }
 
-// What of the card's resources one connector needs.
-struct Output {
-  int card = -1;
-  std::uint32_t connector = 0;
-  std::uint32_t crtc = 0;
-  drmModeModeInfo mode{};
-};
-
-struct ResourcesCloser {
-  void operator()(drmModeRes* resources) const { drmModeFreeResources(resources); }
-};
-struct ConnectorCloser {
-  void operator()(drmModeConnector* connector) const { drmModeFreeConnector(connector); }
-};
-
-std::string connector_name(const drmModeConnector& connector) {
-  const char* type = drmModeGetConnectorTypeName(connector.connector_type);
-  return std::string(type != nullptr ? type : "Unknown") + "-" + std::to_string(connector.connector_type_id);
-}
-
-// The CRTC that drives the connector already, else the first one that can.
-std::uint32_t crtc_for(int card, const drmModeRes& resources, const drmModeConnector& connector) {
-  if (drmModeEncoder* current = drmModeGetEncoder(card, connector.encoder_id)) {
-    const std::uint32_t crtc = current->crtc_id;
-    drmModeFreeEncoder(current);
-    if (crtc != 0) return crtc;
-  }
-  for (int e = 0; e < connector.count_encoders; ++e) {
-    drmModeEncoder* encoder = drmModeGetEncoder(card, connector.encoders[e]);
-    if (encoder == nullptr) continue;
-    const std::uint32_t possible = encoder->possible_crtcs;
-    drmModeFreeEncoder(encoder);
-    for (int c = 0; c < resources.count_crtcs; ++c) {
-      if ((possible >> c & 1U) != 0) return resources.crtcs[c];
-    }
-  }
-  return 0;
-}
-
-drmModeModeInfo preferred_mode(const drmModeConnector& connector) {
-  const auto* begin = connector.modes;
-  const auto* end = begin + connector.count_modes;
-  const auto* best =
-      std::find_if(begin, end, [](const drmModeModeInfo& m) { return (m.type & DRM_MODE_TYPE_PREFERRED) != 0; });
-  return best != end ? *best : *begin;
-}
-
-bool find_output(int card, const std::string& wanted, Output& output, std::vector<std::string>& seen) {
-  const std::unique_ptr<drmModeRes, ResourcesCloser> resources(drmModeGetResources(card));
-  if (!resources) return false;
-  for (int i = 0; i < resources->count_connectors; ++i) {
-    const std::unique_ptr<drmModeConnector, ConnectorCloser> connector(
-        drmModeGetConnector(card, resources->connectors[i]));
-    if (!connector) continue;
-    const bool connected = connector->connection == DRM_MODE_CONNECTED && connector->count_modes > 0;
-    seen.push_back(connector_name(*connector) + (connected ? "" : " (nothing connected)"));
-    if (!connected || connector_name(*connector) != wanted) continue;
-    output = {card, connector->connector_id, crtc_for(card, *resources, *connector), preferred_mode(*connector)};
-    return output.crtc != 0;
-  }
-  return false;
-}
-
-Output open_output(const std::string& wanted) {
-  std::vector<std::string> seen;
-  std::error_code none;
-  std::vector<std::string> cards;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev/dri", none)) {
-    if (entry.path().filename().string().rfind("card", 0) == 0) cards.push_back(entry.path());
-  }
-  std::sort(cards.begin(), cards.end());
-  for (const auto& path : cards) {
-    const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
-    if (card < 0) continue;
-    Output output;
-    if (find_output(card, wanted, output, seen)) return output;
-    close(card);
-  }
-  throw Error{Fault::absent, "drm:" + wanted + ": no such connected screen" +
-                                 (seen.empty() ? "; there is no graphics card that may be opened"
-                                               : "; there are " + join(seen, ", "))};
+// Whose fault it is that the card refuses, once it had been ours.
+Fault fault_of_card() {
+  if (errno == ENODEV || errno == ENXIO) return Fault::absent;                  // unplugged
+  if (errno == EBUSY || errno == EACCES || errno == EPERM) return Fault::busy;  // a flip hangs, or another is master
+  return Fault::io;
 }
 
 // A picture in the card's memory.
@@ -117,7 +39,7 @@ struct Buffer {
 class DrmDisplay final : public Display {
  public:
   DrmDisplay(const std::string& connector, Clock& clock, Guardian* guardian)
-      : clock_(clock), guardian_(guardian), output_(open_output(connector)), name_("drm:" + connector) {
+      : clock_(clock), guardian_(guardian), output_(open_drm_output(connector)), name_("drm:" + connector) {
     if (drmSetMaster(output_.card) != 0) {
       const std::string why = reason();
       close(output_.card);
@@ -128,13 +50,19 @@ class DrmDisplay final : public Display {
              output_.mode.clock * 1000.0 / (output_.mode.htotal * output_.mode.vtotal)};
     black_ =
         load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * static_cast<std::size_t>(mode_.rows)));
-    show_black();
+    if (!show_black()) throw Error{Fault::absent, name_ + ": does not take its own mode" + reason()};
+    straighten_gamma(output_, name_);
   }
 
+  // Black stays on until the last copy of the card's handle is closed: master is not given up before the guardian has
+  // gone, too.
   ~DrmDisplay() override {
-    drmModeSetCrtc(output_.card, output_.crtc, black_.framebuffer, 0, 0, &output_.connector, 1, &output_.mode);
+    try {
+      if (show_black()) unwatch();
+    } catch (...) {
+      // The guardian is gone; black is on.
+    }
     for (const Buffer& buffer : frames_) drop(buffer);
-    drmDropMaster(output_.card);
     close(output_.card);
   }
 
@@ -149,14 +77,18 @@ class DrmDisplay final : public Display {
     watch(index >= 0);
     const std::uint32_t framebuffer =
         index < 0 ? black_.framebuffer : frames_[static_cast<std::size_t>(index)].framebuffer;
-    Flip flip;
-    flip.sequence = -1;
-    if (drmModePageFlip(output_.card, output_.crtc, framebuffer, DRM_MODE_PAGE_FLIP_EVENT, &flip) != 0) {
-      throw Error{Fault::io, name_ + ": the card refused a page flip" + reason()};
+    flip_.sequence = -1;
+    drm_mode_crtc_page_flip order{};
+    order.crtc_id = output_.crtc;
+    order.fb_id = framebuffer;
+    order.flags = DRM_MODE_PAGE_FLIP_EVENT;
+    order.user_data = ++asked_;
+    if (drmIoctl(output_.card, DRM_IOCTL_MODE_PAGE_FLIP, &order) != 0) {
+      throw Error{fault_of_card(), name_ + ": the card refused a page flip" + reason()};
     }
-    wait_for(flip);
+    wait_for_flip();
     if (index < 0) unwatch();
-    return flip;
+    return flip_;
   }
 
  private:
@@ -196,31 +128,36 @@ class DrmDisplay final : public Display {
     drmIoctl(output_.card, DRM_IOCTL_MODE_DESTROY_DUMB, &gone);
   }
 
-  void show_black() {
-    if (drmModeSetCrtc(output_.card, output_.crtc, black_.framebuffer, 0, 0, &output_.connector, 1, &output_.mode) !=
-        0) {
-      throw Error{Fault::absent, name_ + ": does not take its own mode" + reason()};
+  bool show_black() {
+    return drmModeSetCrtc(output_.card, output_.crtc, black_.framebuffer, 0, 0, &output_.connector, 1, &output_.mode) ==
+           0;
+  }
+
+  // An event carries the number of its flip: that of an earlier one, given up as late, may come first.
+  void read_events() {
+    alignas(drm_event_vblank) std::array<char, 1024> bytes{};
+    const ssize_t size = read(output_.card, bytes.data(), bytes.size());
+    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the card is gone"};
+    for (std::size_t at = 0; at + sizeof(drm_event_vblank) <= static_cast<std::size_t>(size);) {
+      drm_event_vblank event{};
+      std::memcpy(&event, bytes.data() + at, sizeof event);
+      at += std::max<std::size_t>(event.base.length, sizeof(drm_event));
+      if (event.base.type != DRM_EVENT_FLIP_COMPLETE || event.user_data != asked_) continue;
+      flip_ = {static_cast<long>(event.sequence), event.tv_sec + 1e-6 * event.tv_usec};
     }
   }
 
-  static void flipped(int, unsigned sequence, unsigned seconds, unsigned microseconds, void* flip) {
-    *static_cast<Flip*>(flip) = {static_cast<long>(sequence), seconds + 1e-6 * microseconds};
-  }
-
-  void wait_for(const Flip& flip) {
+  void wait_for_flip() {
     const double deadline_s = clock_.now_s() + flip_timeout_s;
-    drmEventContext context{};
-    context.version = 2;
-    context.page_flip_handler = flipped;
-    while (flip.sequence < 0) {
+    while (flip_.sequence < 0) {
       const double left_s = deadline_s - clock_.now_s();
       pollfd ready{output_.card, POLLIN, 0};
-      if (left_s <= 0 || poll(&ready, 1, static_cast<int>(left_s * 1000) + 1) <= 0) {
-        if (left_s > 0 && errno == EINTR) continue;
-        throw Error{Fault::busy,
-                    name_ + ": no flip within " + std::to_string(flip_timeout_s) + " s; is the screen on?"};
+      const int count = left_s > 0 ? poll(&ready, 1, static_cast<int>(left_s * 1000) + 1) : 0;
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) {
+        throw Error{Fault::busy, name_ + ": no flip within 0.25 s; is the screen on?"};
       }
-      drmHandleEvent(output_.card, &context);
+      read_events();
     }
     check_interrupted();
   }
@@ -245,11 +182,13 @@ class DrmDisplay final : public Display {
 
   Clock& clock_;
   Guardian* guardian_;
-  Output output_;
+  DrmOutput output_;
   std::string name_;
   DisplayMode mode_;
   Buffer black_;
   std::vector<Buffer> frames_;
+  std::uint64_t asked_ = 0;  // flips so far
+  Flip flip_;
   int action_ = 0;
 };
 

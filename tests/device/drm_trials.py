@@ -1,0 +1,129 @@
+"""Judges vam-project on a graphics card by the card's own log (drm_card.c), in a folder with part.exr and printer.toml,
+and card/ for pictures. usage: drm_trials.py pictures FRAMES FLIPS   what was shown is what FLIPS (the tool's log) says, of the PNGs
+              drm_trials.py ends TRIALS CARD.so     black in time after every end of the tool; prints a table"""
+
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True
+from screen import raw_grey  # noqa: E402
+
+ROOM, PITCH, COLUMNS, ROWS = 1 << 14, 320, 64, 48
+LIMIT_S = 0.1
+STALL_S = 0.5
+SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL]
+
+
+def lines(path):
+    text = open(path).read() if os.path.exists(path) else ""
+    return [json.loads(line) for line in text.split("\n")[:-1]]
+
+
+def picture(memory, framebuffer):
+    """Row-major grey of a picture in the card's memory."""
+    start = (framebuffer - 100) * ROOM
+    rows = [memory[start + y * PITCH:start + y * PITCH + 4 * COLUMNS] for y in range(ROWS)]
+    assert all(row[0::4] == row[1::4] == row[2::4] for row in rows)
+    return b"".join(row[0::4] for row in rows)
+
+
+def pictures(frames, flips):
+    card = lines("card/log")
+    memory = open("card/memory", "rb").read(ROOM * 1000)
+    wanted = [raw_grey(path) for path in sorted(pathlib.Path(frames).glob("*.png"))]
+    shown = {line["sequence"]: line for line in card if line["event"] == "flip"}
+    told = [line for line in lines(flips) if line["event"] == "flip"]
+    black = bytes(COLUMNS * ROWS)
+    for line in told:
+        flip = shown[line["sequence"]]
+        assert picture(memory, flip["framebuffer"]) == (black if line["frame"] < 0 else wanted[line["frame"]])
+        assert abs(flip["t_monotonic_s"] - line["t_monotonic_s"]) < 2e-6
+    lit = next(i for i, line in enumerate(card) if line.get("shade") == "lit")
+    buffers = [i for i, line in enumerate(card) if line["event"] == "buffer"]
+    assert len(buffers) == len(wanted) + 1 and buffers[-1] < lit  # all are there before the first is shown
+    sequences = [line["sequence"] for line in told]
+    missed = sum(line.get("missed", 0) for line in told)
+    assert missed == sequences[-1] - sequences[0] + 1 - len(sequences)
+    assert {line["crtc"] for line in card if line["event"] == "mode"} == {32}  # the other screen keeps its own
+    print("exact", len({line["frame"] for line in told}), missed)
+
+
+class Trial:
+    """A print on a card of its own, until a picture is on."""
+
+    def __init__(self, folder, card):
+        os.makedirs(folder + "/dri")
+        open(folder + "/dri/card0", "w").close()
+        self.log = folder + "/log"
+        self.tool = subprocess.Popen(["vam-project", "part.exr", "-o", "drm:HDMI-A-1", "--speed", "30", "--turns", "9",
+                                      "--missed", "1", "--printer", "printer.toml"],
+                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                     env=dict(os.environ, LD_PRELOAD=card, FAKE_DRM=folder, VAM_LOCK_DIR=folder))
+
+    def shown(self):
+        return [line for line in lines(self.log) if "shade" in line]
+
+    def lit(self):
+        return any(line["shade"] == "lit" for line in self.shown())
+
+    def end(self, cause):
+        self.cause = cause
+        self.ended = time.monotonic()
+        self.tool.send_signal(signal.SIGSTOP if cause == "hang" else cause)
+
+    def took(self):
+        """From the end to the vertical blank at which black is on."""
+        try:
+            self.tool.wait(3)
+        except subprocess.TimeoutExpired:
+            self.tool.kill()
+            return float("inf")
+        if self.cause in SIGNALS and self.tool.returncode != -self.cause:
+            return float("inf")
+        shown = self.shown()
+        while shown and shown[-1]["shade"] == "lit" and time.monotonic() < self.ended + 3:
+            time.sleep(0.002)
+            shown = self.shown()
+        lit = [i for i, line in enumerate(shown) if line["shade"] == "lit"]
+        return shown[lit[-1] + 1]["t_monotonic_s"] - self.ended if lit and lit[-1] + 1 < len(shown) else float("inf")
+
+
+def trials(cause, count, card):
+    """Ten at a time: most of a trial is waiting for the tool to begin."""
+    times = []
+    for first in range(0, count, 10):
+        with tempfile.TemporaryDirectory(dir=".") as folder:
+            batch = [Trial(os.path.abspath(f"{folder}/{n}"), card) for n in range(min(10, count - first))]
+            deadline = time.monotonic() + 10
+            while not all(one.lit() for one in batch) and time.monotonic() < deadline:
+                time.sleep(0.01)
+            for one in batch:
+                one.end(cause)
+                time.sleep(0.02)
+            times += [one.took() for one in batch]
+    return sorted(times)
+
+
+def ends(count, card):
+    failed = 0
+    for cause in SIGNALS + ["hang"]:
+        times = trials(cause, count, card)
+        limit = LIMIT_S + (STALL_S if cause == "hang" else 0)
+        late = sum(1 for t in times if not t <= limit)
+        failed += late
+        print(f"# {getattr(cause, 'name', cause)}: {count} trials, median {1e3 * times[count // 2]:.1f} ms, "
+              f"worst {1e3 * times[-1]:.1f} ms, {late} past {1e3 * limit:.0f} ms", flush=True)
+    sys.exit(failed > 0)
+
+
+if sys.argv[1] == "pictures":
+    pictures(*sys.argv[2:])
+else:
+    ends(int(sys.argv[2]), sys.argv[3])

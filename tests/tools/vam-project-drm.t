@@ -1,0 +1,73 @@
+#!/bin/sh
+# vam-project by page flips: the real libdrm on a simulated graphics card, whose log is the judge.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir -p locks card/dri; export VAM_LOCK_DIR
+touch card/dri/card0
+FAKE_DRM=$PWD/card; export FAKE_DRM
+ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
+card=$VAM_BUILD/lib/vam-test/drm_card.so
+cat >printer.toml <<'TOML'
+[projector]
+columns = 64
+rows = 48
+pixel_mm = 0.26
+axis_column = 31.5
+axis_row = 40
+[stage]
+speed_deg_s = 360
+TOML
+python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=64 height=36 count=3
+judge="python3 $VAM_SOURCE/tests/device/drm_trials.py"
+shown() { grep '"shade"' card/log | tail -n 1 | grep -o '"shade":"[a-z]*"'; }
+print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 "$@"; }
+
+vam-project part.exr -o frames/ --fps 1 --speed 10
+print --missed 1 --log flips 2>errors
+is 'a print by page flips ends well' "$? $(cat errors)" '0 '
+$judge pictures frames flips >judged
+is 'every flip showed the frame it was said to, at that blank' "$(cut -d' ' -f1 judged)" exact
+holds 'of 36 frames and black nearly all' "$(cut -d' ' -f2 judged) > 30"
+is 'black at the end' "$(shown)" '"shade":"black"'
+is 'the gamma table is straight' "$(grep -o '"straight":.' card/log)" '"straight":1'
+
+FAKE_DRM_FAULT=skip:10 print --missed 1 --log flips
+is 'blanks are missed' $? 0
+$judge pictures frames flips >judged
+holds 'and all counted' "$(cut -d' ' -f3 judged) >= 5"
+
+fails 69 'there are eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-2
+fails 64 'unknown option' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?hz=60'
+fails 65 'do not fit the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
+
+# Each answer of the card wrong in turn. Who loses the card cannot blacken it: its light goes off then.
+spoilt() {  # spoilt STATUS REGEX LAST-SHADE FAULT
+  begun=$(date +%s%N)
+  FAKE_DRM_FAULT=$4 print --speed 720 --missed "${5-1}" --light "sim:?log=$PWD/leds" >out 2>errors; status=$?
+  is "$4: status, in a line that says why" "$status $(wc -l <errors) $(grep -Ec -- "$2" errors)" "$1 1 1"
+  holds "$4: at once" "$(date +%s%N) - $begun < 2e9"
+  [ -z "$3" ] || is "$4: $3" "$(shown)" "\"shade\":\"$3\""
+  is "$4: the light is off" "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
+}
+spoilt 75 'the card is in use' '' not-master
+spoilt 69 'does not take its own mode' '' no-mode
+spoilt 71 "no room in the card's memory for frame 10" black no-memory:12
+spoilt 76 'gamma table' black gamma
+spoilt 75 'refused a page flip' black busy:20
+spoilt 75 'refused a page flip' '' lost:20
+spoilt 69 'refused a page flip' '' gone:20
+spoilt 75 'no flip within 0.25 s' black silent:20
+spoilt 75 'no flip within 0.25 s' black late:20
+spoilt 75 'missed 1 vertical blanks' black skip:20 0.001
+
+# A second user is turned away; a killed one leaves black and a free card.
+rm -f card/log
+LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 --speed 10 --missed 1 2>killed & first=$!
+tries=0; until grep -q lit card/log 2>/dev/null || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+fails 75 "in use by process $first;" env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
+kill -9 $first; wait $first 2>/dev/null
+is 'a killed print is killed' $? 137
+tries=0; until grep -q guardian killed || [ $tries -ge 100 ]; do tries=$((tries + 1)); sleep 0.02; done
+is 'its guardian says what it did' "$(grep -c "process $first ended without a word; screen safe" killed) $(shown)" '1 "shade":"black"'
+print --missed 1 --speed 720
+is 'the screen is free again' $? 0
+done_testing
