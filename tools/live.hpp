@@ -20,6 +20,7 @@ struct LiveOptions {
   std::string light;
   std::string log;
   std::optional<double> latency_ms;
+  int max_led_current = 0;
   double allowed_missed = device::PlayPlan{}.allowed_missed;
   std::optional<int> frames_per_turn;
   bool with_parent = false;
@@ -46,7 +47,7 @@ class Live {
       : options_(options), log_(options.log), clock_(device::real_clock()) {
     if (options.with_parent) device::end_with_parent();
     if (!options.light.empty()) {
-      light_ = device::open_light(options.light, &guardian_);
+      light_ = device::open_light(options.light, options.max_led_current, &guardian_);
       light_->prepare();
     }
     display_ = device::open_display(output, wanted, clock_, &guardian_);

@@ -105,10 +105,16 @@ cli::Manual manual() {
        "or misses too many flips, the screen is black and the light engine dark within 100 ms: a child process, the "
        "guardian, holds the order. This is software and no interlock: wire a hardware one that cuts the light. A "
        "window that goes shows the desktop behind it, so make that black and keep the pointer on another screen. The "
-       "LED current is never raised above max_current.",
+       "LED current is never raised above projector.max_led_current. When a print by drm: has ended, Linux may bring "
+       "its "
+       "text console back to the screen: keep the console elsewhere (kernel option fbcon=map:) and let --light, which "
+       "then sleeps, or a shutter have the last word.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
-       "current=0..255, max_current (100 unless given) and leds (any of r, g and b; b unless given). The engine is "
-       "woken, set to video with its gamma off, and every setting is read back before light.",
+       "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; b unless given). "
+       "The engine is woken, set to video with its gamma off, and every setting is read back before light. In the end "
+       "its LEDs are switched off, then patterns are stopped, then it is put to sleep.",
+       "Linear grey: besides the engine's gamma the table of the graphics card must be straight. drm: makes it so and "
+       "reads it back; sdl: takes that of the desktop (xrandr --gamma 1:1:1 straightens it).",
        "Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
        "x 200 slices x 400 lit columns: 115 MB), and a few frames. A sinogram cannot be turned into frames slice by "
        "slice.",
@@ -313,6 +319,7 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = settings(options);
   const model::Projector& projector = printer.projector;
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  options.live.max_led_current = projector.max_led_current;
   if (!options.pattern.plan.name.empty()) {
     return tool::run_pattern(app, options.pattern, options.live, options.output, options.stack, projector);
   }

@@ -1,12 +1,14 @@
 // TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) over USB HID.
 // Source: TI DLPU010 and DLPU018, "Programmer's Guide".
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <utility>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
+#include "base/text.hpp"
 #include "device/address.hpp"
+#include "device/clock.hpp"
 #include "device/guardian_actions.hpp"
 #include "device/light_engine.hpp"
 #include "device/sim_dlp.hpp"
@@ -33,6 +35,7 @@ constexpr unsigned char write_and_acknowledge = 0x40;
 constexpr unsigned char read_request = 0xC0;
 constexpr unsigned char not_acknowledged = 0x20;
 constexpr std::size_t header_bytes = 4;
+constexpr double wake_s = 10;
 
 // flags, sequence, length (little endian, of command and data), CMD3, CMD2, data
 std::string report(unsigned char flags, unsigned char sequence, Command command, const std::string& data) {
@@ -48,12 +51,12 @@ std::string report(unsigned char flags, unsigned char sequence, Command command,
 
 class DlpLight final : public LightEngine {
  public:
-  DlpLight(std::unique_ptr<UsbLink> link, DlpModel model, const LightSettings& settings, Guardian* guardian)
-      : link_(std::move(link)), model_(model), settings_(settings), guardian_(guardian) {
+  DlpLight(std::unique_ptr<UsbLink> link, const LightSettings& settings, Guardian* guardian)
+      : link_(std::move(link)), settings_(settings), guardian_(guardian) {
     if (settings.current.value_or(0) > settings.max_current) {
       throw Error{Fault::usage, link_->name() + ": current " + std::to_string(*settings.current) +
                                     " is above the cap of " + std::to_string(settings.max_current) +
-                                    "; raise max_current only within what the LEDs bear"};
+                                    "; raise projector.max_led_current only within what the LEDs bear"};
     }
     for (const char led : settings.leds) {
       const std::size_t bit = std::string("rgb").find(led);
@@ -64,9 +67,9 @@ class DlpLight final : public LightEngine {
   }
 
   ~DlpLight() override {
-    if (!action_ && !lit_) return;
+    if (!awake_) return;
     try {
-      dark();
+      standby();
     } catch (...) {
       // The guardian still holds the order.
     }
@@ -84,7 +87,7 @@ class DlpLight final : public LightEngine {
   }
 
   void prepare() override {
-    set(power, std::string(1, '\0'), "power");
+    wake();
     set(led_enable, std::string(1, '\0'), "LED enable");
     set(display_mode, std::string(1, '\0'), "video mode");
     const std::string source = ask(input_source, 1);
@@ -104,21 +107,24 @@ class DlpLight final : public LightEngine {
 
   void on() override {
     watch();
-    lit_ = true;
     set(led_enable, std::string(1, static_cast<char>(led_bits_)), "LED enable");
   }
 
   void dark() override {
     set(led_enable, std::string(1, '\0'), "LED enable");
-    lit_ = false;
     if (action_) guardian_->forget(*action_);
     action_.reset();
   }
 
   void standby() override {
     dark();
-    if (model_ == DlpModel::dlpc900) tell(pattern_start_stop, std::string(1, '\0'));
+    try {
+      tell(pattern_start_stop, std::string(1, '\0'));
+    } catch (const Error& error) {
+      if (error.fault != Fault::protocol) throw;  // refused: there is no pattern to stop in video mode
+    }
     tell(power, std::string(1, '\1'));
+    awake_ = false;
   }
 
  private:
@@ -145,6 +151,19 @@ class DlpLight final : public LightEngine {
     std::array<char, 24> name{};
     std::snprintf(name.data(), name.size(), "command %02X %02X", command >> 8U, command & 0xFFU);
     return {Fault::protocol, link_->name() + ": " + name.data() + " was " + what};
+  }
+
+  // The engine answers while it wakes, but is not awake at once.
+  void wake() {
+    awake_ = true;
+    tell(power, std::string(1, '\0'));
+    const double limit_s = real_clock().now_s() + wake_s;
+    while (byte(ask(power, 1), 0) != 0) {
+      if (real_clock().now_s() > limit_s) {
+        throw Error{Fault::busy, link_->name() + ": does not wake within " + format_number(wake_s) + " s"};
+      }
+      real_clock().sleep_until(real_clock().now_s() + 0.02);
+    }
   }
 
   void tell(Command command, const std::string& data) { (void)exchange(write_and_acknowledge, command, data); }
@@ -178,7 +197,7 @@ class DlpLight final : public LightEngine {
     const Json about = link_->about();
     // Flags 0: no acknowledgement, since nobody is left to read it.
     Json reports = Json::array({to_hex(report(0, 0, led_enable, std::string(1, '\0')))});
-    if (model_ == DlpModel::dlpc900) reports.push_back(to_hex(report(0, 1, pattern_start_stop, std::string(1, '\0'))));
+    reports.push_back(to_hex(report(0, 1, pattern_start_stop, std::string(1, '\0'))));
     reports.push_back(to_hex(report(0, 2, power, std::string(1, '\1'))));
     action_ = guardian_->add({{"do", "usb"},
                               {"order", 0},
@@ -190,39 +209,36 @@ class DlpLight final : public LightEngine {
   }
 
   std::unique_ptr<UsbLink> link_;
-  DlpModel model_;
   LightSettings settings_;
   Guardian* guardian_;
   int led_bits_ = 0;
-  bool lit_ = false;
+  bool awake_ = false;
   unsigned char sequence_ = 0;
   std::optional<int> action_;
 };
 
 }  // namespace
 
-std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, DlpModel model,
-                                            const LightSettings& settings, Guardian* guardian) {
-  return std::make_unique<DlpLight>(std::move(link), model, settings, guardian);
+std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
+                                            Guardian* guardian) {
+  return std::make_unique<DlpLight>(std::move(link), settings, guardian);
 }
 
-std::unique_ptr<LightEngine> open_light(const std::string& device, Guardian* guardian) {
+std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian) {
   const Address address = parse_address(device, {"sim", "dlpc350", "dlpc900"});
   LightSettings settings;
   settings.current = address.integer("current", 0, 255);
-  settings.max_current = address.integer("max_current", 0, 255).value_or(settings.max_current);
+  settings.max_current = std::min(max_current, address.integer("max_current", 0, 255).value_or(max_current));
   settings.leds = address.word("leds", settings.leds);
   if (address.scheme == "sim") {
     address.allow({"current", "max_current", "leds", "log"});
-    return make_dlp_light(make_sim_dlp({}, file_sim_log(address.word("log", ""))), DlpModel::dlpc350, settings,
-                          nullptr);
+    return make_dlp_light(make_sim_dlp({}, file_sim_log(address.word("log", ""))), settings, nullptr);
   }
   address.allow({"current", "max_current", "leds"});
-  const DlpModel model = address.scheme == "dlpc900" ? DlpModel::dlpc900 : DlpModel::dlpc350;
-  auto link = open_usb({0x0451, {model == DlpModel::dlpc900 ? 0xC900 : 0x6401}, address.place}, 0);
+  auto link = open_usb({0x0451, {address.scheme == "dlpc900" ? 0xC900 : 0x6401}, address.place}, 0);
   auto lock = std::make_unique<DeviceLock>(link->name());
   if (guardian != nullptr) guardian->keep(lock->handle());
-  auto light = make_dlp_light(std::move(link), model, settings, guardian);
+  auto light = make_dlp_light(std::move(link), settings, guardian);
   light->hold(std::move(lock));
   return light;
 }

@@ -31,6 +31,7 @@ class LightEngine {
   virtual void on() = 0;
   /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.
   virtual void dark() = 0;
+  /// dark(), then no pattern, then asleep: what the destructor of an engine does that was prepared.
   virtual void standby() = 0;
 
   void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
@@ -40,11 +41,11 @@ class LightEngine {
 };
 
 /// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current, max_current and leds; sim: is a simulated
-/// DLPC350.
-[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, Guardian* guardian);
+/// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
+[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian);
 
-enum class DlpModel { dlpc350, dlpc900 };
-[[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, DlpModel model,
-                                                          const LightSettings& settings, Guardian* guardian);
+/// The two controllers differ in their USB product only.
+[[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
+                                                          Guardian* guardian);
 
 }  // namespace vam::device

@@ -121,6 +121,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
     require_flips(presenter.tally(), expected, plan.allowed_missed, "in the print");
   }
   presenter.show(-1, *angles.at(clock.now_s()), false);
+  if (light != nullptr) light->dark();  // here, where an engine that stays lit is an error
   return presenter.tally();
 }
 
@@ -137,6 +138,7 @@ PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int f
     presenter.show(static_cast<int>(std::max(0L, n) % frames), {}, true);
   }
   presenter.show(-1, {}, false);
+  if (light != nullptr) light->dark();
   return presenter.tally();
 }
 

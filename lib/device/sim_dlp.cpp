@@ -13,6 +13,7 @@ namespace {
 class SimDlp final : public UsbLink {
  public:
   SimDlp(const SimDlpSettings& settings, SimLog log) : settings_(settings), log_(std::move(log)) {
+    name_ = settings.dlpc900 ? "usb:0451:c900:LCR6500" : "usb:0451:6401:LCR4500";
     registers_[0x0200] = std::string(1, '\1');  // asleep
     registers_[0x0205] = std::string("\x01\x00\x00\x04", 4) + std::string(12, '\0');
     registers_[0x0B01] = std::string(3, static_cast<char>(settings.current));
@@ -42,7 +43,8 @@ class SimDlp final : public UsbLink {
     const bool known = registers_.contains(command) && command != settings_.refuse && length >= 2 && !spoils("error");
     if (known && !reading) write(command, report.substr(6, static_cast<std::size_t>(length - 2)));
     if ((at(0) & 0x40) == 0) return;
-    const std::string data = known && reading ? registers_[command] : "";
+    const bool waking = command == 0x0200 && settings_.wake_reads > 0 && reading && settings_.wake_reads-- > 0;
+    const std::string data = !known || !reading ? "" : waking ? std::string(1, '\1') : registers_[command];
     answer_ += static_cast<char>((reading ? 0x80 : 0) | (known ? 0 : 0x20));
     answer_ += static_cast<char>(at(1));
     answer_ += static_cast<char>(data.size());
@@ -63,7 +65,10 @@ class SimDlp final : public UsbLink {
 
   const std::string& name() const override { return name_; }
   Json about() const override {
-    return {{"usb_id", "0451:6401"}, {"serial", "LCR4500"}, {"maker", "Texas Instruments"}, {"model", "DLPC350"}};
+    return {{"usb_id", settings_.dlpc900 ? "0451:c900" : "0451:6401"},
+            {"serial", settings_.dlpc900 ? "LCR6500" : "LCR4500"},
+            {"maker", "Texas Instruments"},
+            {"model", settings_.dlpc900 ? "DLPC900" : "DLPC350"}};
   }
 
  private:
@@ -85,7 +90,7 @@ class SimDlp final : public UsbLink {
   std::map<int, std::string> registers_;
   std::string answer_, late_;
   int reports_ = 0;
-  std::string name_ = "usb:0451:6401:LCR4500";
+  std::string name_;
 };
 
 }  // namespace

@@ -34,6 +34,7 @@ const std::vector<PrinterField> fields{
     {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "of z = 0, from 0 at the top (z is up), before orientation", -65536, 131072},
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
     {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "from a vertical blank to the light", -1000, 1000},
+    {"projector", "max_led_current", at<&Printer::projector, &Projector::max_led_current>, "of the light engine, in its own steps; more is refused", 0, 255},
     {"vial", "radius_mm", at<&Printer::vial, &Vial::radius_mm>, "outer radius", 0, 1e6, true},
     {"vial", "wall_mm", at<&Printer::vial, &Vial::wall_mm>, "0: glass and resin matched", 0, 1e6},
     {"vial", "index_glass", at<&Printer::vial, &Vial::index_glass>, "refractive index", 1, 4},

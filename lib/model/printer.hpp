@@ -24,6 +24,7 @@ struct Projector {
   double axis_row = 383.5;             // the row of z = 0 of a centred part
   std::string orientation = "normal";  // normal, flip-columns, flip-rows, rotate-180
   double latency_ms = 0;               // from a vertical blank to the light
+  int max_led_current = 100;           // of the light engine, in its own steps; more is refused
 };
 
 struct Vial {

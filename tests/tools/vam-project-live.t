@@ -25,6 +25,7 @@ fails 66 'cannot be opened' vam-project part.exr -o null: --follow missing
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
 fails 64 'above the cap' vam-project part.exr -o null: --light 'sim:?current=120'
+fails 64 'above the cap of 50' vam-project part.exr -o null: --light 'sim:?current=60&max_current=200' --set projector.max_led_current=50
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 
 # Test pictures, to files and to a dry run.

@@ -138,8 +138,7 @@ TEST_CASE(
 TEST_CASE("Light only from angle 0 to the last turn's end, and black after") {
   VirtualClock clock;
   std::vector<Json> leds;
-  const auto light =
-      make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }), DlpModel::dlpc350, {}, nullptr);
+  const auto light = make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }), {}, nullptr);
   light->prepare();
   leds.clear();
   const auto display = open_display("null:", {4, 4, 60}, clock, nullptr);
@@ -178,8 +177,7 @@ TEST_CASE("Missed vertical blanks: in the run-up no light at all, in the print b
   for (const int miss : {50, 1200}) {
     VirtualClock clock;
     std::vector<Json> leds;
-    const auto light = make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }),
-                                      DlpModel::dlpc350, {}, nullptr);
+    const auto light = make_dlp_light(make_sim_dlp({}, [&](const Json& line) { leds.push_back(line); }), {}, nullptr);
     light->prepare();
     leds.clear();
     const auto display = open_display("null:?miss=" + std::to_string(miss), {4, 4, 60}, clock, nullptr);
@@ -200,6 +198,62 @@ TEST_CASE("Missed vertical blanks: in the run-up no light at all, in the print b
     // 780 blanks of run-up come before the light: every 50th missed is noticed there, the 1200th only later.
     CHECK(leds.size() == (miss == 50 ? 0 : 2));
     if (!leds.empty()) CHECK(leds.back()["bits"] == 0);
+  }
+}
+
+namespace {
+
+// A null: display that remembers what is on.
+class Watched final : public Display {
+ public:
+  explicit Watched(Clock& clock) : inner_(open_display("null:", {4, 4, 60}, clock, nullptr)) {}
+  DisplayMode mode() const override { return inner_->mode(); }
+  int add(const GreyImage& levels) override { return inner_->add(levels); }
+  Flip present(int index) override {
+    shown = index;
+    lit = lit || index >= 0;
+    return inner_->present(index);
+  }
+  int shown = 0;
+  bool lit = false;
+
+ private:
+  std::unique_ptr<Display> inner_;
+};
+
+}  // namespace
+
+TEST_CASE("A light engine that goes wrong in a print: the right fault, the screen black, the LEDs off where it hears") {
+  const std::vector<std::pair<const char*, Fault>> cases{
+      {"silent", Fault::busy},           {"late", Fault::busy},
+      {"garbage", Fault::protocol},      {"truncated", Fault::protocol},
+      {"wrong-sender", Fault::protocol}, {"error", Fault::protocol},
+      {"unplug", Fault::absent}};
+  for (const bool dlpc900 : {false, true}) {
+    for (const auto& [kind, fault] : cases) {
+      for (const int after : {15, 16, 17, 18}) {  // writing and reading back: on, then off
+        CAPTURE(dlpc900);
+        CAPTURE(kind);
+        CAPTURE(after);
+        VirtualClock clock;
+        std::vector<Json> leds;
+        SimDlpSettings sim;
+        sim.dlpc900 = dlpc900;
+        sim.fault = kind;
+        sim.fault_after = after - 1;  // 14 reports prepare it
+        auto light = make_dlp_light(make_sim_dlp(sim, [&](const Json& line) { leds.push_back(line); }), {}, nullptr);
+        light->prepare();
+        Watched display(clock);
+        display.add(GreyImage(4, 4, 8));
+        PlayPlan plan;
+        plan.frames_per_turn = 1;
+        const auto angles = elapsed_angle(90, clock);
+        CHECK(fault_of([&] { play(display, light.get(), *angles, clock, plan, [](const FlipRecord&) {}); }) == fault);
+        CHECK(display.shown == -1);
+        CHECK(display.lit == (after > 16));  // never a picture unless the light was known to be right
+        if (kind != std::string("unplug") && kind != std::string("error")) CHECK(leds.back()["bits"] == 0);
+      }
+    }
   }
 }
 
