@@ -29,7 +29,7 @@ class GrblStage final : public Stage {
   ~GrblStage() override {
     if (!stop_order_.standing()) return;
     try {
-      port_->write(jog_cancel);
+      port_->write(homing_ ? soft_reset : jog_cancel);
     } catch (...) {
       // The line is dead for us; the guardian keeps its order.
     }
@@ -56,16 +56,28 @@ class GrblStage final : public Stage {
     watch();
     send("$H");
     homing_ = true;
+    idle_since_s_.reset();
   }
 
-  // "$H" answers ok only when it is done, and status reports pause meanwhile.
+  // "$H" answers ok only when it is done. Reports pause meanwhile, so the one that is asked for at each look comes at
+  // its end; a board that idles and has not said ok is not going to.
   bool homed() override {
     if (!homing_) return true;
     stop_order_.beat();
     const std::string line = next_line(0.05, false);
-    if (line.empty()) return false;
-    homing_ = false;
+    if (line.empty()) {
+      if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + timeout_s) {
+        throw Error{Fault::busy, port_->name() + ": no answer to '$H', though it idles"};
+      }
+      port_->write("?");
+      return false;
+    }
+    if (line.front() == '<') {
+      if (state_of(line) == "Idle" && !idle_since_s_) idle_since_s_ = clock_.now_s();
+      return false;
+    }
     require_ok("$H", line);
+    homing_ = false;
     offset_deg_ = -sample().angle_deg;
     stop_order_.withdraw();
     return true;
@@ -96,7 +108,7 @@ class GrblStage final : public Stage {
   bool moving() override {
     drain();
     const std::string report = status();
-    const std::string state = report.substr(1, report.find_first_of("|>:") - 1);
+    const std::string state = state_of(report);
     if (state == "Alarm") throw Error{Fault::protocol, port_->name() + ": is in alarm; home it, or unlock it with $X"};
     const bool moves = state != "Idle";
     if (!moves) stop_order_.withdraw();
@@ -104,10 +116,11 @@ class GrblStage final : public Stage {
   }
 
   // Both stops are the cancelling of the jog, at the axis' acceleration: a reset would stop harder, but lose the
-  // position.
+  // position. A search for the reference hears nothing else, and has no position yet.
   void stop(Stop) override {
     stop_order_.beat();
-    port_->write(jog_cancel);
+    port_->write(homing_ ? soft_reset : jog_cancel);
+    homing_ = false;
   }
 
   std::optional<std::string> fault() override { return std::nullopt; }  // every order answers for itself
@@ -203,6 +216,8 @@ class GrblStage final : public Stage {
     stop_order_.beat();
   }
 
+  static std::string state_of(const std::string& report) { return report.substr(1, report.find_first_of("|>:") - 1); }
+
   // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
   std::string status() {
     port_->write("?");
@@ -243,6 +258,7 @@ class GrblStage final : public Stage {
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;
   bool homing_ = false;
+  std::optional<double> idle_since_s_;
 };
 
 }  // namespace

@@ -22,7 +22,8 @@ class SimGrbl final : public SimController {
     for (const char c : bytes) {
       if (silent()) return;
       if (c == '?') {
-        reply("?", "?", status());
+        asked_while_homing_ = homing_;  // reports pause
+        if (!homing_) reply("?", "?", status());
       } else if (c == '\x85') {
         cancel();
       } else if (c == '\x18') {
@@ -40,7 +41,8 @@ class SimGrbl final : public SimController {
     if (!homing_) return;
     homing_ = false;
     motor_.set_angle(0);
-    answer("ok\r\n");
+    if (std::exchange(asked_while_homing_, false)) answer(status());
+    answer_spoilt(homing_fault_, homing_fault_ == "error" ? "ALARM:9\r\n" : "ok\r\n", "");
   }
 
   void reply(const std::string& line, const std::string& command, const std::string& text) {
@@ -88,7 +90,8 @@ class SimGrbl final : public SimController {
       return reply(line, command, "[MSG:Caution: Unlocked]\r\nok\r\n");
     }
     if (command == "$H") {
-      arrive(line, command);
+      homing_fault_ = arrive(line, command);
+      if (silent()) return;
       homing_ = true;
       return go(0, homing_speed_deg_s);
     }
@@ -112,6 +115,8 @@ class SimGrbl final : public SimController {
 
   std::string line_;
   bool homing_ = false;
+  bool asked_while_homing_ = false;
+  std::string homing_fault_;
   bool alarm_ = false;
 };
 

@@ -108,6 +108,8 @@ class SimTic final : public UsbLink {
   std::int64_t variable(int offset) const {
     const auto steps = [&](double deg) { return std::llround(deg * settings_.steps_per_deg); };
     switch (offset) {
+      case 0x00:
+        return (settings_.error_bits != 0 ? 4 : energized_ ? 10 : 2) | variable(0x01) << 8;
       case 0x01:
         return (energized_ ? 1 : 0) | (uncertain_ ? 2 : 0) | (!uncertain_ && motor_.moving() ? 16 : 0);
       case 0x02:

@@ -26,7 +26,7 @@ enum Request {
   get_variable = 0xA1,
 };
 enum Offset {
-  misc_flags = 0x01,
+  operation_state = 0x00,  // the miscellaneous flags follow
   error_status = 0x02,
   target_position = 0x0A,
   max_speed = 0x16,
@@ -34,8 +34,10 @@ enum Offset {
   current_position = 0x22,
   current_velocity = 0x26
 };
+constexpr int state_normal = 10;  // the others are 0, 2, 4, 6 and 8
 constexpr int homing_active = 1 << 4;
 constexpr int position_uncertain = 1 << 1;
+constexpr int unused_flags = 0xE0;
 constexpr double speed_unit_hz = 1e-4;           // speeds count microsteps per 10,000 s
 constexpr double acceleration_unit_hz_s = 1e-2;  // accelerations count microsteps per second per 100 s
 
@@ -92,8 +94,8 @@ class TicStage final : public Stage {
   }
 
   bool homed() override {
-    const int flags = flags_now();
-    if ((flags & homing_active) != 0) return false;
+    const auto [state, flags] = state_now();
+    if ((flags & homing_active) != 0 && state == state_normal) return false;
     if (const auto problem = fault()) throw Error{Fault::protocol, link_->name() + ": homing failed: " + *problem};
     if ((flags & position_uncertain) != 0)
       throw Error{Fault::protocol, link_->name() + ": homing ended without a limit switch"};
@@ -174,9 +176,16 @@ class TicStage final : public Stage {
     return static_cast<std::int32_t>(value);
   }
 
-  int flags_now() {
+  // Noise must not pass for "still searching".
+  std::pair<int, int> state_now() {
+    const std::string bytes = link_->control_in(get_variable, 0, operation_state, 2);
+    const int state = static_cast<unsigned char>(bytes[0]);
+    const int flags = static_cast<unsigned char>(bytes[1]);
+    if (state > state_normal || state % 2 != 0 || (flags & unused_flags) != 0) {
+      throw Error{Fault::protocol, link_->name() + ": its state " + to_hex(bytes) + " is none of a Tic's"};
+    }
     stop_order_.beat();
-    return static_cast<unsigned char>(link_->control_in(get_variable, 0, misc_flags, 1)[0]);
+    return {state, flags};
   }
 
   void watch() {

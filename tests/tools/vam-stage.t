@@ -81,7 +81,7 @@ finish
 # A GRBL board instead.
 simulate --protocol grbl --acceleration 5000 --max-speed 720
 fails 64 'none of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
-LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 >samples
+LD_PRELOAD=$shim vam-stage spin --home --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 >samples
 holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
 ok 'and stands' stood
 finish

@@ -75,28 +75,48 @@ TEST_CASE("Each answer of a GRBL board wrong in turn: the right fault, in time, 
   plan.speed_deg_s = 60;
   plan.period_s = 0.05;
   plan.run_up_turns = 0.5;
-  for (const char* command : {"$I", "$$", "$X", "$J", "?"}) {
+  for (const std::string command : {"$I", "$$", "$X", "$H", "$J", "?"}) {
     for (const auto& [kind, fault] : cases) {
-      for (const int occurrence : {1, 20}) {
-        if (occurrence > 1 && std::string(command) != "?") continue;
+      for (const int occurrence : {1, 2, 20}) {  // the first report is that of the search, which needs none
+        if ((occurrence == 1) == (command == "?")) continue;
         CAPTURE(command);
         CAPTURE(kind);
+        // Half an "ok" is followed by a report on the same line.
+        const bool half_of_home = command == "$H" && kind == std::string("truncated");
         SimGcsSettings sim;
         sim.motor.acceleration_deg_s2 = 600;
         sim.faults.push_back({kind, command, occurrence});
         GrblLab lab(sim);
         CHECK(fault_of([&] {
                 lab.open();
+                home(*lab.stage, lab.clock, 60);
                 spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {});
-              }) == fault);
+              }) == (half_of_home ? Fault::protocol : fault));
         const double noticed_s = lab.clock.now_s();
+        double due_s = 0;  // "$H" is answered when the search is over
         for (const auto& line : lab.log) {
-          if (line["event"] == "fault") CHECK(noticed_s - line["t_monotonic_s"].get<double>() < 0.7);
+          const bool over = command == "$H" && line["event"] == "standing";
+          if (line["event"] == "fault" || over) due_s = line["t_monotonic_s"].get<double>();
         }
+        REQUIRE(due_s > 0);
+        CHECK(noticed_s - due_s < 0.7);
         lab.stage.reset();
         lab.clock.sleep_until(lab.clock.now_s() + 0.5);
         if (std::string(kind) != "unplug") CHECK_FALSE(lab.truly_moves());
       }
     }
   }
+}
+
+TEST_CASE("A GRBL board that searches its reference is stopped like one that jogs") {
+  SimGcsSettings sim;
+  sim.home_deg = 170;
+  sim.motor.acceleration_deg_s2 = 600;
+  GrblLab lab(sim);
+  lab.open();
+  CHECK(fault_of([&] { home(*lab.stage, lab.clock, 1); }) == Fault::busy);  // 170 deg at 30 deg/s take longer
+  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+  CHECK_FALSE(lab.truly_moves());
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.stage->sample().angle_deg == 0);
 }
