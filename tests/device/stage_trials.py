@@ -3,40 +3,15 @@ table stood. usage: stage_trials.py TRIALS. Prints a table; exit status 1 when o
 
 The table turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the table's own."""
 
-import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
 import time
 
-LIMIT_S = 0.1
-STALL_S = 0.5  # until the guardian takes a tool without progress for hung
-
-SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL]
-
-
-class Log:
-    """Reads the simulator's log as it grows."""
-
-    def __init__(self, path):
-        self.file = open(path)
-        self.rest = ""
-
-    def events(self):
-        self.rest += self.file.read()
-        *lines, self.rest = self.rest.split("\n")
-        return [json.loads(line) for line in lines]
-
-    def wait(self, wanted, limit_s):
-        deadline = time.monotonic() + limit_s
-        while time.monotonic() < deadline:
-            for event in self.events():
-                if wanted(event):
-                    return event
-            time.sleep(0.001)
-        return None
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True
+from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
 
 
 def at_speed(event):
@@ -73,32 +48,17 @@ def running_tool(path, environment, log):
     return None
 
 
-def end_by(cause, process):
-    """Starts the end and returns when that was."""
-    if cause == "closed stdout":
-        process.stdout.close()
-    elif cause == "hang":
-        process.send_signal(signal.SIGSTOP)
-    else:
-        process.send_signal(cause)
-    return time.monotonic()
-
-
 def trials_on_one_stage(cause, count, folder, environment):
     stage, path, log = simulator(folder)
     times = []
     for _ in range(count):
         process = running_tool(path, environment, log)
         if process is None:
-            times.append(float("inf"))
+            times.append(NEVER)
             continue
         start = end_by(cause, process)
         stood = log.wait(standing, 3)
-        times.append(stood["t_monotonic_s"] - start if stood else float("inf"))
-        process.wait(3)
-        if cause in SIGNALS and process.returncode != -cause:
-            print(f"# {cause!r} ended with status {process.returncode}")
-            times[-1] = float("inf")
+        times.append(stood["t_monotonic_s"] - start if ended_by(cause, process) and stood else NEVER)
     stage.kill()
     stage.wait()
     return times
@@ -111,7 +71,7 @@ def trials_of_device_errors(count, folder, environment):
         process = tool(path, environment)
         fault = log.wait(lambda event: event["event"] == "fault", 10)
         stood = log.wait(standing, 3)
-        times.append(stood["t_monotonic_s"] - fault["t_monotonic_s"] if fault and stood else float("inf"))
+        times.append(stood["t_monotonic_s"] - fault["t_monotonic_s"] if fault and stood else NEVER)
         process.stdout.close()
         process.wait(3)
         stage.kill()
@@ -125,18 +85,9 @@ def main():
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder, ASAN_OPTIONS="verify_asan_link_order=0")
-        results = {}
         for cause in SIGNALS + ["closed stdout", "hang"]:
-            name = cause.name if isinstance(cause, signal.Signals) else cause
-            results[name] = trials_on_one_stage(cause, count, folder, environment)
-        results["device error"] = trials_of_device_errors(count, folder, environment)
-    for name, times in results.items():
-        limit = LIMIT_S + (STALL_S if name == "hang" else 0)
-        late = sum(1 for t in times if not t <= limit)
-        failed += late
-        times.sort()
-        print(f"# {name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, "
-              f"worst {1e3 * times[-1]:.1f} ms, {late} past {1e3 * limit:.0f} ms")
+            failed += report(cause, trials_on_one_stage(cause, count, folder, environment))
+        failed += report("device error", trials_of_device_errors(count, folder, environment))
     sys.exit(failed > 0)
 
 

@@ -1,6 +1,6 @@
 // Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
 // and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host tic|dlpc350 LOG PROGRAM ARGS...
-// Exit status: the program's. The device lives on for half a second after the program, for its guardian.
+// Exit status: the program's. The device lives on for 120 ms after the program: its guardian is late after 100.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <sys/wait.h>
@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,14 +28,13 @@ using vam::device::UsbLink;
 
 constexpr std::uint8_t end_in = 0x80;
 
-struct Urb {
-  UMockdevIoctlData* urb;
-  UMockdevIoctlData* buffer;
-};
+// Transfers carried out and not yet fetched, by the open file they were asked through: what a killed process left
+// unfetched goes with it, as in the kernel.
+using Done = std::map<UMockdevIoctlClient*, std::deque<UMockdevIoctlData*>>;
 
 struct Host {
   std::unique_ptr<UsbLink> link;
-  std::deque<Urb> done;
+  Done done;
   std::string descriptors;
   GMainLoop* loop = nullptr;
   int status = 70;
@@ -87,9 +87,11 @@ int interrupt(Host& host, const usbdevfs_urb& urb, std::uint8_t* buffer) {
 
 void submit(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
   UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
+  if (data == nullptr) return umockdev_ioctl_client_abort(client);  // killed while it asked
   auto* urb = reinterpret_cast<usbdevfs_urb*>(data->data);
   UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
                                                           static_cast<gsize>(urb->buffer_length), nullptr);
+  if (buffer == nullptr) return umockdev_ioctl_client_abort(client);
   int moved = 0;
   try {
     moved = urb->type == USBDEVFS_URB_TYPE_CONTROL ? control(host, buffer->data) : interrupt(host, *urb, buffer->data);
@@ -98,17 +100,24 @@ void submit(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
   }
   urb->status = std::min(moved, 0);
   urb->actual_length = std::max(moved, 0);
-  host.done.push_back({data, buffer});
+  host.done[client].push_back(data);
   umockdev_ioctl_client_complete(client, 0, 0);
 }
 
 void reap(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
-  if (host.done.empty()) return umockdev_ioctl_client_complete(client, -1, EAGAIN);
-  const Urb urb = host.done.front();
-  host.done.pop_front();
+  auto& done = host.done[client];
+  if (done.empty()) return umockdev_ioctl_client_complete(client, -1, EAGAIN);
+  UMockdevIoctlData* urb = done.front();
+  done.pop_front();
   UMockdevIoctlData* pointer = umockdev_ioctl_data_resolve(arg, 0, sizeof(void*), nullptr);
-  umockdev_ioctl_data_set_ptr(pointer, 0, urb.urb);
+  if (pointer == nullptr) return umockdev_ioctl_client_abort(client);
+  umockdev_ioctl_data_set_ptr(pointer, 0, urb);
   umockdev_ioctl_client_complete(client, 0, 0);
+}
+
+// umockdev says nothing of clients that have gone, and may put a new one where an old one was.
+void connected(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
+  static_cast<Host*>(user)->done.erase(client);
 }
 
 gboolean handle(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
@@ -164,7 +173,7 @@ void ended(GPid, gint status, gpointer user) {
   Host& host = *static_cast<Host*>(user);
   host.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   g_timeout_add(
-      500,
+      120,
       [](gpointer loop) {
         g_main_loop_quit(static_cast<GMainLoop*>(loop));
         return FALSE;
@@ -204,6 +213,7 @@ int main(int argc, char** argv) {
   }
   UMockdevIoctlBase* handler = umockdev_ioctl_base_new();
   g_signal_connect(handler, "handle-ioctl", G_CALLBACK(handle), &host);
+  g_signal_connect(handler, "client-connected", G_CALLBACK(connected), &host);
   if (umockdev_testbed_attach_ioctl(testbed, "/dev/bus/usb/001/002", handler, &problem) == FALSE) {
     std::fprintf(stderr, "usb_host: %s\n", problem->message);
     return 70;

@@ -1,0 +1,61 @@
+"""What the trials of promise 1 share: the ways a program can end, the simulators' logs, and the table of results."""
+
+import json
+import signal
+import time
+
+LIMIT_S = 0.1
+STALL_S = 0.5  # until the guardian takes a tool without progress for hung
+SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL]
+NEVER = float("inf")
+
+
+class Log:
+    """Reads a simulator's log as it grows."""
+
+    def __init__(self, path):
+        self.file = open(path)
+        self.rest = ""
+
+    def events(self):
+        self.rest += self.file.read()
+        *lines, self.rest = self.rest.split("\n")
+        return [json.loads(line) for line in lines]
+
+    def wait(self, wanted, limit_s):
+        """The first new event that is wanted, or None."""
+        deadline = time.monotonic() + limit_s
+        while time.monotonic() < deadline:
+            for event in self.events():
+                if wanted(event):
+                    return event
+            time.sleep(0.001)
+        return None
+
+
+def end_by(cause, process):
+    """Starts the end and returns when that was."""
+    if cause == "closed stdout":
+        process.stdout.close()
+    elif cause == "hang":
+        process.send_signal(signal.SIGSTOP)
+    else:
+        process.send_signal(cause)
+    return time.monotonic()
+
+
+def ended_by(cause, process):
+    """True when the program is gone, by the signal it was sent."""
+    status = process.wait(3)
+    return cause not in SIGNALS or status == -cause
+
+
+def report(cause, times):
+    """Prints a line of the table; returns how many trials took too long."""
+    name = cause.name if isinstance(cause, signal.Signals) else cause
+    limit = LIMIT_S + (STALL_S if cause == "hang" else 0)
+    late = sum(1 for t in times if not t <= limit)
+    times = sorted(times)
+    print(f"# {name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, worst {1e3 * times[-1]:.1f} ms, "
+          f"{late} past {1e3 * limit:.0f} ms", flush=True)
+    return late

@@ -1,0 +1,66 @@
+"""Ends a tool that holds a USB device in every way a program can end, again and again, and lets the simulated device's
+own log say when the order to be safe reached it. usage: usb_trials.py dlpc350|tic TRIALS, in a folder with part.exr and
+printer.toml. Prints a table; exit status 1 when one trial took too long."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.dont_write_bytecode = True
+from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
+
+COMMANDS = {
+    "dlpc350": ["vam-project", "part.exr", "-o", "null:", "--light", "dlpc350:", "--speed", "1", "--missed", "1"],
+    "tic": ["vam-stage", "spin", "--device", "tic:?steps_per_deg=100", "--speed", "60", "--turns", "9"],
+}
+STARTED = {"dlpc350": lambda event: event.get("bits", 0) > 0, "tic": lambda event: event["event"] == "moving"}
+SAFE = {"dlpc350": lambda event: event.get("bits") == 0, "tic": lambda event: event["event"] == "halt"}
+
+
+ON_A_SIMULATED_BUS = ["umockdev-wrapper", os.path.join(os.environ["VAM_BUILD"], "usb_host")]
+TELL_PID = ["sh", "-c", 'echo $$; exec "$@" >/dev/null', "sh"]
+
+
+class Tool:
+    """A tool on a USB bus of its own, which outlives it for the guardian's sake and then ends with the tool's status."""
+
+    def __init__(self, device, path):
+        self.host = subprocess.Popen(ON_A_SIMULATED_BUS + [device, path] + TELL_PID + COMMANDS[device],
+                                     stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.pid = int(self.host.stdout.readline())
+
+    def send_signal(self, number):
+        os.kill(self.pid, number)
+
+    def wait(self, limit_s):
+        status = self.host.wait(limit_s)
+        self.host.stdout.close()
+        return status if status < 128 else 128 - status
+
+
+def trial(device, cause, path):
+    open(path, "w").close()
+    log = Log(path)
+    tool = Tool(device, path)
+    if not log.wait(STARTED[device], 5):
+        tool.send_signal(signal.SIGKILL)
+        return NEVER
+    time.sleep(0.02)
+    log.events()
+    start = end_by(cause, tool)
+    safe = log.wait(SAFE[device], 3)
+    return safe["t_monotonic_s"] - start if ended_by(cause, tool) and safe else NEVER
+
+
+def main():
+    device, count = sys.argv[1], int(sys.argv[2])
+    print(f"# {device}")
+    failed = sum([report(cause, [trial(device, cause, device + ".log") for _ in range(count)])
+                  for cause in SIGNALS + ["hang"]])
+    sys.exit(failed > 0)
+
+
+main()
