@@ -1,6 +1,8 @@
 // What a call throws, for tests of errors.
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,3 +28,16 @@ inline std::string message_of(const std::function<void()>& call) {
   }
   return "";
 }
+
+/// Its message, after a check of its fault; "no error" when it throws none.
+inline std::string error_of(const std::function<void()>& call, vam::Fault expected) {
+  try {
+    call();
+  } catch (const vam::Error& error) {
+    CHECK(error.fault == expected);
+    return error.what();
+  }
+  return "no error";
+}
+
+inline bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

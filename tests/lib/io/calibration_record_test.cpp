@@ -24,8 +24,6 @@ Json edges(double column, double radius_mm) {
 
 model::Calibration here(const scratch::Folder& folder) { return {folder / "records", "printer 1", "vial 7", 24}; }
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace
 
 TEST_CASE("times are written and read to the millisecond") {

@@ -1,41 +1,22 @@
 #include "io/mesh_file.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
+#include "lib/io/scratch.hpp"
 
 using vam::io::read_mesh;
 using vam::model::TriangleSoup;
 
+using scratch::slurp;
+
 namespace {
-
-struct Scratch {
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("mesh_file_test." + std::to_string(getpid()));
-  Scratch() { std::filesystem::create_directories(folder); }
-  ~Scratch() { std::filesystem::remove_all(folder); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-  [[nodiscard]] std::string write(const std::string& bytes) const {
-    std::ofstream(path("mesh"), std::ios::binary) << bytes;
-    return path("mesh");
-  }
-};
-
-std::string slurp(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // A box 1 x 2 x 3 mm as six quadrilaterals, anticlockwise from outside.
 const std::vector<std::array<double, 3>> box_points{{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 0},
@@ -182,50 +163,43 @@ std::string box_3mf(const std::string& unit, const std::string& transform) {
   return zip.done();
 }
 
-std::string refusal(const Scratch& scratch, const std::string& bytes) {
-  try {
-    (void)read_mesh(scratch.write(bytes));
-  } catch (const vam::Error& error) {
-    CHECK(error.fault == vam::Fault::data);
-    CHECK(std::string(error.what()).find('\n') == std::string::npos);
-    return error.what();
-  }
-  return "no error";
+std::string refusal(const scratch::Folder& folder, const std::string& bytes) {
+  const std::string line = error_of([&] { (void)read_mesh(folder.write("mesh", bytes)); }, vam::Fault::data);
+  CHECK(!has(line, "\n"));
+  return line;
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 
 TEST_CASE("every format gives the box back: 6 mm3, oriented outwards") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const auto& bytes : {box_obj(), box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
     CAPTURE(bytes.substr(0, 20));
-    const auto mesh = read_mesh(scratch.write(bytes));
+    const auto mesh = read_mesh(folder.write("mesh", bytes));
     CHECK(mesh.triangles.size() == 12);
     CHECK(volume(mesh) == doctest::Approx(6));
   }
 }
 
 TEST_CASE("binary STL comes back as written, also when its header begins with solid") {
-  const Scratch scratch;
-  vam::io::write_stl(scratch.path("box.stl"), box());
-  std::string bytes = slurp(scratch.path("box.stl"));
+  const scratch::Folder folder;
+  vam::io::write_stl(folder / "box.stl", box());
+  std::string bytes = slurp(folder / "box.stl");
   CHECK(bytes.size() == 84 + 12 * 50);
-  CHECK(volume(read_mesh(scratch.path("box.stl"))) == doctest::Approx(6));
+  CHECK(volume(read_mesh(folder / "box.stl")) == doctest::Approx(6));
   bytes.replace(0, 6, "solid ");
-  CHECK(volume(read_mesh(scratch.write(bytes))) == doctest::Approx(6));
+  CHECK(volume(read_mesh(folder.write("mesh", bytes))) == doctest::Approx(6));
   float normal[3];
   std::memcpy(normal, bytes.data() + 84, sizeof normal);
   CHECK(normal[2] == -1);  // the first face is the bottom
 }
 
 TEST_CASE("3MF: the unit and the place of the build item count") {
-  const Scratch scratch;
-  CHECK(volume(read_mesh(scratch.write(box_3mf("inch", "")))) == doctest::Approx(6 * std::pow(25.4, 3)));
-  CHECK(volume(read_mesh(scratch.write(box_3mf("micron", "")))) == doctest::Approx(6e-9));
+  const scratch::Folder folder;
+  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("inch", "")))) == doctest::Approx(6 * std::pow(25.4, 3)));
+  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("micron", "")))) == doctest::Approx(6e-9));
   // 3MF matrices are row by row, row vectors, translation last: a quarter turn about z, then (10, 20, 30).
-  const auto mesh = read_mesh(scratch.write(box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30")));
+  const auto mesh = read_mesh(folder.write("mesh", box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30")));
   CHECK(volume(mesh) == doctest::Approx(6));
   std::array<double, 3> low{1e9, 1e9, 1e9};
   for (const auto& p : mesh.points) {
@@ -234,18 +208,18 @@ TEST_CASE("3MF: the unit and the place of the build item count") {
   CHECK(low[0] == doctest::Approx(8));  // x' = -y + 10, y in [0, 2]
   CHECK(low[1] == doctest::Approx(20));
   CHECK(low[2] == doctest::Approx(30));
-  CHECK(has(refusal(scratch, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
+  CHECK(has(refusal(folder, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
 }
 
 TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   vam::model::VertexData data;
   for (int i = 0; i < 8; ++i) {
     data.quality.push_back(static_cast<float>(i) / 8);
     data.colours.push_back({static_cast<std::uint8_t>(i), 2, 3});
   }
-  vam::io::write_ply(scratch.path("box.ply"), box(), data, {"vam-sdf 1", "two\nlines"});
-  const std::string bytes = slurp(scratch.path("box.ply"));
+  vam::io::write_ply(folder / "box.ply", box(), data, {"vam-sdf 1", "two\nlines"});
+  const std::string bytes = slurp(folder / "box.ply");
   CHECK(has(bytes, "comment vam-sdf 1\ncomment two lines\nelement vertex 8\n"));
   CHECK(has(bytes, "property float quality\nproperty float scalar_distance\nproperty uchar red\n"));
   const std::size_t body = bytes.find("end_header\n") + 11;
@@ -255,53 +229,53 @@ TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
   CHECK(second[0] == 1);
   CHECK(second[3] == 0.125F);
   CHECK(second[4] == 0.125F);
-  CHECK(volume(read_mesh(scratch.path("box.ply"))) == doctest::Approx(6));
+  CHECK(volume(read_mesh(folder / "box.ply")) == doctest::Approx(6));
   TriangleSoup cloud = box();
   cloud.triangles.clear();
-  vam::io::write_ply(scratch.path("cloud.ply"), cloud);
-  CHECK(has(slurp(scratch.path("cloud.ply")), "element face 0\n"));
+  vam::io::write_ply(folder / "cloud.ply", cloud);
+  CHECK(has(slurp(folder / "cloud.ply"), "element face 0\n"));
 }
 
 TEST_CASE("a cut file is refused wherever it is cut") {
-  const Scratch scratch;
-  vam::io::write_stl(scratch.path("box.stl"), box());
-  vam::io::write_ply(scratch.path("box.ply"), box());
-  const std::string stl = slurp(scratch.path("box.stl"));
-  const std::string binary_ply = slurp(scratch.path("box.ply"));
+  const scratch::Folder folder;
+  vam::io::write_stl(folder / "box.stl", box());
+  vam::io::write_ply(folder / "box.ply", box());
+  const std::string stl = slurp(folder / "box.stl");
+  const std::string binary_ply = slurp(folder / "box.ply");
   for (const auto& bytes : {stl, binary_ply, box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
     for (std::size_t size = 0; size + 3 < bytes.size(); size += 7) {
       CAPTURE(bytes.substr(0, 12));
       CAPTURE(size);
-      CHECK(refusal(scratch, bytes.substr(0, size)) != "no error");
+      CHECK(refusal(folder, bytes.substr(0, size)) != "no error");
     }
   }
-  CHECK(has(refusal(scratch, stl.substr(0, 300)), "12 triangles (684 bytes) but the file has 300 bytes"));
+  CHECK(has(refusal(folder, stl.substr(0, 300)), "12 triangles (684 bytes) but the file has 300 bytes"));
 }
 
 TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no faces, foreign files") {
-  const Scratch scratch;
-  vam::io::write_stl(scratch.path("box.stl"), box());
-  std::string stl = slurp(scratch.path("box.stl"));
+  const scratch::Folder folder;
+  vam::io::write_stl(folder / "box.stl", box());
+  std::string stl = slurp(folder / "box.stl");
   const float nan = NAN;
   std::memcpy(stl.data() + 84 + 12, &nan, sizeof nan);
-  CHECK(has(refusal(scratch, stl), "vertex 0 is not finite"));
-  CHECK(refusal(scratch, box_off("nan 0 0")) != "no error");
-  CHECK(refusal(scratch, box_off("1e999 0 0")) != "no error");
+  CHECK(has(refusal(folder, stl), "vertex 0 is not finite"));
+  CHECK(refusal(folder, box_off("nan 0 0")) != "no error");
+  CHECK(refusal(folder, box_off("1e999 0 0")) != "no error");
   std::string obj = box_obj();
-  CHECK(has(refusal(scratch, obj + "f 1 2 9\n"), "face 6 uses vertex 8 of 8 (counted from 0)"));
-  CHECK(has(refusal(scratch, obj + "f 0 1 2\n"), "face 6 uses vertex 8 of 8"));
-  CHECK(has(refusal(scratch, obj + "f 1 2\n"), "face 6 has 2 corners"));
-  CHECK(has(refusal(scratch, "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "the mesh is empty: 3 vertices, no face"));
-  CHECK(has(refusal(scratch, "solid nothing\nendsolid nothing\n"), "empty"));
-  CHECK(has(refusal(scratch, ""), "is empty"));
-  CHECK(has(refusal(scratch, "hello, world\n"), "not a mesh of a known format"));
-  CHECK(has(refusal(scratch,
+  CHECK(has(refusal(folder, obj + "f 1 2 9\n"), "face 6 uses vertex 8 of 8 (counted from 0)"));
+  CHECK(has(refusal(folder, obj + "f 0 1 2\n"), "face 6 uses vertex 8 of 8"));
+  CHECK(has(refusal(folder, obj + "f 1 2\n"), "face 6 has 2 corners"));
+  CHECK(has(refusal(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "the mesh is empty: 3 vertices, no face"));
+  CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));
+  CHECK(has(refusal(folder, ""), "is empty"));
+  CHECK(has(refusal(folder, "hello, world\n"), "not a mesh of a known format"));
+  CHECK(has(refusal(folder,
                     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
                     "property float y\nproperty float z\nend_header\n"),
             "promises 4000000000 vertex"));
-  CHECK(has(refusal(scratch, "OFF\n99999999999 1 0\n"), "promises 99999999999 vertices"));
+  CHECK(has(refusal(folder, "OFF\n99999999999 1 0\n"), "promises 99999999999 vertices"));
   try {
-    (void)read_mesh(scratch.path("none.stl"));
+    (void)read_mesh(folder / "none.stl");
     FAIL("a missing file was read");
   } catch (const vam::Error& error) {
     CHECK(error.fault == vam::Fault::no_input);

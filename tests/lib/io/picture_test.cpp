@@ -1,7 +1,6 @@
 #include "io/picture.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -10,24 +9,13 @@
 #include <iterator>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
+#include "lib/io/scratch.hpp"
 
 using vam::GreyImage;
 using namespace vam::io;
 
 namespace {
-
-struct Scratch {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("picture_test." + std::to_string(getpid()));
-  Scratch() { std::filesystem::create_directories(folder); }
-  ~Scratch() { std::filesystem::remove_all(folder); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-  [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path(name), std::ios::binary) << bytes;
-    return path(name);
-  }
-};
 
 // Every level of the depth, in a width that leaves bits over in the last byte of a row.
 GreyImage all_levels(int bits) {
@@ -38,27 +26,14 @@ GreyImage all_levels(int bits) {
   return image;
 }
 
-template <class Call>
-std::string error_of(Call call, vam::Fault expected) {
-  try {
-    call();
-  } catch (const vam::Error& error) {
-    CHECK(error.fault == expected);
-    return error.what();
-  }
-  return "no error";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 }  // namespace
 
 TEST_CASE("PNG of every depth comes back through OpenCV's decoder: level / full of the depth") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const int bits : {1, 2, 4, 8, 10, 16}) {
     const GreyImage image = all_levels(bits);
-    write_png(scratch.path("a.png"), image);
-    const GreyImage back = read_picture(scratch.path("a.png"));
+    write_png(folder / "a.png", image);
+    const GreyImage back = read_picture(folder / "a.png");
     REQUIRE(back.values.size() == image.values.size());
     CHECK(back.bits == (bits > 8 ? 16 : 8));
     int wrong = 0;
@@ -82,31 +57,31 @@ TEST_CASE("PNG headers say what is inside: depth, sBIT for 10 bits, text") {
 }
 
 TEST_CASE("TIFF of 8 and 16 bits comes back") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const int bits : {8, 16}) {
-    write_tiff(scratch.path("a.tif"), all_levels(bits));
-    CHECK(read_picture(scratch.path("a.tif")) == all_levels(bits));
+    write_tiff(folder / "a.tif", all_levels(bits));
+    CHECK(read_picture(folder / "a.tif") == all_levels(bits));
   }
 }
 
 TEST_CASE("colours are written as they are and read as luma") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   vam::RgbImage image(3, 1);
   image(0, 0) = {255, 0, 0};
   image(1, 0) = {0, 255, 0};
   image(2, 0) = {80, 80, 80};
-  write_png(scratch.path("c.png"), image);
-  const GreyImage grey = read_picture(scratch.path("c.png"));
+  write_png(folder / "c.png", image);
+  const GreyImage grey = read_picture(folder / "c.png");
   CHECK(std::abs(grey(0, 0) - 76) <= 1);  // BT.601: 0.299 R + 0.587 G + 0.114 B, rounded either way
   CHECK(std::abs(grey(1, 0) - 150) <= 1);
   CHECK(grey(2, 0) == 80);
 }
 
 TEST_CASE("cut, damaged and foreign pictures are refused") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   const std::string png = encode_png(all_levels(8));
   const auto refused = [&](const std::string& bytes) {
-    const std::string path = scratch.write("bad.png", bytes);
+    const std::string path = folder.write("bad.png", bytes);
     return error_of([&] { (void)read_picture(path); }, vam::Fault::data);
   };
   for (std::size_t size = 8; size < png.size(); size += 5) CHECK(has(refused(png.substr(0, size)), "truncated"));
@@ -115,35 +90,35 @@ TEST_CASE("cut, damaged and foreign pictures are refused") {
   CHECK(has(refused(flipped), "checksum"));
   CHECK(has(refused("GIF89a"), "neither PNG nor TIFF"));
   CHECK(has(refused(""), "neither PNG nor TIFF"));
-  write_tiff(scratch.path("a.tif"), all_levels(16));
-  std::ifstream stream(scratch.path("a.tif"), std::ios::binary);
+  write_tiff(folder / "a.tif", all_levels(16));
+  std::ifstream stream(folder / "a.tif", std::ios::binary);
   const std::string tiff{std::istreambuf_iterator<char>(stream), {}};
   CHECK(refused(tiff.substr(0, tiff.size() / 2)) != "no error");
-  error_of([&] { (void)read_picture(scratch.path("none.png")); }, vam::Fault::no_input);
+  error_of([&] { (void)read_picture(folder / "none.png"); }, vam::Fault::no_input);
 }
 
 TEST_CASE("a folder is read in the order of the numbers, and gaps and sizes are watched") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (int i = 1; i <= 12; ++i) {
     GreyImage image(4, 3, 8);
     image(0, 0) = static_cast<std::uint16_t>(i);
-    write_png(scratch.path("part2_" + std::to_string(i) + ".png"), image);
+    write_png((folder / "part2_" + std::to_string(i) + ".png"), image);
   }
-  PictureFolder folder(scratch.folder.string());
-  REQUIRE(folder.count() == 12);
-  for (int i = 0; i < 12; ++i) CHECK(folder.read(i)(0, 0) == i + 1);
+  PictureFolder pictures(folder.path.string());
+  REQUIRE(pictures.count() == 12);
+  for (int i = 0; i < 12; ++i) CHECK(pictures.read(i)(0, 0) == i + 1);
 
-  write_png(scratch.path("part2_13.png"), GreyImage(5, 3, 8));
-  PictureFolder uneven(scratch.folder.string());
+  write_png(folder / "part2_13.png", GreyImage(5, 3, 8));
+  PictureFolder uneven(folder.path.string());
   (void)uneven.read(0);
   CHECK(has(error_of([&] { (void)uneven.read(12); }, vam::Fault::data), "5 x 3 pixels, but those before have 4 x 3"));
 
-  std::filesystem::remove(scratch.path("part2_5.png"));
-  CHECK(has(error_of([&] { PictureFolder{scratch.folder.string()}; }, vam::Fault::data), "follows number 4"));
-  write_png(scratch.path("other_05.png"), GreyImage(4, 3, 8));
-  write_png(scratch.path("part2_5.png"), GreyImage(4, 3, 8));
-  CHECK(has(error_of([&] { PictureFolder{scratch.folder.string()}; }, vam::Fault::data), "same number"));
-  error_of([&] { PictureFolder{scratch.path("none")}; }, vam::Fault::no_input);
-  std::filesystem::create_directory(scratch.path("empty"));
-  CHECK(has(error_of([&] { PictureFolder{scratch.path("empty")}; }, vam::Fault::data), "no PNG or TIFF"));
+  std::filesystem::remove(folder / "part2_5.png");
+  CHECK(has(error_of([&] { PictureFolder{folder.path.string()}; }, vam::Fault::data), "follows number 4"));
+  write_png(folder / "other_05.png", GreyImage(4, 3, 8));
+  write_png(folder / "part2_5.png", GreyImage(4, 3, 8));
+  CHECK(has(error_of([&] { PictureFolder{folder.path.string()}; }, vam::Fault::data), "same number"));
+  error_of([&] { PictureFolder{(folder / "none")}; }, vam::Fault::no_input);
+  std::filesystem::create_directory(folder / "empty");
+  CHECK(has(error_of([&] { PictureFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));
 }

@@ -1,15 +1,14 @@
 #include "io/printer_file.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
 #include "io/printer_fields.hpp"
 #include "io/response_file.hpp"
+#include "lib/io/scratch.hpp"
 
 using vam::Error;
 using vam::Fault;
@@ -20,17 +19,6 @@ using vam::io::printer_toml;
 
 namespace {
 
-template <class Call>
-std::string error_of(Call call, Fault expected) {
-  try {
-    call();
-  } catch (const Error& error) {
-    CHECK(error.fault == expected);
-    return error.what();
-  }
-  return "no error";
-}
-
 std::string refusal(const std::string& toml) {
   return error_of([&] { (void)parse_printer(toml, "p.toml"); }, Fault::data);
 }
@@ -38,21 +26,6 @@ std::string refusal(const std::string& toml) {
 std::string set_refusal(const std::string& set) {
   return error_of([&] { (void)load_printer("", {set}); }, Fault::usage);
 }
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-struct Scratch {
-  std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("printer_file_test." + std::to_string(getpid()));
-  Scratch() { std::filesystem::create_directories(folder); }
-  ~Scratch() { std::filesystem::remove_all(folder); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name) << text;
-    return (folder / name).string();
-  }
-};
 
 }  // namespace
 
@@ -137,26 +110,26 @@ TEST_CASE("settings apart from the default can be given to --set again") {
 }
 
 TEST_CASE("the named file wins over $VAM_PRINTER; a response is relative to the file") {
-  const Scratch scratch;
-  const std::string named = scratch.write("a.toml", "[vial]\nradius_mm = 11\n[projector]\nresponse = \"r.csv\"\n");
-  const std::string exported = scratch.write("b.toml", "[vial]\nradius_mm = 9\n");
+  const scratch::Folder folder;
+  const std::string named = folder.write("a.toml", "[vial]\nradius_mm = 11\n[projector]\nresponse = \"r.csv\"\n");
+  const std::string exported = folder.write("b.toml", "[vial]\nradius_mm = 9\n");
   setenv("VAM_PRINTER", exported.c_str(), 1);
   CHECK(load_printer(named, {}).vial.radius_mm == 11);
   CHECK(load_printer("", {}).vial.radius_mm == 9);
   unsetenv("VAM_PRINTER");
-  CHECK(load_printer(named, {}).projector.response == (scratch.folder / "r.csv").string());
-  error_of([&] { (void)load_printer((scratch.folder / "none.toml").string(), {}); }, Fault::no_input);
-  error_of([&] { (void)load_printer(scratch.folder.string(), {}); }, Fault::no_input);
+  CHECK(load_printer(named, {}).projector.response == (folder.path / "r.csv").string());
+  error_of([&] { (void)load_printer((folder.path / "none.toml").string(), {}); }, Fault::no_input);
+  error_of([&] { (void)load_printer(folder.path.string(), {}); }, Fault::no_input);
 }
 
 TEST_CASE("a response table is read with or without a header and refused with its line") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   const auto table =
-      vam::io::read_response(scratch.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"));
+      vam::io::read_response(folder.write("r.csv", "# lamp 3\ngrey,intensity\n0,0.1\n128, 1.5\r\n255,4\n"));
   CHECK(table.grey == std::vector<double>{0, 128, 255});
   CHECK(table.intensity == std::vector<double>{0.1, 1.5, 4});
   const auto refused = [&](const std::string& csv) {
-    const std::string file = scratch.write("bad.csv", csv);
+    const std::string file = folder.write("bad.csv", csv);
     return error_of([&] { (void)vam::io::read_response(file); }, Fault::data);
   };
   CHECK(has(refused("0,0\n10,2\n20,1\n"), "bad.csv:3: intensity 1 at grey 20 is below 2"));

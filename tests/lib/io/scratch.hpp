@@ -30,6 +30,11 @@ struct Folder {
     return static_cast<int>(
         std::distance(std::filesystem::directory_iterator(path), std::filesystem::directory_iterator{}));
   }
+  /// A new file there; its path.
+  [[nodiscard]] std::string write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path / name, std::ios::binary) << bytes;
+    return *this / name;
+  }
   std::filesystem::path path;
 };
 

@@ -1,29 +1,20 @@
 #include "io/video.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "base/error.hpp"
+#include "lib/io/scratch.hpp"
 
 using vam::GreyImage;
 using namespace vam::io;
+using scratch::slurp;
 
 namespace {
-
-struct Scratch {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("video_test." + std::to_string(getpid()));
-  Scratch() { std::filesystem::create_directories(folder); }
-  ~Scratch() { std::filesystem::remove_all(folder); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-};
 
 // Smooth light on black with a hard edge that moves: what projector frames look like.
 GreyImage frame_of(int n, int bits, int width = 64, int height = 48) {
@@ -43,19 +34,14 @@ void write_video(const std::string& path, int frames, int bits, int width = 64, 
   writer.commit();
 }
 
-std::string slurp(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 TEST_CASE("FFV1 is lossless at every depth, and keeps rate, count and comment") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const int bits : {1, 2, 4, 8, 10, 16}) {
     CAPTURE(bits);
-    write_video(scratch.path("a.mkv"), 20, bits);
-    VideoReader reader(scratch.path("a.mkv"));
+    write_video(folder / "a.mkv", 20, bits);
+    VideoReader reader(folder / "a.mkv");
     CHECK(reader.format().fps == doctest::Approx(16));
     CHECK(reader.format().bits == std::max(8, bits));
     CHECK(reader.format().comment == "vam-project test");
@@ -74,9 +60,9 @@ TEST_CASE("FFV1 is lossless at every depth, and keeps rate, count and comment") 
 }
 
 TEST_CASE("H.264 shows the frames, odd sizes padded") {
-  const Scratch scratch;
-  write_video(scratch.path("a.mp4"), 20, 8, 63, 47);
-  VideoReader reader(scratch.path("a.mp4"));
+  const scratch::Folder folder;
+  write_video(folder / "a.mp4", 20, 8, 63, 47);
+  VideoReader reader(folder / "a.mp4");
   CHECK(reader.format().width == 64);
   CHECK(reader.format().height == 48);
   GreyImage image;
@@ -93,23 +79,23 @@ TEST_CASE("H.264 shows the frames, odd sizes padded") {
 }
 
 TEST_CASE("the same frames give the same bytes") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const char* name : {"a.mkv", "a.mp4"}) {
-    write_video(scratch.path(name), 5, 8);
-    const std::string first = slurp(scratch.path(name));
-    write_video(scratch.path(name), 5, 8);
+    write_video(folder / name, 5, 8);
+    const std::string first = slurp(folder / name);
+    write_video(folder / name, 5, 8);
     CHECK(first.size() > 500);
-    CHECK(slurp(scratch.path(name)) == first);
+    CHECK(slurp(folder / name) == first);
   }
 }
 
 TEST_CASE("without commit nothing is left; other endings, missing and foreign files are refused") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   {
-    VideoWriter writer(scratch.path("a.mkv"), {64, 48, 8, 16, ""});
+    VideoWriter writer(folder / "a.mkv", {64, 48, 8, 16, ""});
     writer.write(frame_of(0, 8));
   }
-  CHECK(std::filesystem::is_empty(scratch.folder));
+  CHECK(std::filesystem::is_empty(folder.path));
   const auto fault_of = [](auto call) {
     try {
       call();
@@ -118,27 +104,27 @@ TEST_CASE("without commit nothing is left; other endings, missing and foreign fi
     }
     return vam::Fault::judged;
   };
-  CHECK(fault_of([&] { VideoWriter{scratch.path("a.avi"), {64, 48, 8, 16, ""}}; }) == vam::Fault::usage);
-  CHECK(fault_of([&] { VideoWriter{scratch.path("none/a.mkv"), {64, 48, 8, 16, ""}}; }) == vam::Fault::no_output);
-  CHECK(fault_of([&] { VideoReader{scratch.path("a.mkv")}; }) == vam::Fault::no_input);
-  std::ofstream(scratch.path("b.mkv")) << "hello";
-  CHECK(fault_of([&] { VideoReader{scratch.path("b.mkv")}; }) == vam::Fault::data);
-  std::filesystem::create_symlink("/dev/full", scratch.path("full.mkv"));
-  CHECK(fault_of([&] { write_video(scratch.path("full.mkv"), 3, 8); }) == vam::Fault::io);
+  CHECK(fault_of([&] { VideoWriter{(folder / "a.avi"), {64, 48, 8, 16, ""}}; }) == vam::Fault::usage);
+  CHECK(fault_of([&] { VideoWriter{(folder / "none/a.mkv"), {64, 48, 8, 16, ""}}; }) == vam::Fault::no_output);
+  CHECK(fault_of([&] { VideoReader{(folder / "a.mkv")}; }) == vam::Fault::no_input);
+  std::ofstream(folder / "b.mkv") << "hello";
+  CHECK(fault_of([&] { VideoReader{(folder / "b.mkv")}; }) == vam::Fault::data);
+  std::filesystem::create_symlink("/dev/full", folder / "full.mkv");
+  CHECK(fault_of([&] { write_video(folder / "full.mkv", 3, 8); }) == vam::Fault::io);
 }
 
 TEST_CASE("no cut video passes for a shorter one") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   for (const char* name : {"a.mkv", "a.mp4"}) {
-    write_video(scratch.path(name), 10, 8);
-    const std::string whole = slurp(scratch.path(name));
+    write_video(folder / name, 10, 8);
+    const std::string whole = slurp(folder / name);
     for (std::size_t size = 0; size < whole.size(); size += 97) {
       CAPTURE(size);
-      std::ofstream(scratch.path("cut"), std::ios::binary) << whole.substr(0, size);
+      std::ofstream(folder / "cut", std::ios::binary) << whole.substr(0, size);
       bool refused = false;
       int frames = 0;
       try {
-        VideoReader reader(scratch.path("cut"));
+        VideoReader reader(folder / "cut");
         GreyImage image;
         while (reader.next(image)) ++frames;
       } catch (const vam::Error& error) {

@@ -1,39 +1,26 @@
 #include "io/view.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
 #include "io/nrrd.hpp"
 #include "io/picture.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam::io;
 using vam::Image;
 using vam::Rgb;
 
+using scratch::slurp;
+
 namespace {
-
-struct Scratch {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("view_test." + std::to_string(getpid()));
-  Scratch() { std::filesystem::create_directories(folder); }
-  ~Scratch() { std::filesystem::remove_all(folder); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-};
-
-std::string slurp(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 // A value that tells i, j and k apart.
 float label(int i, int j, int k) { return static_cast<float>(1 + i + 100 * j + 10000 * k); }
@@ -65,19 +52,6 @@ SparseVolume ball(const vam::model::Grid& grid) {
   volume.write_slices(0, grid.nz, slices.data());
   return volume;
 }
-
-template <class Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const vam::Error& error) {
-    CHECK(error.fault == vam::Fault::data);
-    return error.what();
-  }
-  return "no error";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 void keep(const vam::RgbImage& picture, const std::string& name) {
   if (const char* folder = std::getenv("VAM_PICTURES")) write_png(std::string(folder) + "/" + name, picture);
@@ -189,7 +163,7 @@ TEST_CASE("a figure shows every voxel as a square of its colour, right way up") 
   CHECK(picture(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
   CHECK(picture(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
   options.at = 9.0;
-  CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }),
+  CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }, vam::Fault::data),
             "no axial section at 9 mm; it reaches from 0 mm to 1.5 mm"));
 }
 
@@ -223,17 +197,17 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   CHECK(plot.markers[1].words == "highest outside 0.2");
   keep(draw(plot), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
-  CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }),
+  CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
             "the dose has 40 x 40 x 40 voxels, but the target has 8 x 8 x 8"));
 }
 
 TEST_CASE("NRRD has the dense box behind a header that says where it is") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   const auto grid = vam::model::centred_grid(5, 4, 19, 0.5, -2);
   SparseVolume volume = labelled("dose", grid);
   volume.history = {"vam-test 1"};
-  write_nrrd(scratch.path("a.nrrd"), volume);
-  const std::string bytes = slurp(scratch.path("a.nrrd"));
+  write_nrrd(folder / "a.nrrd", volume);
+  const std::string bytes = slurp(folder / "a.nrrd");
   const std::size_t body = bytes.find("\n\n") + 2;
   CHECK(bytes.size() == body + 4 * grid.size());
   CHECK(has(bytes, "# vam-test 1\n"));
@@ -245,20 +219,20 @@ TEST_CASE("NRRD has the dense box behind a header that says where it is") {
 }
 
 TEST_CASE("files are told by their content") {
-  const Scratch scratch;
+  const scratch::Folder folder;
   const auto written = [&](const std::string& bytes) {
-    std::ofstream(scratch.path("f"), std::ios::binary) << bytes;
-    return scratch.path("f");
+    std::ofstream(folder / "f", std::ios::binary) << bytes;
+    return (folder / "f");
   };
   SparseVolume volume = labelled("dose", vam::model::centred_grid(5, 4, 3, 0.5));
-  write_volume(scratch.path("v"), volume);
-  CHECK(file_type(scratch.path("v")) == FileType::volume);
+  write_volume(folder / "v", volume);
+  CHECK(file_type(folder / "v") == FileType::volume);
   CHECK(file_type(written("\x76\x2f\x31\x01....")) == FileType::stack);
   CHECK(file_type(written("\x1a\x45\xdf\xa3....")) == FileType::video);
   CHECK(file_type(written(std::string("\0\0\0\x20"
                                       "ftypisom",
                                       12))) == FileType::video);
-  CHECK(file_type(scratch.folder.string()) == FileType::pictures);
-  CHECK(has(error_of([&] { (void)file_type(written("solid part")); }), "neither a volume (VDB)"));
-  CHECK(has(error_of([&] { (void)file_type(written("")); }), "is empty"));
+  CHECK(file_type(folder.path.string()) == FileType::pictures);
+  CHECK(has(error_of([&] { (void)file_type(written("solid part")); }, vam::Fault::data), "neither a volume (VDB)"));
+  CHECK(has(error_of([&] { (void)file_type(written("")); }, vam::Fault::data), "is empty"));
 }

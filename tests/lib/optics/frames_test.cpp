@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "fault_of.hpp"
 #include "optics/flatland.hpp"
 #include "optics/taps.hpp"
 
@@ -44,19 +45,6 @@ FrameComposer composed(const StackInfo& info, const FramePlace& place) {
   composer.check();
   return composer;
 }
-
-template <class Call>
-std::string error_of(Call call, vam::Fault expected) {
-  try {
-    call();
-  } catch (const vam::Error& error) {
-    CHECK(error.fault == expected);
-    return error.what();
-  }
-  return "no error";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "operator_checks.hpp"
 #include "optics/blur.hpp"
 #include "optimize/metrics.hpp"
 #include "oracle/part_2d.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "operator_checks.hpp"
 #include "optimize/attenuated_operator.hpp"
 #include "optimize/exclusions.hpp"
 #include "optimize/metrics.hpp"

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
+#include "operator_checks.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_dose.hpp"
 #include "parts.hpp"
@@ -112,22 +113,9 @@ TEST_CASE("what is projected is the unknowns as fluence, and the way back") {
 }
 
 TEST_CASE("A* filter A is about the identity in the vial, and the preconditioner is symmetric and positive") {
-  const int size = 128;
-  const VialOperator light(setup_of(vial, size, 360));
-  const auto disc = oracle::draw(size, [](double x, double y) { return std::hypot(x - 10, y + 5) < 30; });
-  Slab f(size, size);
-  vam::tomo::pack(disc.data(), 1, f);
-  std::vector<Slab> g;
-  filtered_projections(light, {&f, 1}, g);
-  Slab dose(size, size);
-  light.adjoint(g, {&dose, 1});
-  CHECK(*dose.at(73, 58) == doctest::Approx(1.0).epsilon(0.05));
-  CHECK(std::abs(*dose.at(30, 100)) < 0.05);
-  CHECK(parts::asymmetry_of_preconditioner(light) < 1e-5);
-  const Slab a = parts::noise(light.sinogram(), 3);
-  Slab filtered = a;
-  light.precondition({&filtered, 1});
-  CHECK(dot(a, filtered) > 0);
+  const VialOperator light(setup_of(vial, 128, 360));
+  parts::check_disc_comes_back(light, 0.05, 0.05);
+  parts::check_preconditioner(light);
 }
 
 TEST_CASE("a projector that does not see the vial is told so") {

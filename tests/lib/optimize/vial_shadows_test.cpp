@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "operator_checks.hpp"
 #include "optimize/vial_operator.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"

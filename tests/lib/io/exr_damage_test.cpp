@@ -1,0 +1,98 @@
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "lib/io/exr_stacks.hpp"
+
+using namespace vam;
+using namespace vam::io;
+using namespace vam::stacks;
+using scratch::slurp;
+using scratch::spill;
+using scratch::status;
+
+TEST_CASE("sizes are checked before memory is taken") {
+  const scratch::Folder folder;
+  write_stack(folder / "s.exr", sinogram(4, 4, 1));
+  std::string bytes = slurp(folder / "s.exr");
+  const auto at = bytes.find("dataWindow");
+  REQUIRE(at != std::string::npos);
+  const std::size_t max_x = at + std::string("dataWindow").size() + 1 + std::string("box2i").size() + 1 + 4 + 8;
+  const std::int32_t huge = 2'000'000'000;
+  std::memcpy(bytes.data() + max_x, &huge, 4);
+  std::memcpy(bytes.data() + max_x + 4, &huge, 4);
+  spill(folder / "huge.exr", bytes);
+  std::string line;
+  CHECK(status([&] { StackReader reader(folder / "huge.exr"); }, &line) == 65);
+  CHECK(line.find("2000000001 x 2000000001") != std::string::npos);
+}
+
+TEST_CASE("a pixel that is no number is refused, with its place") {
+  const scratch::Folder folder;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  Image image(5, 4);
+  image(3, 2) = nan;
+  const auto info = sinogram(5, 4, 2);
+  CHECK(status([&] { StackWriter(folder / "s.exr", info).write(image); }) == 70);
+  CHECK(folder.count() == 0);
+
+  image(3, 2) = 1234.5F;
+  {
+    StackWriter writer(folder / "s.exr", info, {false, "none"});
+    writer.write(Image(5, 4));
+    writer.write(image);
+    writer.commit();
+  }
+  std::string bytes = slurp(folder / "s.exr");
+  const float mark = 1234.5F;
+  const auto at = bytes.find(std::string(reinterpret_cast<const char*>(&mark), 4));
+  REQUIRE(at != std::string::npos);
+  std::memcpy(bytes.data() + at, &nan, 4);
+  spill(folder / "nan.exr", bytes);
+  StackReader reader(folder / "nan.exr");
+  model::ImageInfo about;
+  CHECK(reader.next(image, about));
+  std::string line;
+  CHECK(status([&] { reader.next(image, about); }, &line) == 65);
+  CHECK(line.find("pixel 3, 2 of image 1") != std::string::npos);
+}
+
+TEST_CASE("a cut stack is 65 wherever it is cut, and a flipped bit never crashes") {
+  const scratch::Folder folder;
+  const auto info = sinogram(9, 35, 3);
+  const auto read = [&](const std::string& bytes) {
+    spill(folder / "s.exr", bytes);
+    return status([&] {
+      StackReader reader(folder / "s.exr");
+      Image image;
+      model::ImageInfo about;
+      while (reader.next(image, about)) CHECK(image.size() == static_cast<std::size_t>(image.width * image.height));
+    });
+  };
+  for (const char* compression : {"none", "rle", "zip", "piz", "pxr24"}) {
+    CAPTURE(compression);
+    write_stack(folder / "whole.exr", info, {false, compression});
+    const std::string whole = slurp(folder / "whole.exr");
+    CHECK(read(whole) == 0);
+    for (std::size_t length = 0; length < whole.size(); length += 1 + length / 40) {
+      CAPTURE(length);
+      CHECK(read(whole.substr(0, length)) == 65);
+    }
+    CHECK(read(whole.substr(0, whole.size() - 1)) == 65);
+    unsigned state = 1;
+    int refused = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+      std::string damaged = whole;
+      state = state * 1664525U + 1013904223U;
+      damaged[(state >> 4) % damaged.size()] ^= static_cast<char>(1U << (state >> 29));
+      const int ended = read(damaged);
+      CAPTURE(trial);
+      CHECK((ended == 0 || ended == 65));  // 0 where the flip made another valid pixel or attribute
+      refused += ended == 65 ? 1 : 0;
+    }
+    CHECK(refused > 20);
+  }
+}

@@ -1,0 +1,75 @@
+#include <doctest/doctest.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "lib/io/vdb_volumes.hpp"
+
+using namespace vam;
+using namespace vam::io;
+using namespace vam::volumes;
+using scratch::status;
+
+TEST_CASE("blocks that pass by make the volume that is read whole") {
+  const scratch::Folder folder;
+  const auto grid = model::centred_grid(200, 45, 150, 0.065, 0.4);
+  std::vector<SparseVolume> volumes;
+  volumes.push_back(filled("target", grid, ball(grid)));  // with tiles of 8 and of 128 voxels in it
+  volumes.push_back(SparseVolume("insert", grid));
+  volumes.push_back(SparseVolume("weight", grid, 7.5F));
+  const std::vector<float> slice(grid.slice_size(), -1.0F);
+  volumes[2].write_slices(4, 1, slice.data());
+  volumes[2].history = {"a line"};
+  volumes[2].units = "mJ/cm3";
+  volumes[2].metadata["vam:stretch_z"] = "1.037";
+  write_volumes(folder / "file.vdb", volumes);
+  {
+    const scratch::Redirect to(STDOUT_FILENO, folder / "pipe.vdb");
+    write_volumes("-", volumes);
+    write_volume("-", volumes[0]);  // a second archive on the same stream
+  }
+  for (const std::string name : {"target", "insert", "weight"}) {
+    CAPTURE(name);
+    const auto whole = dense(read_volume(folder / "file.vdb", name));
+    CHECK(by_blocks(folder / "file.vdb", name) == whole);
+    CHECK(by_blocks(folder / "pipe.vdb", name) == whole);
+  }
+  read_blocks(folder / "file.vdb", "weight", [&](const VolumeFacts& facts) {
+    CHECK(facts.grid == grid);
+    CHECK(facts.background == 7.5F);
+    CHECK(facts.history == volumes[2].history);
+    CHECK(facts.units == volumes[2].units);
+    CHECK(facts.metadata == volumes[2].metadata);
+    return [](const VoxelBlock&) {};
+  });
+  std::string line;
+  CHECK(status([&] { by_blocks(folder / "file.vdb", "dose"); }, &line) == 65);
+  CHECK(line.ends_with("has no grid 'dose', but target, insert, weight"));
+}
+
+TEST_CASE("blocks of other programs: half floats, all octants, tiles of any size, other grids before") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0F, {0.3F, -0.4F, 0.2F}, 0.25F);
+  sphere->setName("surface");
+  sphere->setSaveFloatAsHalf(true);
+  sphere->tree().addTile(2, {128, 0, 0}, 2.5F, true);
+  const auto before = openvdb::Vec3SGrid::create();
+  before->setName("velocity");
+  before->tree().setValue({1, 2, 3}, {1, 2, 3});
+  write_by_openvdb(folder / "a.vdb", {before, sphere});
+  const auto whole = dense(read_volume(folder / "a.vdb", "surface"));
+  CHECK(std::count(whole.begin(), whole.end(), 2.5F) == 128 * 128 * 128);
+  CHECK(by_blocks(folder / "a.vdb", "surface") == whole);
+  std::string line;
+  CHECK(status([&] { by_blocks(folder / "a.vdb", "velocity"); }, &line) == 65);
+  CHECK(line.ends_with("but velocity (vec3s), surface"));
+  const auto twin = sphere->copy();  // shares the tree
+  twin->setName("twin");
+  write_by_openvdb(folder / "twins.vdb", {sphere, twin});
+  CHECK(status([&] { by_blocks(folder / "twins.vdb", "twin"); }, &line) == 65);
+  CHECK(line.find("shares the voxels of 'surface'") != std::string::npos);
+  CHECK(by_blocks(folder / "twins.vdb", "surface") == whole);
+}

@@ -1,0 +1,102 @@
+#include <doctest/doctest.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "lib/io/vdb_volumes.hpp"
+
+using namespace vam;
+using namespace vam::io;
+using namespace vam::volumes;
+using scratch::spill;
+using scratch::status;
+
+TEST_CASE("a level set of another program gets its active box, off the index origin, and can be written back") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0F, {10.0F, -4.0F, 2.0F}, 0.25F);
+  sphere->setName("surface");
+  write_by_openvdb(folder / "sphere.vdb", {sphere});
+  SparseVolume volume = read_volume(folder / "sphere.vdb", "");
+  const auto box = sphere->evalActiveVoxelBoundingBox();
+  CHECK(volume.grid().nx == box.dim().x());
+  CHECK(volume.grid().voxel_mm == doctest::Approx(0.25));
+  const auto check = [&](const SparseVolume& read) {
+    const auto values = dense(read);
+    const auto accessor = sphere->getConstAccessor();
+    std::size_t at = 0;
+    std::size_t wrong = 0;
+    for (int k = 0; k < read.grid().nz; ++k) {
+      for (int j = 0; j < read.grid().ny; ++j) {
+        for (int i = 0; i < read.grid().nx; ++i) {
+          wrong += values[at++] != accessor.getValue(box.min() + openvdb::Coord(i, j, k)) ? 1 : 0;
+        }
+      }
+    }
+    CHECK(wrong == 0);
+    const openvdb::Vec3d centre = sphere->indexToWorld(box.min());
+    CHECK(read.grid().x_mm(0) == doctest::Approx(centre.x()));
+    CHECK(read.grid().z_mm(0) == doctest::Approx(centre.z()));
+  };
+  check(volume);
+  write_volume(folder / "again.vdb", volume);
+  const SparseVolume again = read_volume(folder / "again.vdb", "surface");
+  CHECK(again.grid() == volume.grid());
+  check(again);
+}
+
+TEST_CASE("what cannot be used is refused with 65 and its reason") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  std::string line;
+  const auto read = [&](const openvdb::GridPtrVec& grids) {
+    write_by_openvdb(folder / "a.vdb", grids);
+    const int whole = status([&] { read_volumes(folder / "a.vdb"); }, &line);
+    for (const auto& grid : grids) grid->setName("target");
+    write_by_openvdb(folder / "a.vdb", grids);
+    std::string ignored;
+    CHECK((status([&] { by_blocks(folder / "a.vdb", "target"); }, &ignored) == 0) == (whole == 0));
+    return whole;
+  };
+  const auto one_voxel = [](float value) {
+    const auto grid = openvdb::FloatGrid::create();
+    grid->setName("target");
+    grid->tree().setValue({1, 2, 3}, value);
+    return grid;
+  };
+  CHECK(read({one_voxel(1.0F)}) == 0);
+  CHECK(read({one_voxel(std::numeric_limits<float>::quiet_NaN())}) == 65);
+  CHECK(line.find("not a finite number") != std::string::npos);
+  const auto tile = openvdb::FloatGrid::create();
+  tile->tree().addTile(1, {0, 0, 0}, std::numeric_limits<float>::infinity(), true);
+  CHECK(read({tile}) == 65);
+  CHECK(read({openvdb::FloatGrid::create()}) == 65);
+  CHECK(line.find("is empty") != std::string::npos);
+  CHECK(read({openvdb::Vec3SGrid::create()}) == 65);
+  CHECK(line.find("no grid of floats, but") != std::string::npos);
+
+  auto turned = one_voxel(1.0F);
+  turned->transform().preRotate(0.3);
+  CHECK(read({turned}) == 65);
+  CHECK(line.find("rotated") != std::string::npos);
+  auto stretched = one_voxel(1.0F);
+  stretched->transform().preScale({1.0, 1.0, 1.1});
+  CHECK(read({stretched}) == 65);
+  auto far = one_voxel(1.0F);
+  far->tree().setValue({2'000'000'000, 0, 0}, 1.0F);
+  CHECK(read({far}) == 65);
+  CHECK(line.find("32768") != std::string::npos);
+  auto shaped = one_voxel(1.0F);
+  shaped->insertMeta("vam:shape", openvdb::Vec3IMetadata({2'000'000'000, 1, 1}));
+  CHECK(read({shaped}) == 65);
+  // Other grids beside a float grid do not matter.
+  CHECK(read({openvdb::Vec3SGrid::create(), one_voxel(1.0F)}) == 0);
+
+  spill(folder / "empty.vdb", "");
+  CHECK(status([&] { read_volumes(folder / "empty.vdb"); }) == 65);
+  spill(folder / "text.vdb", std::string(1000, 'x'));
+  CHECK(status([&] { read_volumes(folder / "text.vdb"); }, &line) == 65);
+  CHECK(status([&] { read_volumes(folder / "absent.vdb"); }) == 66);
+}
