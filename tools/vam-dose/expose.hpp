@@ -1,0 +1,34 @@
+// From sinograms to doses of one turn.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "io/exr_stack.hpp"
+#include "io/vdb.hpp"
+#include "metrology/exposure.hpp"
+#include "metrology/simulation.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/printer.hpp"
+#include "vam-dose/options.hpp"
+#include "vam-dose/place.hpp"
+
+namespace vam::dose_tool {
+
+/// What there was to see.
+struct Exposed {
+  metrology::LightSeen light;
+  metrology::DoseRange doses;
+  model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
+  std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
+};
+
+/// Standard deviation in mm of what beam and resin smear; 0 when it is to be left out.
+[[nodiscard]] double blur_mm(const Options& options, const model::Printer& printer);
+
+/// Fills the volume, a batch of slices at a time, in units of light times radian. Warns of light that no projector can
+/// show and of part that no light reaches.
+[[nodiscard]] Exposed expose(io::StackReader& in, const Options& options, const model::Printer& printer,
+                             const Place& place, io::SparseVolume& volume);
+
+}  // namespace vam::dose_tool

@@ -1,0 +1,36 @@
+// What the user asks of vam-dose, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "model/printer.hpp"
+#include "optics/resample_stack.hpp"
+
+namespace vam::dose_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string like;
+  std::optional<double> size_mm;
+  std::optional<double> full_scale;
+  std::optional<double> seconds;
+  bool no_blur = false;
+  bool keep_negative = false;
+  bool exposure_plan = false;
+  double angle_offset_deg = 0;
+  optics::Alignment alignment;
+  std::string report;
+  cli::PrinterOptions printer;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+/// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
+/// other or the printer.
+void settle(Options& options, const model::Printer& printer);
+
+}  // namespace vam::dose_tool

@@ -1,0 +1,40 @@
+#include "vam-dose/place.hpp"
+
+#include "base/error.hpp"
+#include "io/printer_file.hpp"
+#include "metrology/simulation.hpp"
+
+namespace vam::dose_tool {
+
+Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
+  Place place;
+  if (options.like.empty()) {
+    place.grid = metrology::dose_grid(printer, info, options.size_mm);
+    return place;
+  }
+  place.like = io::read_volumes(options.like);
+  for (const io::SparseVolume& volume : place.like) {
+    if (volume.name() == "target") place.target = &volume;
+    if (volume.name() == "insert") place.insert = &volume;
+  }
+  if (options.exposure_plan && place.target == nullptr) {
+    throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan needs the part"};
+  }
+  place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
+  return place;
+}
+
+io::SparseVolume empty_volume(const cli::App& app, const Place& place, const model::Printer& printer,
+                              const model::StackInfo& info) {
+  io::SparseVolume volume("dose", place.grid);
+  volume.metadata = info.extra;
+  if (!place.like.empty()) {
+    volume.metadata.insert(place.like.front().metadata.begin(), place.like.front().metadata.end());
+  }
+  volume.metadata["vam:printer"] = io::printer_settings(printer);
+  volume.history = info.history;
+  volume.history.push_back(app.history());
+  return volume;
+}
+
+}  // namespace vam::dose_tool

@@ -1,0 +1,29 @@
+// Where the dose goes.
+#pragma once
+
+#include <vector>
+
+#include "io/vdb.hpp"
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "vam-dose/options.hpp"
+
+namespace vam::dose_tool {
+
+/// The voxels, what is known about them, and the part and the insert if there are any.
+struct Place {
+  std::vector<io::SparseVolume> like;
+  const io::SparseVolume* target = nullptr;
+  const io::SparseVolume* insert = nullptr;
+  model::Grid grid;
+};
+
+/// As --like says, or around what the light reaches. Throws Fault::data when an exposure is to be planned without part.
+[[nodiscard]] Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info);
+
+/// The volume 'dose', with the histories of light and part.
+[[nodiscard]] io::SparseVolume empty_volume(const cli::App& app, const Place& place, const model::Printer& printer,
+                                            const model::StackInfo& info);
+
+}  // namespace vam::dose_tool

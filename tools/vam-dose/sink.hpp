@@ -1,0 +1,46 @@
+// Doses slice by slice, on their way into the volume.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "io/vdb.hpp"
+#include "metrology/exposure.hpp"
+#include "model/circle.hpp"
+#include "model/dose_metrics.hpp"
+#include "vam-dose/insert.hpp"
+#include "vam-dose/place.hpp"
+
+namespace vam::dose_tool {
+
+/// Takes them in ascending order, writes them eight at a time, and gathers what is to be said about them.
+class Sink {
+ public:
+  /// judged: where part and void are told apart, if at all.
+  Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, int first,
+       std::optional<model::Circle> judged);
+
+  /// The insert's voxels become dark.
+  void add(Image& dose);
+  void flush();
+  [[nodiscard]] const metrology::DoseRange& range() const { return range_; }
+  [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
+
+ private:
+  void judge(const Image& dose, const Image& part);
+
+  io::SparseVolume& volume_;
+  const io::SparseVolume* target_;
+  const Insert& insert_;
+  int next_;
+  int pending_ = 0;
+  std::vector<float> buffer_;
+  metrology::DoseRange range_;
+  std::optional<model::Circle> judged_;
+  model::DoseStatistics statistics_;
+};
+
+/// Multiplies the whole volume.
+void scale(io::SparseVolume& volume, double factor);
+
+}  // namespace vam::dose_tool

@@ -1,0 +1,68 @@
+#include "vam-dose/unit.hpp"
+
+#include <string>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "metrology/exposure.hpp"
+#include "vam-dose/sink.hpp"
+
+namespace vam::dose_tool {
+
+namespace {
+
+metrology::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
+                                const Options& options) {
+  if (doses.part == 0 || doses.void_ == 0) {
+    throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " voxels of part and " +
+                                 std::to_string(doses.void_) + " of void; --exposure-plan needs both"};
+  }
+  if (doses.min_part <= doses.max_void) {
+    warn("exposure: void takes up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 a turn, part from " +
+         format_number(scale * doses.min_part, 4) + "; there is no process window, the best threshold is planned for");
+  }
+  return metrology::plan_exposure(scale * metrology::window_middle(doses), printer);
+}
+
+}  // namespace
+
+Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer) {
+  const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
+  const double full = options.full_scale ? 1.0 : exposed.light.peak;
+  Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, {}};
+  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, options);
+  return unit;
+}
+
+void convert(io::SparseVolume& volume, const Unit& unit) {
+  const double turns = unit.plan ? unit.plan->turns * unit.plan->multiplier : 1.0;  // of full light
+  if (unit.absolute) {
+    scale(volume, unit.turn * turns);
+    volume.units = "mJ/cm3";
+  }
+  if (unit.plan) volume.metadata["vam:full_light_turns"] = format_number(turns, 9);
+}
+
+Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
+             model::Space light) {
+  const metrology::LightSeen& seen = exposed.light;
+  Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
+  report["model"] = light == model::Space::projector ? "chief rays" : "parallel";
+  report["full_scale"] = options.full_scale.value_or(seen.peak);
+  report["light_efficiency"] = seen.efficiency.value();
+  report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
+  if (unit.plan) {
+    metrology::add_to(report, *unit.plan);
+    report["peak_value"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
+  }
+  report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
+  if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;
+  report["blur_sigma_mm"] = blur_mm(options, printer);
+  report["absorption_per_mm"] = printer.resin.absorption_per_mm;
+  // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.
+  report["absorption_for_shortest_print_per_mm"] = 1 / model::resin_radius_mm(printer.vial);
+  return report;
+}
+
+}  // namespace vam::dose_tool

@@ -1,0 +1,32 @@
+// The unit of doses: relative, or mJ/cm3, of a turn or of a whole print.
+#pragma once
+
+#include <optional>
+
+#include "base/json.hpp"
+#include "io/vdb.hpp"
+#include "metrology/exposure_plan.hpp"
+#include "model/printer.hpp"
+#include "vam-dose/expose.hpp"
+#include "vam-dose/options.hpp"
+
+namespace vam::dose_tool {
+
+struct Unit {
+  bool absolute = false;
+  double turn = 1;                              // multiplies the dose of one turn
+  std::optional<metrology::ExposurePlan> plan;  // of the print
+};
+
+/// Absolute when the resin says what it takes. Throws Fault::data when an exposure is to be planned for a target
+/// without part or void; warns when there is no process window.
+[[nodiscard]] Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer);
+
+/// The volume in that unit.
+void convert(io::SparseVolume& volume, const Unit& unit);
+
+/// For --report.
+[[nodiscard]] Json figures(const Exposed& exposed, const Unit& unit, const Options& options,
+                           const model::Printer& printer, model::Space light);
+
+}  // namespace vam::dose_tool
