@@ -11,6 +11,16 @@
 
 namespace vam::project {
 
+namespace {
+
+void warn_clipped(const resin::LightTally& tally) {
+  if (tally.clipped == 0) return;
+  warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
+       " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
+}
+
+}  // namespace
+
 resin::Response response_of(const model::Projector& projector) {
   if (projector.response.empty()) return resin::projector_response(projector);
   return resin::Response(io::read_response(projector.response));
@@ -44,6 +54,7 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
   sink.commit();
   resin::LightTally all;
   for (const auto& tally : tallies) all += tally;
+  warn_clipped(all);
   return all;
 }
 
@@ -58,12 +69,6 @@ Json figures(const Frames& frames, int bits, double peak, const resin::LightTall
           {"mean_intensity_fraction", tally.light / static_cast<double>(tally.pixels)},
           {"mean_lit_intensity_fraction", tally.light / lit},
           {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};
-}
-
-void warn_clipped(const resin::LightTally& tally) {
-  if (tally.clipped == 0) return;
-  warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
-       " % of the lit pixels are beyond full intensity and were clipped; lower --intensity or raise --peak");
 }
 
 }  // namespace vam::project

@@ -23,10 +23,11 @@ struct Frames {
 [[nodiscard]] resin::Response response_of(const model::Projector& projector);
 
 /// All frames through the grey levels into the sink, a few at a time; `scale` takes the light to fractions of full.
+/// Warns of what was clipped.
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
                        io::FrameSink& sink);
 
+/// For --report.
 [[nodiscard]] Json figures(const Frames& frames, int bits, double peak, const resin::LightTally& tally);
-void warn_clipped(const resin::LightTally& tally);
 
 }  // namespace vam::project

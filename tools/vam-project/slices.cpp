@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -31,6 +33,42 @@ void require_slices(const SliceStack& stack) {
   }
 }
 
+double slices_per_s(const SliceStack& stack, const Options& options) {
+  require_slices(stack);
+  if (options.fps && options.print_speed_mm_h) {
+    throw Error{Fault::usage, "--fps, --print-speed: each gives the slices' rate; leave one out"};
+  }
+  if (options.fps) return *options.fps;
+  const auto slice_mm = fact(stack.info, "vam:slice_mm");
+  const auto speed_mm_h = options.print_speed_mm_h ? options.print_speed_mm_h : fact(stack.info, "vam:speed_mm_h");
+  if (slice_mm && speed_mm_h) return *speed_mm_h / 3600 / *slice_mm;
+  if (options.print_speed_mm_h) {
+    throw Error{Fault::usage, "--print-speed: " + stack.name + " does not say its slice height; give --fps"};
+  }
+  const auto& about = stack.about;
+  if (about.size() > 1 && about.front().has_time && about.back().time_s > about.front().time_s) {
+    return static_cast<double>(about.size() - 1) / (about.back().time_s - about.front().time_s);
+  }
+  throw Error{Fault::data, stack.name + ": says neither print speed and slice height nor times; give --fps"};
+}
+
+Frames frames_of(const SliceStack& stack, double fps, const Options& options, const model::Projector& projector) {
+  const auto place = std::make_shared<optics::SlicePlace>(stack.name, projector, stack.info, options.column_offset,
+                                                          options.row_offset);
+  const auto response = std::make_shared<resin::Response>(response_of(projector));
+  const auto dark = static_cast<float>(response->intensity(0));
+  Frames frames{stack.info.count, fps, 0, {}, true};
+  frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int) {
+    Image slice;
+    if (!next(slice)) throw Error{Fault::bug, name + ": fewer slices than announced"};
+    if (grey) resin::to_intensity(slice, *response);
+    Image placed;
+    if (&place->place(slice, dark, placed) == &slice) return slice;
+    return placed;
+  };
+  return frames;
+}
+
 }  // namespace
 
 SliceStack slices_of(const std::string& path, io::StackReader& reader) {
@@ -50,40 +88,26 @@ SliceStack slice_folder(const std::string& path) {
   return stack;
 }
 
-double slices_per_s(const SliceStack& stack, const SliceTiming& timing) {
-  require_slices(stack);
-  if (timing.fps && timing.speed_mm_h) {
-    throw Error{Fault::usage, "--fps, --print-speed: each gives the slices' rate; leave one out"};
-  }
-  if (timing.fps) return *timing.fps;
-  const auto slice_mm = fact(stack.info, "vam:slice_mm");
-  const auto speed_mm_h = timing.speed_mm_h ? timing.speed_mm_h : fact(stack.info, "vam:speed_mm_h");
-  if (slice_mm && speed_mm_h) return *speed_mm_h / 3600 / *slice_mm;
-  if (timing.speed_mm_h) {
-    throw Error{Fault::usage, "--print-speed: " + stack.name + " does not say its slice height; give --fps"};
-  }
-  const auto& about = stack.about;
-  if (about.size() > 1 && about.front().has_time && about.back().time_s > about.front().time_s) {
-    return static_cast<double>(about.size() - 1) / (about.back().time_s - about.front().time_s);
-  }
-  throw Error{Fault::data, stack.name + ": says neither print speed and slice height nor times; give --fps"};
+bool is_folder(const std::string& path) {
+  std::error_code ignored;
+  return path != "-" && std::filesystem::is_directory(path, ignored);
 }
 
-Frames frames_of(const SliceStack& stack, double fps, const model::Projector& projector, double column_offset,
-                 double row_offset) {
-  const auto place = std::make_shared<optics::SlicePlace>(stack.name, projector, stack.info, column_offset, row_offset);
-  const auto response = std::make_shared<resin::Response>(response_of(projector));
-  const auto dark = static_cast<float>(response->intensity(0));
-  Frames frames{stack.info.count, fps, 0, {}, true};
-  frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int) {
-    Image slice;
-    if (!next(slice)) throw Error{Fault::bug, name + ": fewer slices than announced"};
-    if (grey) resin::to_intensity(slice, *response);
-    Image placed;
-    if (&place->place(slice, dark, placed) == &slice) return slice;
-    return placed;
-  };
-  return frames;
+Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
+                      const SliceStack& slices) {
+  for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow"}) {
+    if (!app.given(option)) continue;
+    throw Error{Fault::usage, std::string(option) + ": " + slices.name +
+                                  " holds slices, which are shown once, by time; leave it out"};
+  }
+  return frames_of(slices, slices_per_s(slices, options), options, printer.projector);
+}
+
+Json slice_figures(const Frames& frames, const Options& options, const model::Projector& projector,
+                   const resin::LightTally& tally) {
+  Json report = figures(frames, projector.bits, options.peak.value_or(1), tally);
+  report.erase("step_deg");
+  return report;
 }
 
 model::StackInfo facts_of(const SliceStack& stack, double fps, const model::Projector& projector) {

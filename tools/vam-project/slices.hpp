@@ -3,12 +3,14 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
+#include <vector>
 
+#include "base/json.hpp"
+#include "cli/app.hpp"
 #include "io/exr_stack.hpp"
-#include "io/frame_sink.hpp"
 #include "model/printer.hpp"
+#include "vam-project/options.hpp"
 #include "vam-project/show.hpp"
 
 namespace vam::project {
@@ -24,18 +26,19 @@ struct SliceStack {
 /// A folder of pictures; its values are grey.
 [[nodiscard]] SliceStack slice_folder(const std::string& path);
 
-struct SliceTiming {
-  std::optional<double> fps;
-  std::optional<double> speed_mm_h;
-};
-/// Slices per second: as given, or print speed / slice height, or by the times of the slices. Throws Fault::usage when
-/// both are given, or the height is not known to a given speed; Fault::data when nothing is known, or the frames belong
-/// to stage angles.
-[[nodiscard]] double slices_per_s(const SliceStack& stack, const SliceTiming& timing);
+/// Whether slices are a folder of pictures, not a stack.
+[[nodiscard]] bool is_folder(const std::string& path);
 
-/// The slices in the projector's picture, as fractions of full intensity.
-[[nodiscard]] Frames frames_of(const SliceStack& stack, double fps, const model::Projector& projector,
-                               double column_offset, double row_offset);
+/// The slices in the projector's picture, as fractions of full intensity, one after the other: they know no stage.
+/// Slices per second are as the options say, or print speed / slice height, or by the times of the slices. Throws
+/// Fault::usage for options of the stage, when both fps and speed are given, or the height is not known to a given
+/// speed; Fault::data when nothing is known, or the frames belong to stage angles.
+[[nodiscard]] Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
+                                    const SliceStack& slices);
+
+/// For --report.
+[[nodiscard]] Json slice_figures(const Frames& frames, const Options& options, const model::Projector& projector,
+                                 const resin::LightTally& tally);
 
 /// The facts of the frames that come of it.
 [[nodiscard]] model::StackInfo facts_of(const SliceStack& stack, double fps, const model::Projector& projector);

@@ -1,0 +1,41 @@
+#include "vam-project/files.hpp"
+
+#include "io/frame_sink.hpp"
+#include "io/report.hpp"
+#include "optics/frames.hpp"
+#include "vam-project/show.hpp"
+#include "vam-project/turn.hpp"
+
+namespace vam::project {
+
+void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
+  const model::Projector& projector = printer.projector;
+  const double turns = options.turns.value_or(printer.stage.turns);
+  const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
+  const Light light = read_light(options, reader, projector);
+  const double peak = options.peak.value_or(light.peak);
+
+  const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
+  io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
+                             projector.bits, options.stack};
+  facts.info.units = "fraction of full intensity";
+  facts.info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, facts);
+  const Frames frames = frames_of(light, schedule);
+  const auto tally = show(frames, static_cast<float>(options.intensity / peak), projector, app.given("--bits"), *sink);
+  io::write_report(options.report, "vam-project/1", figures(frames, projector.bits, peak, tally));
+}
+
+void write_slices(const cli::App& app, const Options& options, const model::Printer& printer,
+                  const SliceStack& slices) {
+  const Frames frames = slices_in_time(app, options, printer, slices);
+  io::FrameSinkOptions facts{facts_of(slices, frames.fps, printer.projector), frames.fps, printer.projector.bits,
+                             options.stack};
+  facts.info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, facts);
+  const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
+  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), *sink);
+  io::write_report(options.report, "vam-project/1", slice_figures(frames, options, printer.projector, tally));
+}
+
+}  // namespace vam::project

@@ -1,0 +1,49 @@
+#include "vam-project/live.hpp"
+
+#include "device/interrupt.hpp"
+
+namespace vam::project {
+
+Live::Live(const LiveOptions& options, const std::string& output, const device::DisplayMode& wanted)
+    : options_(options), log_(options.log), clock_(device::real_clock()) {
+  if (options.with_parent) device::end_with_parent();
+  if (!options.light.empty()) {
+    light_ = device::open_light(options.light, options.max_led_current, &guardian_);
+    light_->prepare();
+  }
+  display_ = device::open_display(output, wanted, clock_, &guardian_);
+  const auto mode = display_->mode();
+  log_("display", {{"device", output}, {"columns", mode.columns}, {"rows", mode.rows}, {"hz", mode.hz}});
+}
+
+void Live::add(const GreyImage& levels) {
+  device::check_interrupted();
+  display_->add(levels);
+  ++frames_;
+}
+
+device::PlayTally Live::play(double speed_deg_s, int turns) {
+  const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
+                                              : device::followed_angle(options_.follow, clock_);
+  device::PlayPlan plan;
+  plan.frames_per_turn = frames_;
+  plan.turns = turns;
+  plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
+  plan.allowed_missed = options_.allowed_missed;
+  const auto tally = device::play(*display_, light_.get(), *angles, clock_, plan, logger());
+  log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
+  return tally;
+}
+
+device::PlayTally Live::play_through(double hold_s, bool forever) {
+  return device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger());
+}
+
+std::function<void(const device::FlipRecord&)> Live::logger() {
+  return [this](const device::FlipRecord& record) {
+    guardian_.beat();
+    log_.line(device::to_json(record));
+  };
+}
+
+}  // namespace vam::project

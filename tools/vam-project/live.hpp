@@ -1,0 +1,72 @@
+// vam-project's live half: a display, a light engine and the table's angle behind the sink that files have, too.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "device/event_log.hpp"
+#include "device/player.hpp"
+#include "io/frame_sink.hpp"
+#include "vam-project/options.hpp"
+
+namespace vam::project {
+
+/// The instrument, taken before any frame is read: a second user learns at once that it is in use.
+class Live {
+ public:
+  Live(const LiveOptions& options, const std::string& output, const device::DisplayMode& wanted);
+
+  void add(const GreyImage& levels);
+  /// One turn's frames are loaded: prints with them.
+  device::PlayTally play(double speed_deg_s, int turns);
+  /// Shows the loaded frames one after the other.
+  device::PlayTally play_through(double hold_s, bool forever);
+
+ private:
+  std::function<void(const device::FlipRecord&)> logger();
+
+  LiveOptions options_;
+  device::Guardian guardian_;  // first: it forks before any thread, window or device
+  device::EventLog log_;
+  device::Clock& clock_;
+  std::unique_ptr<device::LightEngine> light_;
+  std::unique_ptr<device::Display> display_;
+  int frames_ = 0;
+};
+
+/// Preloads what it is given; commit() plays it.
+class LiveSink final : public io::FrameSink {
+ public:
+  LiveSink(Live& live, double speed_deg_s, int turns) : live_(live), speed_deg_s_(speed_deg_s), turns_(turns) {}
+  void write(std::span<const io::ProjectorFrame> frames) override {
+    for (const auto& frame : frames) live_.add(frame.levels);
+  }
+  void commit() override { tally = live_.play(speed_deg_s_, turns_); }
+
+  device::PlayTally tally;
+
+ private:
+  Live& live_;
+  double speed_deg_s_;
+  int turns_;
+};
+
+/// The same for frames that belong to times: each is held for `hold_s`, once.
+class LiveSequence final : public io::FrameSink {
+ public:
+  LiveSequence(Live& live, double hold_s) : live_(live), hold_s_(hold_s) {}
+  void write(std::span<const io::ProjectorFrame> frames) override {
+    for (const auto& frame : frames) live_.add(frame.levels);
+  }
+  void commit() override { tally = live_.play_through(hold_s_, false); }
+
+  device::PlayTally tally;
+
+ private:
+  Live& live_;
+  double hold_s_;
+};
+
+}  // namespace vam::project

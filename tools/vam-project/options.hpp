@@ -1,0 +1,54 @@
+// What the user asks of vam-project, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "device/player.hpp"
+#include "io/frame_sink.hpp"
+#include "model/printer.hpp"
+#include "optics/patterns.hpp"
+
+namespace vam::project {
+
+struct LiveOptions {
+  std::string follow;
+  std::string light;
+  std::string log;
+  std::optional<double> latency_ms;
+  int max_led_current = 0;
+  double allowed_missed = device::PlayPlan{}.allowed_missed;
+  std::optional<int> frames_per_turn;
+  bool with_parent = false;
+};
+
+struct PatternOptions {
+  optics::PatternPlan plan;
+  double hold_s = 0.5;
+  bool repeat = false;
+};
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::optional<double> fps, print_speed_mm_h, speed_deg_s, turns, flatland_mm, peak;
+  std::optional<int> bits;
+  std::string orientation;
+  double column_offset = 0;
+  double row_offset = 0;
+  double intensity = 1;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+  std::string report;
+  LiveOptions live;
+  PatternOptions pattern;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+/// The printer as options change it, and what options take from it. Throws Fault::usage for a depth no projector has.
+[[nodiscard]] model::Printer settle(Options& options);
+
+}  // namespace vam::project

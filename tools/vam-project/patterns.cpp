@@ -1,0 +1,74 @@
+#include "vam-project/patterns.hpp"
+
+#include <span>
+
+#include "device/interrupt.hpp"
+#include "io/frame_sink.hpp"
+#include "optics/frames.hpp"
+#include "optics/patterns.hpp"
+#include "vam-project/live.hpp"
+
+namespace vam::project {
+
+namespace {
+
+// Columns and rows as the projector is mounted.
+GreyImage oriented_pattern(const PatternOptions& options, const model::Projector& projector, int n) {
+  const GreyImage plain = optics::pattern_frame(options.plan, projector, n);
+  Image levels(plain.width, plain.height);
+  for (std::size_t i = 0; i < plain.values.size(); ++i) levels.values[i] = plain.values[i];
+  optics::orient(levels, projector.orientation);
+  GreyImage turned(levels.width, levels.height, plain.bits);
+  for (std::size_t i = 0; i < levels.values.size(); ++i)
+    turned.values[i] = static_cast<std::uint16_t>(levels.values[i]);
+  return turned;
+}
+
+io::ProjectorFrame pattern_as_frame(const GreyImage& levels, double time_s) {
+  io::ProjectorFrame frame;
+  frame.levels = levels;
+  frame.intensity = Image(levels.width, levels.height);
+  for (std::size_t i = 0; i < levels.values.size(); ++i) {
+    frame.intensity.values[i] = static_cast<float>(levels.values[i]) / static_cast<float>(levels.full());
+  }
+  frame.time_s = time_s;
+  return frame;
+}
+
+model::StackInfo stack_info(const model::Projector& projector, int count) {
+  model::StackInfo info;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::projector;
+  info.width = projector.columns;
+  info.height = projector.rows;
+  info.count = count;
+  info.pixel_mm = projector.pixel_mm;
+  info.row_mm = -projector.pixel_mm;
+  info.z_start_mm = projector.axis_row * projector.pixel_mm;
+  info.units = "fraction of full grey";
+  return info;
+}
+
+}  // namespace
+
+void show_pattern(const cli::App& app, const Options& options, const model::Projector& projector) {
+  const PatternOptions& pattern = options.pattern;
+  const int count = optics::pattern_frames(pattern.plan, projector);
+  if (device::names_display(options.output)) {
+    return device::interruptible([&] {
+      Live live(options.live, options.output, {projector.columns, projector.rows, 60});
+      for (int n = 0; n < count; ++n) live.add(oriented_pattern(pattern, projector, n));
+      live.play_through(pattern.hold_s, pattern.repeat);
+    });
+  }
+  model::StackInfo info = stack_info(projector, count);
+  info.history.push_back(app.history());
+  const auto sink = io::open_frame_sink(options.output, {info, 1 / pattern.hold_s, projector.bits, options.stack});
+  for (int n = 0; n < count; ++n) {
+    const io::ProjectorFrame frame = pattern_as_frame(oriented_pattern(pattern, projector, n), n * pattern.hold_s);
+    sink->write(std::span(&frame, 1));
+  }
+  sink->commit();
+}
+
+}  // namespace vam::project

@@ -1,0 +1,73 @@
+#include "vam-project/print.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/report.hpp"
+#include "vam-project/live.hpp"
+#include "vam-project/slices.hpp"
+#include "vam-project/turn.hpp"
+
+namespace vam::project {
+
+namespace {
+
+void write_report(const Options& options, Json& report, const device::PlayTally& shown) {
+  report["flips"] = shown.flips;
+  report["lit_flips"] = shown.lit;
+  report["missed_flips"] = shown.missed;
+  io::write_report(options.report, "vam-project/1", report);
+}
+
+void play_slices(const cli::App& app, const Options& options, const model::Printer& printer, const SliceStack& slices,
+                 Live& live) {
+  const Frames frames = slices_in_time(app, options, printer, slices);
+  LiveSequence sink(live, 1 / frames.fps);
+  const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
+  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), sink);
+  Json report = slice_figures(frames, options, printer.projector, tally);
+  write_report(options, report, sink.tally);
+}
+
+int whole_turns(const Options& options, const model::Printer& printer) {
+  const double turns = options.turns.value_or(printer.stage.turns);
+  if (turns == std::floor(turns)) return static_cast<int>(turns);
+  throw Error{Fault::usage, "--turns: a live print has whole turns, not " + format_number(turns)};
+}
+
+// One turn's frames into the display, then the print: the angle of the table chooses the frame.
+void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, int turns,
+                io::StackReader& reader, Live& live) {
+  const Light light = read_light(options, reader, printer.projector);
+  const double peak = options.peak.value_or(light.peak);
+  const int frames = options.live.frames_per_turn.value_or(reader.info().height);
+  const auto schedule = optics::frame_schedule(frames, 360, 1);
+  LiveSink sink(live, printer.stage.speed_deg_s, turns);
+  const Frames shown = frames_of(light, schedule);
+  const auto tally =
+      show(shown, static_cast<float>(options.intensity / peak), printer.projector, app.given("--bits"), sink);
+  Json report = figures(shown, printer.projector.bits, peak, tally);
+  report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
+  report.erase("fps_hz");
+  write_report(options, report, sink.tally);
+}
+
+}  // namespace
+
+void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {
+  const int turns = whole_turns(options, printer);
+  if (options.live.follow == "-" && options.input == "-") {
+    throw Error{Fault::usage,
+                "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
+  }
+  Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
+  if (is_folder(options.input)) return play_slices(app, options, printer, slice_folder(options.input), live);
+  io::StackReader reader(options.input);
+  if (reader.info().kind == model::Kind::frames) {
+    return play_slices(app, options, printer, slices_of(options.input, reader), live);
+  }
+  play_turns(app, options, printer, turns, reader, live);
+}
+
+}  // namespace vam::project

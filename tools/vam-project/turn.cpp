@@ -1,0 +1,44 @@
+#include "vam-project/turn.hpp"
+
+#include <memory>
+
+#include "base/log.hpp"
+#include "optics/flatland.hpp"
+
+namespace vam::project {
+
+namespace {
+
+template <class Source>
+Light read_light(io::StackReader& reader, const std::shared_ptr<Source>& source) {
+  Progress progress("reading", reader.info().count);
+  Image slice;
+  for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source->add(slice, about.z_mm);
+  source->check();
+  return {[source](double angle, double span) { return source->frame(angle, span); },
+          static_cast<double>(source->peak())};
+}
+
+}  // namespace
+
+Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector) {
+  const auto& info = reader.info();
+  const double right = options.column_offset;
+  const double down = options.row_offset;
+  if (options.flatland_mm) {
+    io::require(options.input, info, model::Kind::sinogram, model::Space::virtual_);
+    const auto canvas = optics::flatland_canvas(projector, right, down);
+    return read_light(reader,
+                      std::make_shared<optics::FlatlandSlice>(options.input, info, canvas, *options.flatland_mm));
+  }
+  io::require(options.input, info, model::Kind::sinogram, model::Space::projector);
+  const auto place = optics::frame_place(projector, right, down);
+  return read_light(reader, std::make_shared<optics::FrameComposer>(options.input, info, place));
+}
+
+Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {
+  return {schedule.count, schedule.fps, schedule.step_deg,
+          [&](int n) { return light.frame(schedule.angle_deg(n), schedule.step_deg); }, false};
+}
+
+}  // namespace vam::project

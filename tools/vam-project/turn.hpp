@@ -1,0 +1,27 @@
+// A sinogram as the light that a turning part needs.
+#pragma once
+
+#include <functional>
+
+#include "io/exr_stack.hpp"
+#include "model/printer.hpp"
+#include "optics/frames.hpp"
+#include "vam-project/options.hpp"
+#include "vam-project/show.hpp"
+
+namespace vam::project {
+
+/// What to show around a stage angle, over a span of angles, in the units of the stack whose largest value is peak.
+struct Light {
+  std::function<Image(double angle_deg, double span_deg)> frame;
+  double peak = 0;
+};
+
+/// Reads the whole stack: a projector's, or with --flatland one slice of a virtual one. Throws Fault::data for another
+/// kind of stack, and for light beside the projector.
+[[nodiscard]] Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector);
+
+/// The light stays the caller's.
+[[nodiscard]] Frames frames_of(const Light& light, const optics::FrameSchedule& schedule);
+
+}  // namespace vam::project
