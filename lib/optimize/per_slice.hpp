@@ -21,7 +21,7 @@ inline constexpr int slices_per_pass = slabs_per_pass * lanes;
 /// One number for each slice of the pass: values[slab][lane].
 using PerSlice = std::vector<std::array<float, lanes>>;
 
-/// As many slabs of that shape as `like`.
+/// So many slabs of zeros.
 [[nodiscard]] std::vector<Slab> slabs(std::size_t count, int width, int height);
 
 /// work(slab, first, last): the slab's values [first, last), whole lane groups, shared among the threads.

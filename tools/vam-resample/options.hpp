@@ -1,0 +1,38 @@
+// What the user asks of vam-resample, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/exr_stack.hpp"
+#include "optics/resample_stack.hpp"
+
+namespace vam::resample_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string to = "projector";
+  std::string interpolation = "cubic";
+  bool no_fresnel = false;
+  bool no_jacobian = false;
+  bool fresnel = false;
+  bool jacobian = false;
+  bool keep_negative = false;
+  double angle_offset_deg = 0;
+  optics::Alignment alignment;
+  std::optional<double> voxel_mm;
+  std::optional<int> columns;
+  bool explain = false;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+/// Throws Fault::usage for options that have no meaning in this direction.
+void check(const Options& options);
+
+}  // namespace vam::resample_tool

@@ -1,0 +1,23 @@
+// The dose and its target.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "io/vdb.hpp"
+#include "vam-score/options.hpp"
+
+namespace vam::score_tool {
+
+struct Inputs {
+  std::vector<io::SparseVolume> volumes;
+  std::size_t dose_at = 0;
+  std::size_t target_at = 0;
+  [[nodiscard]] const io::SparseVolume& dose() const { return volumes[dose_at]; }
+  [[nodiscard]] const io::SparseVolume& target() const { return volumes[target_at]; }
+};
+
+/// Throws Fault::data when a grid is missing, or when the two are not of the same voxels.
+[[nodiscard]] Inputs read(const Options& options);
+
+}  // namespace vam::score_tool

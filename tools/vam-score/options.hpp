@@ -1,0 +1,31 @@
+// What the user asks of vam-score, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "metrology/score.hpp"
+
+namespace vam::score_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string grid = "dose";
+  std::string target;
+  std::string sinogram;
+  std::string require;
+  std::string report;
+  std::string print;
+  std::string print_as = "mesh";
+  std::optional<double> print_at;
+  bool json = false;
+  metrology::ScoreOptions how;
+  cli::PrinterOptions printer;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+
+}  // namespace vam::score_tool

@@ -1,0 +1,26 @@
+#include "vam-score/print.hpp"
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/mesh_file.hpp"
+#include "solid/isosurface.hpp"
+
+namespace vam::score_tool {
+
+void write_print(const Options& options, const io::SparseVolume& dose, double threshold) {
+  const auto read_slices = [&](int k, int count, float* out) { dose.read_slices(k, count, out); };
+  const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
+  if (options.print_as == "mesh") {
+    const auto mesh = solid::isosurface(dose.grid(), read_slices, threshold);
+    if (mesh.triangles.empty()) throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold)};
+    return io::write_ply(options.print, mesh, {}, comments);
+  }
+  const auto print = solid::printed_points(dose.grid(), read_slices, threshold);
+  if (print.points.points.empty()) throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold)};
+  io::write_ply(options.print, print.points, print.values, comments);
+}
+
+}  // namespace vam::score_tool

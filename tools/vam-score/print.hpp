@@ -1,0 +1,12 @@
+// What prints, as a mesh or as points.
+#pragma once
+
+#include "io/vdb.hpp"
+#include "vam-score/options.hpp"
+
+namespace vam::score_tool {
+
+/// To --print. Throws Fault::data when nothing prints at this dose.
+void write_print(const Options& options, const io::SparseVolume& dose, double threshold);
+
+}  // namespace vam::score_tool

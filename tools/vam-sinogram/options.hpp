@@ -1,0 +1,32 @@
+// What the user asks of vam-sinogram, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/exr_stack.hpp"
+
+namespace vam::sinogram_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string grid = "target";
+  int angles = 360;
+  std::optional<int> columns;
+  std::string filter = "none";
+  std::optional<double> cutoff;
+  std::string negative = "keep";
+  std::optional<double> attenuation_per_mm;
+  bool resin = false;
+  bool at_wall = false;
+  cli::PrinterOptions printer;
+  io::StackOptions stack;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+
+}  // namespace vam::sinogram_tool

@@ -1,0 +1,41 @@
+// What the user asks of vam-slice, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "model/printer.hpp"
+#include "solid/part.hpp"
+
+namespace vam::slice_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string shape;
+  std::string insert;
+  std::string insert_shape;
+  std::string fill = "auto";
+  std::optional<double> voxel_mm;
+  std::string extent = "part";
+  std::string unit = "mm";
+  solid::Placement placement;
+  std::vector<double> rotate_deg;
+  bool no_center = false;
+  std::optional<double> stretch_z;
+  std::string report;
+  cli::PrinterOptions printer;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+/// Throws Fault::usage for options that contradict each other or what PART is.
+void check(const cli::App& app, const Options& options);
+/// Fills in what follows from other options and the printer: units, voxel and stretch.
+void settle(Options& options, const model::Printer& printer);
+[[nodiscard]] bool is_folder(const std::string& path);
+
+}  // namespace vam::slice_tool

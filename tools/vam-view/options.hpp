@@ -1,0 +1,31 @@
+// What the user asks of vam-view, for all its files.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "io/view.hpp"
+
+namespace vam::view_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string output = "-";
+  std::string grid;
+  std::string plane = "axial";
+  std::string target;
+  std::string exported;
+  bool histogram = false;
+  bool plain = false;
+  io::ViewOptions view;
+  cli::PrinterOptions printer;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+/// Throws Fault::usage for options that contradict each other, and for an output that is an input.
+void check(const Options& options);
+
+}  // namespace vam::view_tool
