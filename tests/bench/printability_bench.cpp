@@ -1,5 +1,5 @@
-// What prints, with which method, and how fast: prints a table. Arguments: parts [SIZE], target, stack or osmo; all
-// without.
+// What prints, with which method, and how fast: prints a table. Arguments: parts [SIZE], target [METHOD], stack or
+// osmo; all without.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -42,10 +42,11 @@ void print(const std::string& problem, const Budget& budget, const model::DoseMe
   std::fflush(stdout);
 }
 
-void target() {
+void target(const std::string& method) {
   const int size = 512;
   const auto slice = oracle::resolution_target(size);
   for (const auto& budget : budgets()) {
+    if (!method.empty() && method != budget.method) continue;
     model::DoseMetrics m;
     const double time = seconds([&] { m = parts::run({slice}, size, 360, budget.method, {}, budget.iterations)[0]; });
     print("resolution 512 x 512", budget, m, time, 1);
@@ -130,7 +131,7 @@ void printed(int size) {
 int main(int argc, char** argv) {
   const std::string only = argc > 1 ? argv[1] : "";
   if (only.empty() || only == "parts") printed(argc > 2 ? std::atoi(argv[2]) : 128);
-  if (only.empty() || only == "target") target();
+  if (only.empty() || only == "target") target(argc > 2 ? argv[2] : "");
   if (only.empty() || only == "stack") stack();
   if (only.empty() || only == "osmo") osmo();
   return 0;

@@ -89,6 +89,19 @@ for light in around resampled; do
   vam-score around.vdb --target handle.vdb --report $light.json >table
   holds "parallel light prints it too ($light)" "1 - $(json $light.json ver) >= 0.98 && $(json $light.json iou) >= 0.99"
 done
+vam-dose resampled.exr --like handle.vdb --set resin.psf_mm=0.4 -o blurred.vdb
+vam-view blurred.vdb --export blurred.nrrd
+vam-view handle.vdb --grid insert --export insert.nrrd
+python3 - >check <<'PY'
+import struct
+def voxels(name):
+    body = open(name, "rb").read().split(b"\n\n", 1)[1]
+    return struct.unpack("<%df" % (len(body) // 4), body)
+pairs = list(zip(voxels("blurred.nrrd"), voxels("insert.nrrd"), strict=True))
+inside = [dose for dose, insert in pairs if insert >= 0.5]
+print(len(inside) > 1000, max(inside), min(dose for dose, insert in pairs if insert < 0.5) > 0)
+PY
+is "blur brings no dose into the insert, and leaves some beside it" "$(cat check)" "True 0.0 True"
 vam-slice --shape cylinder:diameter=6,height=4 --insert-shape hollow-cylinder:outer=12,inner=9,height=8 \
   --extent writable --voxel 0.4 -o hidden.vdb
 vam-sinogram hidden.vdb --filter ram-lak --negative clip -o hidden.exr

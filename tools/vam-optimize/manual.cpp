@@ -46,7 +46,11 @@ cli::Manual manual() {
         "vam-optimize --method cal --init cal.exr --until 'ver=0,pw>=0.02' --iterations 40 part.vdb -o better.exr"},
        {"In the 16 grey levels of a 4-bit projector:", "vam-optimize --bits 4 --error-feedback part.vdb -o coarse.exr"},
        {"Made up for a beam that is 0.1 mm wide, and safe to interrupt:",
-        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"}},
+        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
+       {"Graded stiffness: a bar whose dose rises from one grey picture to the next, each to 0.25:",
+        "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
+        "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
+        "--grey --response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o graded.exr"}},
       {"Figures of merit (physics of the field: VER, PW, IPDR, CV, IoU; vam-score has their definitions) are worked "
        "out slice by slice. In --trace and --until PW is that of the worst slice, IPDR the largest, the others are "
        "means by voxel count.",

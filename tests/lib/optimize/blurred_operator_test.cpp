@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "operator_checks.hpp"
 #include "optics/blur.hpp"
 #include "optimize/metrics.hpp"
+#include "optimize/vial_operator.hpp"
 #include "oracle/part_2d.hpp"
+#include "oracle/ray_tracer.hpp"
 #include "parts.hpp"
 
 using namespace vam::optimize;
@@ -59,10 +62,7 @@ std::vector<vam::model::DoseMetrics> judged(const Operator& sharp, const std::ve
   return metrics(dose, problem);
 }
 
-}  // namespace
-
-TEST_CASE("A and A* are adjoint with the blur between, also from slab to slab") {
-  const ParallelOperator sharp(parts::turn(48, 60));
+void check_adjoint(const Operator& sharp) {
   const BlurredOperator light(sharp, 1.7, 21);
   const auto f = noise(light.object(), 2, 21, 1);
   const auto g = noise(light.sinogram(), 2, 21, 7);
@@ -72,6 +72,86 @@ TEST_CASE("A and A* are adjoint with the blur between, also from slab to slab") 
   light.adjoint(g, dose);
   const double scale = std::sqrt(dot_all(projected, projected) * dot_all(g, g));
   CHECK(std::abs(dot_all(projected, g) - dot_all(f, dose)) < 1e-5 * scale);
+}
+
+VialSetup vial_setup(int size, int angles) {
+  VialSetup setup;
+  setup.view = {119.808, 1.0, 0.0, {{12.7, 1.53}}};  // [RAY21]
+  setup.projector = vam::optics::centred_detector(440, 0.065);
+  setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
+  setup.radius_mm = vam::optics::reach_mm(setup.view);
+  setup.grid = vam::model::centred_grid(size, size, 1, 2 * setup.radius_mm / size);
+  return setup;
+}
+
+}  // namespace
+
+TEST_CASE("A and A* are adjoint with the blur between, also from slab to slab") {
+  check_adjoint(ParallelOperator(parts::turn(48, 60)));
+}
+
+TEST_CASE("A and A* are adjoint with the blur between in the vial too, around an insert in a resin that absorbs") {
+  VialSetup setup = vial_setup(48, 60);
+  setup.absorption_per_mm = 0.07;
+  check_adjoint(VialOperator(setup));
+  const auto drop = oracle::draw(48, [](double x, double y) { return std::hypot(x - 8, y + 5) < 6; });
+  std::vector<Slab> inserts(2, Slab(48, 48));
+  for (Slab& insert : inserts) vam::tomo::pack(drop.data(), 1, insert);
+  check_adjoint(VialOperator(setup, inserts));
+}
+
+/// One row of a few columns in one slice makes a narrow beam. Where it goes, how wide it is and what Fresnel leaves of
+/// it is traced; across it the blurred dose is a box times a Gaussian, from slice to slice the lattice's heat kernel
+/// e^-t I_n(t) [Lindeberg 1990].
+TEST_CASE("a narrow beam through the vial has, blurred, the profile of light traced by Snell's law") {
+  const int size = 256;
+  const double sigma_px = 3;
+  const VialSetup setup = vial_setup(size, 36);
+  const VialOperator sharp(setup);
+  const BlurredOperator light(sharp, sigma_px, lanes);
+  vam::oracle::Bench bench;
+  bench.lens_distance = 119.808L;
+  bench.cylinders = {{12.7L, 1.53L}};
+  for (const auto& [column, row] : {std::pair{219, 0}, {160, 7}, {280, 20}}) {
+    CAPTURE(column);
+    Slab image(light.image().width, light.image().height);
+    for (int c = column - 4; c <= column + 4; ++c) image.at(c, row)[5] = 1;  // slice 5
+    Slab g(light.sinogram().width, light.sinogram().height);
+    light.collapse(image, g);
+    const Slab dose = parts::dose_of(light, g);
+
+    const double x_p = setup.projector.x_mm(column);
+    const double half_p = 4.5 * setup.projector.pixel_mm;
+    const auto ray = vam::oracle::trace(bench, x_p);
+    REQUIRE(ray);
+    const auto line = vam::oracle::line_of(*ray);
+    const auto t_of = [&](double x) {
+      return static_cast<double>(vam::oracle::line_of(*vam::oracle::trace(bench, x)).t);
+    };
+    const double low = t_of(x_p - half_p);
+    const double high = t_of(x_p + half_p);
+    // Light of `transmittance` a mm of the projector's columns, on a beam high - low wide.
+    const double within = setup.turn.step_rad * static_cast<double>(ray->transmittance) * 2 * half_p / (high - low);
+    const double angle = static_cast<double>(line.a) + row * setup.turn.step_rad;
+    const double sigma_mm = sigma_px * setup.grid.voxel_mm;
+    const double time = sigma_px * sigma_px;
+    for (const double off_mm : {-0.3, -0.1, 0.0, 0.15, 0.25}) {
+      const double wanted_t = static_cast<double>(line.t) + off_mm;
+      const auto voxel = [&](double along, double first) {
+        return static_cast<int>(std::lround((along - first) / setup.grid.voxel_mm));
+      };
+      const int i = voxel(wanted_t * std::cos(angle), setup.grid.x_mm(0));
+      const int j = voxel(wanted_t * std::sin(angle), setup.grid.y_mm(0));
+      const double t = setup.grid.x_mm(i) * std::cos(angle) + setup.grid.y_mm(j) * std::sin(angle);  // of the voxel
+      const auto share = [&](double edge) { return 0.5 * std::erf((edge - t) / (sigma_mm * std::numbers::sqrt2)); };
+      for (const int n : {0, 2, 4}) {
+        const double in_slice = std::exp(-time) * std::cyl_bessel_i(n, time);
+        const double want = within * (share(high) - share(low)) * in_slice;
+        // Light is linear between columns, which adds less than 1 % to the Gaussian's variance.
+        CHECK(static_cast<double>(dose.at(i, j)[5 + n]) == doctest::Approx(want).epsilon(0.005));
+      }
+    }
+  }
 }
 
 TEST_CASE("the blur is the judge's, which is another implementation") {
