@@ -73,7 +73,7 @@ void add_common(cli::App& command, Options& options) {
   command.option("--device", "DEVICE", options.device,
                  "The stage: sim:, gcs:PATH, grbl:PATH or tic:SERIAL, with options after a question mark.");
   command.option("--log", "FILE", options.log,
-                 "Append one JSON line per event, with UTC and monotonic time; /dev/stderr for the terminal.");
+                 "Append one JSON line per event, with UTC and monotonic time; - for standard error.");
   command.flag("--die-with-parent", options.with_parent, "Stop and end when the process that started this one ends.");
 }
 
@@ -146,5 +146,7 @@ int main(int argc, char** argv) {
   std::string command;
   cli::App app(manual());
   add_commands(app, options, command);
-  return app.run(argc, argv, [&] { device::interruptible([&] { drive(command, options); }); });
+  return app.run(argc, argv, [&] {
+    device::interruptible([&] { device::logged(options.log, [&] { drive(command, options); }); });
+  });
 }

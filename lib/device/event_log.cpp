@@ -5,17 +5,22 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <ctime>
 
 #include "base/error.hpp"
 #include "device/clock.hpp"
+#include "device/interrupt.hpp"
 
 namespace vam::device {
 
-std::string utc_now() {
+std::string utc_now(double ago_s) {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
+  const double back_s = std::ceil(ago_s - 1e-9 * static_cast<double>(now.tv_nsec));
+  now.tv_nsec += std::lround(1e9 * (back_s - ago_s));
+  now.tv_sec -= static_cast<time_t>(back_s);
   tm parts{};
   gmtime_r(&now.tv_sec, &parts);
   std::array<char, 64> text{};
@@ -27,7 +32,7 @@ std::string utc_now() {
 
 EventLog::EventLog(const std::string& path) : path_(path) {
   if (path.empty()) return;
-  fd_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  fd_ = path == "-" ? dup(STDERR_FILENO) : open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (fd_ < 0) throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
 }
 
@@ -35,9 +40,11 @@ EventLog::~EventLog() {
   if (fd_ >= 0) close(fd_);
 }
 
-void EventLog::operator()(const std::string& event, const Json& facts) {
+void EventLog::operator()(const std::string& event, const Json& facts) { at(real_clock().now_s(), event, facts); }
+
+void EventLog::at(double t_s, const std::string& event, const Json& facts) {
   if (fd_ < 0) return;
-  Json whole{{"utc", utc_now()}, {"t_monotonic_s", real_clock().now_s()}, {"event", event}};
+  Json whole{{"utc", utc_now(real_clock().now_s() - t_s)}, {"t_monotonic_s", t_s}, {"event", event}};
   whole.update(facts);
   line(whole);
 }
@@ -53,6 +60,26 @@ void EventLog::line(const Json& facts) {
 
 void EventLog::sync() {
   if (fd_ >= 0) fdatasync(fd_);
+}
+
+void logged(const std::string& path, const std::function<void()>& body) {
+  EventLog log(path);
+  const auto note = [&](const char* event, const Json& facts) {
+    try {
+      log(event, facts);
+    } catch (const Error&) {
+      // A disk that is full may be the very cause; that is what to report.
+    }
+  };
+  try {
+    body();
+  } catch (const Error& error) {
+    note("error", {{"status", static_cast<int>(error.fault)}, {"message", error.what()}});
+    throw;
+  } catch (const Interrupted& interrupted) {
+    note("interrupted", {{"signal", interrupted.signal}});
+    throw;
+  }
 }
 
 }  // namespace vam::device

@@ -1,7 +1,7 @@
 // One JSON line per event, with UTC and monotonic time, for cron and for whoever looks for the cause afterwards.
 #pragma once
 
-#include <cstdio>
+#include <functional>
 #include <string>
 
 #include "base/json.hpp"
@@ -9,7 +9,7 @@
 namespace vam::device {
 
 /// Appends {"utc": "...", "t_monotonic_s": ..., "event": name, facts...} to the file, one write a line, so that several
-/// processes may share it. An empty path logs nothing. Throws Fault::no_output, Fault::io.
+/// processes may share it. "-" is standard error; an empty path logs nothing. Throws Fault::no_output, Fault::io.
 class EventLog {
  public:
   explicit EventLog(const std::string& path);
@@ -17,7 +17,9 @@ class EventLog {
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
   void operator()(const std::string& event, const Json& facts = Json::object());
-  /// A line as it is, for those who know their own time.
+  /// What happened at a time of its own, on CLOCK_MONOTONIC.
+  void at(double t_s, const std::string& event, const Json& facts);
+  /// A line as it is.
   void line(const Json& facts);
   /// Until now on the disk.
   void sync();
@@ -27,7 +29,11 @@ class EventLog {
   int fd_ = -1;
 };
 
-/// "2026-11-21T04:43:00.123Z"
-[[nodiscard]] std::string utc_now();
+/// Runs body; what ends it early is logged to that path, {"event": "error", "status": 75, "message": "..."} or
+/// {"event": "interrupted", "signal": 15}, when all that body has opened is closed again, and thrown on.
+void logged(const std::string& path, const std::function<void()>& body);
+
+/// "2026-11-21T04:43:00.123Z", or so many seconds ago.
+[[nodiscard]] std::string utc_now(double ago_s = 0);
 
 }  // namespace vam::device

@@ -78,7 +78,7 @@ void require_flips(const PlayTally& tally, double expected, double allowed, cons
 }  // namespace
 
 Json to_json(const FlipRecord& record) {
-  Json line{{"t_monotonic_s", record.flip.time_s}, {"event", "flip"}, {"sequence", record.flip.sequence}};
+  Json line{{"sequence", record.flip.sequence}};
   line["frame"] = record.frame;
   line["angle_deg"] = record.angle_deg;
   line["sigma_deg"] = record.sigma_deg;

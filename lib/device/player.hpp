@@ -25,6 +25,7 @@ struct FlipRecord {
   double sigma_deg = 0;
   long missed = 0;  // vertical blanks between the flip before and this one
 };
+/// What of it is logged besides its time.
 [[nodiscard]] Json to_json(const FlipRecord& record);
 
 struct PlayTally {

@@ -10,6 +10,7 @@ Live::Live(const LiveOptions& options, const std::string& output, const device::
   if (!options.light.empty()) {
     light_ = device::open_light(options.light, options.max_led_current, &guardian_);
     light_->prepare();
+    log_("light", light_->identify());
   }
   display_ = device::open_display(output, wanted, clock_, &guardian_);
   const auto mode = display_->mode();
@@ -30,19 +31,22 @@ device::PlayTally Live::play(double speed_deg_s, int turns) {
   plan.turns = turns;
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
-  const auto tally = device::play(*display_, light_.get(), *angles, clock_, plan, logger());
-  log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
-  return tally;
+  return ended(device::play(*display_, light_.get(), *angles, clock_, plan, logger()));
 }
 
 device::PlayTally Live::play_through(double hold_s, bool forever) {
-  return device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger());
+  return ended(device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger()));
+}
+
+device::PlayTally Live::ended(const device::PlayTally& tally) {
+  log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
+  return tally;
 }
 
 std::function<void(const device::FlipRecord&)> Live::logger() {
   return [this](const device::FlipRecord& record) {
     guardian_.beat();
-    log_.line(device::to_json(record));
+    log_.at(record.flip.time_s, "flip", device::to_json(record));
   };
 }
 

@@ -25,6 +25,7 @@ class Live {
   device::PlayTally play_through(double hold_s, bool forever);
 
  private:
+  device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();
 
   LiveOptions options_;

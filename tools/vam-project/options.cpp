@@ -17,7 +17,9 @@ void add_live(cli::App& app, LiveOptions& options) {
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
              "From the vertical blank to the light; without it projector.latency_ms.");
   app.option("--missed", "PART", options.allowed_missed, {0, 1}, "End when more of all vertical blanks are missed.");
-  app.option("--log", "FILE", options.log, "Append a JSON line for every flip: time, frame, angle.");
+  app.option("--log", "FILE", options.log,
+             "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and what "
+             "ended it; - for standard error.");
   app.flag("--die-with-parent", options.with_parent, "Go black and end when the process that started this one ends.");
 }
 

@@ -55,11 +55,12 @@ void show_pattern(const cli::App& app, const Options& options, const model::Proj
   const PatternOptions& pattern = options.pattern;
   const int count = optics::pattern_frames(pattern.plan, projector);
   if (device::names_display(options.output)) {
-    return device::interruptible([&] {
+    const auto play = [&] {
       Live live(options.live, options.output, {projector.columns, projector.rows, 60});
       for (int n = 0; n < count; ++n) live.add(oriented_pattern(pattern, projector, n));
       live.play_through(pattern.hold_s, pattern.repeat);
-    });
+    };
+    return device::interruptible([&] { device::logged(options.live.log, play); });
   }
   model::StackInfo info = stack_info(projector, count);
   info.history.push_back(app.history());

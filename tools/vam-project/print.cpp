@@ -61,13 +61,15 @@ void print_live(const cli::App& app, const Options& options, const model::Printe
     throw Error{Fault::usage,
                 "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
   }
-  Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
-  if (is_folder(options.input)) return play_slices(app, options, printer, slice_folder(options.input), live);
-  io::StackReader reader(options.input);
-  if (reader.info().kind == model::Kind::frames) {
-    return play_slices(app, options, printer, slices_of(options.input, reader), live);
-  }
-  play_turns(app, options, printer, turns, reader, live);
+  device::logged(options.live.log, [&] {
+    Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});
+    if (is_folder(options.input)) return play_slices(app, options, printer, slice_folder(options.input), live);
+    io::StackReader reader(options.input);
+    if (reader.info().kind == model::Kind::frames) {
+      return play_slices(app, options, printer, slices_of(options.input, reader), live);
+    }
+    play_turns(app, options, printer, turns, reader, live);
+  });
 }
 
 }  // namespace vam::project

@@ -1,0 +1,97 @@
+#!/bin/sh
+# Promises 4 and 6 for every kind of device: one user at a time, told by whom within a second, free again after kill -9;
+# and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir -p locks card/dri screen; export VAM_LOCK_DIR
+touch card/dri/card0
+FAKE_DRM=$PWD/card; export FAKE_DRM
+ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
+printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 23.5\n' >printer.toml
+shim=$(vam-sim-stage --shim)
+await() {  # await COMMAND...: until it succeeds, at most 5 s
+  tries=0
+  until "$@" || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+}
+on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "$device" "$log" sh -c 'exec "$@"' sh "$@"; }
+
+Xvfb -displayfd 4 -screen 0 64x48x24 -nolisten tcp -noreset 4>number >/dev/null 2>&1 & server=$!
+vam-sim-stage --link gcs --die-with-parent >path1 & stage1=$!
+vam-sim-stage --link grbl --protocol grbl --die-with-parent >path2 & stage2=$!
+await test -s number; await test -s path1; await test -s path2
+
+# One long use of each device, which says in its log that it has begun.
+use() {  # use DEVICE LOG
+  case $1 in
+    gcs | grbl) exec env LD_PRELOAD="$shim" vam-stage follow --device "$1:$PWD/$1" --log "$2" ;;
+    tic) on tic truth vam-stage follow --device 'tic:?steps_per_deg=100' --log "$2" ;;
+    drm) exec env LD_PRELOAD="$VAM_BUILD/lib/vam-test/drm_card.so" vam-project --pattern grey -o drm:HDMI-A-1 --hold 60 --log "$2" ;;
+    sdl) exec env DISPLAY=":$(cat number)" SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software vam-project --pattern grey -o sdl:0 --hold 60 --log "$2" ;;
+    dlpc350) on dlpc350 truth vam-project --pattern grey -o null: --light dlpc350: --hold 60 --log "$2" ;;
+  esac
+}
+begun() { grep -Eq '"event":"(begin|flip)"' "$1" 2>/dev/null; }
+
+for device in gcs grbl tic drm sdl dlpc350; do
+  rm -f locks/*
+  (use $device first.log) >out 2>err & first=$!
+  await begun first.log
+  pid=$(cat locks/*)
+  best=9e9
+  for try in 1 2 3; do  # a busy machine may hold up one
+    start=$(date +%s%N)
+    (use $device second.log) >second.out 2>second.err; status=$?
+    best=$(awk "BEGIN { took = $(date +%s%N) - $start; print (took < $best ? took : $best) }")
+    awk "BEGIN { exit !($best < 1e9) }" && break
+  done
+  is "$device: the second user is told by whom it is used" "$status $(grep -c "in use by process $pid;" second.err)" '75 1'
+  holds "$device: within a second" "$best < 1e9"
+  is "$device: and so is its log" "$(tail -n 1 second.log | grep -c '"event":"error".*"status":75')" 1
+  kill -9 "$pid"; wait $first 2>/dev/null
+  rm -f first.log second.log
+  (use $device third.log) >third.out 2>third.err & third=$!
+  await begun third.log
+  ok "$device: free again after kill -9" begun third.log
+  kill -TERM "$(cat locks/*)"; wait $third 2>/dev/null
+  is "$device: a signal is the last event" "$(tail -n 1 third.log | grep -c '"event":"interrupted".*"signal":15')" 1
+  cat third.log >>all.log; rm -f third.log
+done
+
+# A camera: an address has one user, too. Its own hold on a client that was killed ends with the heartbeat, in 3 s.
+exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9  # the port is the machine's
+for try in 1 2 3 4 5 6 7 8; do  # another program may have the port for a while
+  vam-sim-camera --die-with-parent >address 2>busy 9>&- & camera=$!
+  await sh -c "[ -s address ] || ! kill -0 $camera 2>/dev/null"
+  [ -s address ] && break
+  sleep 2
+done
+rm -f locks/*
+look() { vam-capture --device aravis:127.0.0.1 --binning 6 --frames "$1" -o "$2" 9>&-; }
+(exec vam-capture --device aravis:127.0.0.1 --frames 1000 -o first.exr) 2>err 9>&- & first=$!
+await sh -c 'grep -q . locks/* 2>/dev/null'
+start=$(date +%s%N)
+look 1 second.exr 2>second.err; status=$?
+is 'aravis: the second user is told by whom it is used' "$status $(grep -c "in use by process $first;" second.err)" '75 1'
+holds 'aravis: within a second' "$(date +%s%N) - $start < 1e9"
+kill -9 $first; wait $first 2>/dev/null
+tries=0; until look 1 third.exr 2>err || [ $tries -ge 10 ]; do tries=$((tries + 1)); sleep 0.5; done
+ok 'aravis: free again after kill -9' test -s third.exr
+kill -9 $camera; wait $camera 2>/dev/null
+
+# As cron runs a tool: nothing to read from, no environment to speak of, silence unless there is something to say.
+cron() { env -i PATH="$PATH" VAM_LOCK_DIR="$VAM_LOCK_DIR" "$@" </dev/null >out 2>>all.log; }
+cron vam-stage home --log -
+is 'cron: homing' "$? $(cat out)" '0 '
+cron vam-stage move --home --to 3 --log -
+is 'cron: a move' "$? $(cat out)" '0 '
+cron vam-project --pattern grey -o null: --hold 0.1 --light sim: --log -
+is 'cron: a test picture' "$? $(cat out)" '0 '
+python3 - >judged <<'PY'
+import json, re
+lines = [json.loads(line) for line in open("all.log")]
+good = [line for line in lines if re.fullmatch(r"20\d\d-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z", line["utc"])
+        and isinstance(line["t_monotonic_s"], float) and isinstance(line["event"], str)]
+print(len(lines) > 20, len(lines) - len(good), " ".join(sorted({line["event"] for line in good})))
+PY
+is 'every event is a JSON line with both times' "$(cat judged)" 'True 0 begin display end flip interrupted light'
+kill $server $stage1 $stage2
+done_testing
