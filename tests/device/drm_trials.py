@@ -5,7 +5,6 @@ and card/ for pictures. usage: drm_trials.py pictures FRAMES FLIPS   what was sh
 import json
 import os
 import pathlib
-import signal
 import subprocess
 import sys
 import tempfile
@@ -14,11 +13,9 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from screen import raw_grey  # noqa: E402
+from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
 
 ROOM, PITCH, COLUMNS, ROWS = 1 << 14, 320, 64, 48
-LIMIT_S = 0.1
-STALL_S = 0.5
-SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL]
 
 
 def lines(path):
@@ -75,24 +72,18 @@ class Trial:
 
     def end(self, cause):
         self.cause = cause
-        self.ended = time.monotonic()
-        self.tool.send_signal(signal.SIGSTOP if cause == "hang" else cause)
+        self.ended = end_by(cause, self.tool)
 
     def took(self):
         """From the end to the vertical blank at which black is on."""
-        try:
-            self.tool.wait(3)
-        except subprocess.TimeoutExpired:
-            self.tool.kill()
-            return float("inf")
-        if self.cause in SIGNALS and self.tool.returncode != -self.cause:
-            return float("inf")
+        if not ended_by(self.cause, self.tool):
+            return NEVER
         shown = self.shown()
         while shown and shown[-1]["shade"] == "lit" and time.monotonic() < self.ended + 3:
             time.sleep(0.002)
             shown = self.shown()
         lit = [i for i, line in enumerate(shown) if line["shade"] == "lit"]
-        return shown[lit[-1] + 1]["t_monotonic_s"] - self.ended if lit and lit[-1] + 1 < len(shown) else float("inf")
+        return shown[lit[-1] + 1]["t_monotonic_s"] - self.ended if lit and lit[-1] + 1 < len(shown) else NEVER
 
 
 def trials(cause, count, card):
@@ -108,18 +99,11 @@ def trials(cause, count, card):
                 one.end(cause)
                 time.sleep(0.02)
             times += [one.took() for one in batch]
-    return sorted(times)
+    return times
 
 
 def ends(count, card):
-    failed = 0
-    for cause in SIGNALS + ["hang"]:
-        times = trials(cause, count, card)
-        limit = LIMIT_S + (STALL_S if cause == "hang" else 0)
-        late = sum(1 for t in times if not t <= limit)
-        failed += late
-        print(f"# {getattr(cause, 'name', cause)}: {count} trials, median {1e3 * times[count // 2]:.1f} ms, "
-              f"worst {1e3 * times[-1]:.1f} ms, {late} past {1e3 * limit:.0f} ms", flush=True)
+    failed = sum([report(cause, trials(cause, count, card)) for cause in SIGNALS + ["hang"]])
     sys.exit(failed > 0)
 
 

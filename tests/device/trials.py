@@ -2,6 +2,7 @@
 
 import json
 import signal
+import subprocess
 import time
 
 LIMIT_S = 0.1
@@ -46,7 +47,11 @@ def end_by(cause, process):
 
 def ended_by(cause, process):
     """True when the program is gone, by the signal it was sent."""
-    status = process.wait(3)
+    try:
+        status = process.wait(3)
+    except subprocess.TimeoutExpired:
+        process.send_signal(signal.SIGKILL)
+        return False
     return cause not in SIGNALS or status == -cause
 
 
