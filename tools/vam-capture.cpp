@@ -36,14 +36,17 @@ cli::Manual manual() {
        "options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
        "The scans edges, response, flat, beam, axis and latency read frames that were captured while vam-project "
        "showed a test pattern, and what its --log says was on when (--flips), and write a calibration record; check "
-       "says which records are in force. vam-calibrate(1) runs them all.",
+       "says which records are in force. vam-calibrate(1) runs them all. The beam is seen on a bare sensor that is "
+       "moved "
+       "along the light, one frame a plane, or, with --side, by the camera beside the vial while one row is lit: each "
+       "column of its picture is another plane of the resin.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
        "cal-INSTRUMENT-SCAN-UTC.json, with each value's unit, sigma, number of readings and method, the hashes of the "
        "frames, how long it is valid and for which instrument and vial. The link current-SCAN.json points to the one "
        "in force, which every tool that reads the printer file takes up: flag, then --set, then record, then file. A "
        "stale or foreign record is refused (status 65). A scan whose result is not to be trusted is recorded, but not "
-       "put in force (status 1). Without a folder the record goes to standard output. The latency takes the camera's "
-       "time stamps as true: find their --latency first.",
+       "put in force (status 1). Without a folder the record goes to standard output. The latency takes the "
+       "frames' times as true: find the capture's --latency first.",
        "Lost frames are never hidden: the count of frames that were dropped and of those that came incomplete is said "
        "on standard error, in --report and in --log; an incomplete frame is marked in the manifest and in the stack "
        "(vam:incomplete), where it keeps the parts that came, and vam-ost leaves it out. A gap in vam:number is frames "
@@ -60,8 +63,9 @@ cli::Manual manual() {
         "--device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/"}},
       {"Settings. Exposure, frame rate and binning that are not given are those of the printer file's [camera]; every "
        "one is read back, and a camera that does something else ends the capture (status 76).",
-       "Time. The time of a frame is the camera's own time stamp, carried over to the machine's clock by the shortest "
-       "delay seen in the last 10 s, less --latency, the calibrated time from the middle of the exposure to the stamp.",
+       "Time. The time of a frame is the middle of its exposure: the camera's own time stamp, carried over to the "
+       "machine's clock by the shortest delay seen in the last 10 s, less half the exposure, less --latency, what the "
+       "shortest way takes from the end of an exposure.",
        "A camera that falls silent is asked once more: status 75 when it answers, 69 when it is gone, within the "
        "time-out plus 5 s.",
        "A device has one user at a time: the second one exits with status 75 and names the process that has it."},
@@ -91,7 +95,7 @@ void declare(cli::App& app, Options& o, capture_tool::ScanOptions& scans) {
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
              "Without --follow: angle = speed x time since the start.");
   app.option("--latency", "MS", o.latency_ms, {-10000, 10000},
-             "From the middle of an exposure to the camera's time stamp, calibrated.");
+             "From the end of an exposure to the camera's time stamp, as it gets here.");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "End with status 75 when more frames are dropped or incomplete.");
   app.group("Output and machine");

@@ -42,8 +42,9 @@ cli::Manual manual() {
            "which refracts: the print in it scatters and grows with the light it got, and what the projector shows "
            "glows in the resin.",
            "The vial turns as the log of vam-sim-stage says (--angles), or at a steady --speed. The projector shows "
-           "what the log of vam-project says (--shown): its frames are those of --pattern or --frames, and its light "
-           "makes the print grow. Without that log the first of them is shown all the time.",
+           "what the log of vam-project says (--shown), and its light makes the print grow: the test pattern that the "
+           "log names, else the frames of --frames or --pattern. Without that log the first of them is shown all the "
+           "time. A frame shows its whole exposure, be the picture another meanwhile.",
            "Its own log tells what it truly sent, to judge the tools by: for every frame its number, the angle, the "
            "seconds of light so far and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
            "An address has one camera at a time: GigE Vision's control port is always 3956."},
@@ -79,8 +80,11 @@ void declare(cli::App& app, Options& o) {
   app.option("--wobble", "MM", bench.wobble_mm, {0, 100}, "Distance of the vial's axis from the table's.");
   app.option("--wobble-phase", "DEG", bench.wobble_deg, {-360, 360},
              "Stage angle at which it stands towards the projector's higher columns.");
-  app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Full width at half maximum that the optics add to a pixel.");
-  app.option("--divergence", "DEG", bench.divergence_deg, {0, 45}, "Of the beam, from the plane of the axis.");
+  app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Blur of a pixel in focus: full width at half maximum.");
+  app.option("--focus", "MM", bench.focus_mm, {-1000, 1000}, "Where that is, along the light, from the axis.");
+  app.option("--divergence", "DEG", bench.divergence_deg, {0, 45},
+             "Growth of that width with the distance from there.");
+  app.flag("--card", bench.card, "An even card stands in the vial's place; the picture's mean lights it.");
   app.option("--glow", "PART", bench.glow, {0, 10000},
              "Brightness of a vial that is lit all over, of full scale in 20 ms. A thin line needs more.");
   app.option("--gamma", "N", bench.gamma, {0.1, 10}, "Light = (grey / full) to this power.");
@@ -118,6 +122,25 @@ std::vector<GreyImage> read_pictures(const std::string& path) {
   return pictures;
 }
 
+std::vector<GreyImage> pictures(const optics::PatternPlan& pattern, const model::Projector& projector) {
+  std::vector<GreyImage> shown;
+  for (int n = 0; n < optics::pattern_frames(pattern, projector); ++n) {
+    shown.push_back(optics::pattern_frame(pattern, projector, n));
+  }
+  return shown;
+}
+
+// As vam-project --pattern logs it.
+optics::PatternPlan pattern_of(const Json& event) {
+  optics::PatternPlan plan;
+  plan.name = event.value("name", plan.name);
+  plan.level = event.value("level", plan.level);
+  plan.pitch_px = event.value("pitch_px", plan.pitch_px);
+  plan.width_px = event.value("width_px", plan.width_px);
+  plan.steps = event.value("steps", plan.steps);
+  return plan;
+}
+
 std::vector<GreyImage> pictures(const Options& o, const model::Projector& projector) {
   if (!o.frames.empty() && !o.pattern.name.empty()) {
     throw Error{Fault::usage, "--frames: the projector shows --pattern already; give one of the two"};
@@ -132,12 +155,7 @@ std::vector<GreyImage> pictures(const Options& o, const model::Projector& projec
     }
     return read;
   }
-  std::vector<GreyImage> shown;
-  if (o.pattern.name.empty()) return shown;
-  for (int n = 0; n < optics::pattern_frames(o.pattern, projector); ++n) {
-    shown.push_back(optics::pattern_frame(o.pattern, projector, n));
-  }
-  return shown;
+  return o.pattern.name.empty() ? std::vector<GreyImage>{} : pictures(o.pattern, projector);
 }
 
 void run(Options& o) {
@@ -147,6 +165,9 @@ void run(Options& o) {
   camera.bench.printer = tool::load_printer(o.printer);
   if (!o.part.empty()) camera.bench.bodies = device::parse_bodies(o.part);
   camera.sources.pictures = pictures(o, camera.bench.printer.projector);
+  camera.sources.draw = [&camera](const Json& event) {
+    return pictures(pattern_of(event), camera.bench.printer.projector);
+  };
   camera.lag_s = 1e-3 * o.lag_ms;
   camera.lose = device::parse_frames(o.lose);
   camera.cut = device::parse_frames(o.cut);

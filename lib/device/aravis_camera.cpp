@@ -343,7 +343,8 @@ class AravisCamera final : public Camera {
         mode_.fps > 0 ? last_s_ + static_cast<double>(frame.number - last_number_) / mode_.fps : clock_.now_s();
     if (known) {
       frame.device_s = 1e-9 * static_cast<double>(arv_buffer_get_timestamp(buffer));
-      frame.time_s = stamps_.host_s(*frame.device_s, monotonic_s(arv_buffer_get_system_timestamp(buffer), clock_));
+      frame.time_s = stamps_.host_s(*frame.device_s, monotonic_s(arv_buffer_get_system_timestamp(buffer), clock_)) -
+                     0.5e-6 * mode_.exposure_us;
     }
     last_s_ = frame.time_s;
     last_number_ = frame.number;

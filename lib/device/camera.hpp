@@ -44,7 +44,7 @@ struct CameraMode {
 struct CameraFrame {
   GreyImage levels;                 // 8 or 16 bits; depths between are spread over 16
   long number = 0;                  // frames since start(), those counted that the camera made but nobody received
-  double time_s = 0;                // CLOCK_MONOTONIC at the camera's time stamp
+  double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, were the stamp set at its end
   std::optional<double> device_s;   // the time stamp on the camera's own clock
   bool complete = true;             // false: parts of the picture did not arrive and are not of this moment
   std::optional<double> angle_deg;  // as recorded; replay: only

@@ -13,10 +13,11 @@ namespace {
 
 constexpr double light_lead_s = 0.1;  // the engine's own time to come on
 
-// Black and dark on every way out.
+// Black and dark on every way out, and said so: who reads the log must not take the last picture for still on.
 class DarkOnExit {
  public:
-  DarkOnExit(Display& display, LightEngine* light) : display_(display), light_(light) {}
+  DarkOnExit(Display& display, LightEngine* light, const std::function<void(const FlipRecord&)>& log)
+      : display_(display), light_(light), log_(log) {}
   ~DarkOnExit() {
     try {
       if (light_ != nullptr) light_->dark();
@@ -24,7 +25,9 @@ class DarkOnExit {
       // The guardian still holds the order.
     }
     try {
-      display_.present(-1);
+      FlipRecord black;
+      black.flip = display_.present(-1);
+      log_(black);
     } catch (...) {
       // The display's destructor and the guardian come next.
     }
@@ -35,6 +38,7 @@ class DarkOnExit {
  private:
   Display& display_;
   LightEngine* light_;
+  const std::function<void(const FlipRecord&)>& log_;
 };
 
 // Presents, counts and logs.
@@ -88,7 +92,7 @@ Json to_json(const FlipRecord& record) {
 
 PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log) {
-  const DarkOnExit dark(display, light);
+  const DarkOnExit dark(display, light, log);
   Presenter presenter(display, log);
   const double step_deg = 360.0 / plan.frames_per_turn;
   const double end_deg = 360.0 * plan.turns;
@@ -127,7 +131,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
 
 PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int frames, double hold_s, bool forever,
                        const std::function<void(const FlipRecord&)>& log) {
-  const DarkOnExit dark(display, light);
+  const DarkOnExit dark(display, light, log);
   Presenter presenter(display, log);
   if (light != nullptr) light->on();
   const double start_s = clock.now_s();

@@ -17,10 +17,10 @@ namespace {
 
 const std::vector<std::string>& option_names() {
   static const std::vector<std::string> names{
-      "columns",        "rows",        "axis_column", "tilt_deg",   "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
-      "gamma",          "glow",        "vignetting",  "background", "noise",     "part",      "lit_s",      "seed",
-      "divergence_deg", "speed_deg_s", "angles",      "shown",      "bits",      "lag_ms",    "lose",       "cut",
-      "vanish",         "pace",        "log"};
+      "columns",        "rows",     "axis_column", "tilt_deg",    "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
+      "gamma",          "glow",     "vignetting",  "background",  "noise",     "part",      "lit_s",      "seed",
+      "divergence_deg", "focus_mm", "card",        "speed_deg_s", "angles",    "shown",     "bits",       "lag_ms",
+      "lose",           "cut",      "vanish",      "pace",        "log"};
   return names;
 }
 
@@ -37,6 +37,8 @@ SimCameraSettings settings_of(const Address& address, const CameraSettings& aske
   bench.wobble_deg = address.number("wobble_deg", bench.wobble_deg, -360, 360);
   bench.beam_mm = address.number("beam_mm", bench.beam_mm, 0, 10);
   bench.divergence_deg = address.number("divergence_deg", bench.divergence_deg, 0, 45);
+  bench.focus_mm = address.number("focus_mm", bench.focus_mm, -1000, 1000);
+  bench.card = address.integer("card", 0, 1).value_or(0) == 1;
   bench.glow = address.number("glow", bench.glow, 0, 1e4);
   bench.gamma = address.number("gamma", bench.gamma, 0.1, 10);
   bench.vignetting = address.number("vignetting", bench.vignetting, 0, 1);
@@ -101,8 +103,11 @@ class SimCamera final : public Camera {
       if (frame.number == sim_.vanish)
         throw Error{Fault::absent, "sim: the camera is gone; look at its cable and power"};
       if (sim_.lose.contains(frame.number) && !triggered_) continue;
-      const SimMoment moment = world_->at(frame.time_s - sim_.lag_s);
-      frame.levels = scene_.render(moment, sim_.exposure_us, frame.number);
+      const double middle_s = frame.time_s - sim_.lag_s;
+      const double half_s = 0.5e-6 * sim_.exposure_us;
+      frame.levels =
+          scene_.render(world_->during(middle_s - half_s, middle_s + half_s), sim_.exposure_us, frame.number);
+      const SimMoment moment = world_->at(middle_s);
       frame.device_s = frame.time_s - start_s_;
       if (log_) {
         log_({{"t_monotonic_s", frame.time_s},

@@ -21,6 +21,7 @@ namespace {
 
 // Packets of a cut frame that are lost, by a generator with a fixed seed: some of them, rarely all.
 constexpr double cut_ratio = 0.4;
+constexpr double readout_s = 0.004;  // from the end of an exposure to the time stamp
 
 // Aravis' own description lets the region be as large as the sensor whatever the binning is; no real camera does.
 std::string description() {
@@ -116,14 +117,18 @@ struct SimGvCamera::State {
       scene = std::make_unique<SimScene>(settings.bench, static_cast<int>(wanted.first), bits);
       scene_of = wanted;
     }
-    const SimMoment moment = world->at(now_s - settings.lag_s);
-    const GreyImage levels = region(scene->render(moment, exposure_us, number), buffer);
+    // The exposure ended a while ago: what was on until then has come to the logs.
+    const double end_s = now_s - readout_s - settings.lag_s;
+    const double middle_s = end_s - 0.5e-6 * exposure_us;
+    const GreyImage levels =
+        region(scene->render(world->during(end_s - 1e-6 * exposure_us, end_s), exposure_us, number), buffer);
+    const SimMoment moment = world->at(middle_s);
     copy(levels, buffer);
     const bool lost = settings.lose.contains(number);
     const bool cut = settings.cut.contains(number);
     g_object_set(server, "gvsp-lost-ratio", lost ? 1.0 : cut ? cut_ratio : 0.0, nullptr);
     if (!log) return;
-    log({{"t_monotonic_s", now_s},
+    log({{"t_monotonic_s", middle_s},
          {"event", lost  ? "lost"
                    : cut ? "cut"
                          : "frame"},

@@ -3,23 +3,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numbers>
+#include <optional>
 
 #include "base/constants.hpp"
-#include "base/error.hpp"
 #include "base/image.hpp"
-#include "base/text.hpp"
-#include "device/sim_ray.hpp"
+#include "device/sim_beams.hpp"
 
 namespace vam::device {
 
 namespace {
 
-constexpr int beams_a_column = 8;
-constexpr int steps = 160;               // along a camera ray through the resin
+constexpr int rays_a_column = 5;         // of the camera
+constexpr int most_blurs = 9;            // widths of the beam between its narrowest and its widest place
 constexpr double scatter_per_mm = 0.08;  // of full scale
 constexpr double reference_us = 20000;
+constexpr double fwhm_per_sigma = 2.354820045;
 
 // Unit normal deviate of a pixel, always the same (splitmix64 and Box-Muller).
 double normal(std::uint64_t key) {
@@ -33,84 +32,14 @@ double normal(std::uint64_t key) {
   return radius * std::cos(2 * std::numbers::pi * next());
 }
 
-// Running sum of a projector row's intensity: the light between two fractional columns is a difference.
-struct LitRow {
-  std::vector<double> sum;
-  [[nodiscard]] double upto(double column) const {  // integral over columns -0.5 ... column
-    const double at = std::clamp(column + 0.5, 0.0, static_cast<double>(sum.size() - 1));
-    const auto below = std::min(static_cast<std::size_t>(at), sum.size() - 2);
-    return sum[below] + (at - static_cast<double>(below)) * (sum[below + 1] - sum[below]);
-  }
-  // Mean over from ... to, at least `width` wide about its middle.
-  [[nodiscard]] double mean(double from, double to, double width) const {
-    const double middle = 0.5 * (from + to);
-    const double half = 0.5 * std::max({std::abs(to - from), width, 1e-6});
-    return (upto(middle + half) - upto(middle - half)) / (2 * half);
-  }
-};
-
-double chord_mm(const SimBody& body, double growth, double z_mm, double distance_mm) {
-  const double radius = body.radius_mm * growth;
-  double square = radius * radius - distance_mm * distance_mm;
-  if (body.height_mm > 0) {
-    if (std::abs(z_mm - body.z_mm) > 0.5 * body.height_mm) return 0;
-  } else {
-    square -= (z_mm - body.z_mm) * (z_mm - body.z_mm);
-  }
-  return square > 0 ? 2 * std::sqrt(square) : 0;
-}
-
-}  // namespace
-
-namespace {
-
-// One key=value of a body; false when it is none.
-bool set_key(SimBody& body, bool cylinder, const std::string& pair) {
-  const std::size_t equals = pair.find('=');
-  if (equals == std::string::npos) return false;
-  const double value = parse_number(pair.substr(equals + 1)).value_or(NAN);
-  const std::string key = pair.substr(0, equals);
-  if (!std::isfinite(value)) return false;
-  const std::map<std::string, double*> places{{"x", &body.x_mm}, {"y", &body.y_mm}, {"z", &body.z_mm}};
-  if (const auto place = places.find(key); place != places.end()) {
-    *place->second = value;
-    return true;
-  }
-  if (value <= 0) return false;
-  if (key == "diameter") body.radius_mm = 0.5 * value;
-  if (key == "height") body.height_mm = value;
-  return key == "diameter" || (key == "height" && cylinder);
-}
-
-}  // namespace
-
-std::vector<SimBody> parse_bodies(const std::string& text) {
-  std::vector<SimBody> bodies;
-  for (const auto& one : split(text, ';')) {
-    const std::size_t colon = std::min(one.find(':'), one.size());
-    const std::string kind = one.substr(0, colon);
-    SimBody body;
-    if (kind == "cylinder") body.height_mm = 4;
-    bool good = kind == "sphere" || kind == "cylinder";
-    for (const auto& pair : split(colon == one.size() ? "" : one.substr(colon + 1), ',')) {
-      good = good && set_key(body, kind == "cylinder", pair);
-    }
-    if (!good) {
-      throw Error{Fault::usage, "part '" + one + "': not like sphere:x=2,diameter=4 or cylinder:diameter=6,height=3"};
-    }
-    bodies.push_back(body);
-  }
-  return bodies;
-}
-
-// Where the ray of a camera column runs in the resin, in the frame of the lab, and what light crosses it.
+// What a camera column sees: its chief ray in the resin, and what each of the projector's sheets of light gives it.
 struct Sight {
   SimRay ray;
-  std::vector<double> edges;   // projector column at the ends of the steps; empty without resin
-  std::vector<double> widths;  // of the beam there, in columns, at the middle of each step
-  std::vector<double> gains;   // part of the light that gets there
-  double weight = 0;           // of each step: its length over the vial's diameter, times what the camera gets of it
+  std::vector<float> gains;  // for full light
+  std::vector<float> blurs;  // which of the beam's widths it has, between two of them
 };
+
+}  // namespace
 
 struct SimScene::State {
   SimBench bench;
@@ -118,110 +47,82 @@ struct SimScene::State {
   int rows = 0;
   int bits = 8;
   double pixel_mm = 0;
-  std::vector<Sight> sights;
-  std::vector<SimRay> beams;   // beams_a_column of them, from the outer edge of the first column on
-  std::size_t first_beam = 0;  // that enters the resin
-  std::size_t last_beam = 0;
+  SimBeams beams;
+  std::vector<double> blurs_px;  // standard deviations of the beam, from its focus outwards
+  double furthest_mm = 0;        // from the focus to the end of the resin
+  std::vector<Sight> sights;     // of each column
 
-  State(const SimBench& about, int binning, int depth) : bench(about), bits(depth) {
+  State(const SimBench& about, int binning, int depth) : bench(about), bits(depth), beams(about.printer) {
     columns = bench.columns / binning;
     rows = bench.rows / binning;
     pixel_mm = bench.printer.camera.pixel_mm * binning;
-    const auto& projector = bench.printer.projector;
-    const auto outside = outer_shells(bench.printer, bench.printer.resin.index);
-    const auto distance_mm = model::lens_distance_mm(projector);
-    for (int i = 0; i <= projector.columns * beams_a_column; ++i) {
-      const double column = static_cast<double>(i) / beams_a_column - 0.5;
-      beams.push_back(sim_ray((column - projector.axis_column) * projector.pixel_mm, distance_mm, outside));
+    furthest_mm = model::resin_radius_mm(bench.printer.vial) + std::abs(bench.focus_mm);
+    const int blurs = bench.divergence_deg > 0 ? most_blurs : 1;
+    for (int i = 0; i < blurs; ++i) {
+      const double spread_mm = furthest_mm * i / (most_blurs - 1) * std::tan(bench.divergence_deg * rad_per_deg);
+      blurs_px.push_back(std::hypot(bench.beam_mm, spread_mm) / fwhm_per_sigma / bench.printer.projector.pixel_mm);
     }
-    while (first_beam + 1 < beams.size() && !beams[first_beam].enters) ++first_beam;
-    last_beam = beams.size() - 1;
-    while (last_beam > first_beam && !beams[last_beam].enters) --last_beam;
     const auto to_camera = outer_shells(bench.printer, bench.printer.camera.index_resin);
-    for (int c = 0; c < columns; ++c) {
-      const double x_mm = (c - 0.5 * (columns - 1)) * pixel_mm;
-      sights.push_back(sight(sim_ray(x_mm, bench.printer.camera.distance_mm, to_camera)));
-    }
+    for (int c = 0; c < columns; ++c) sights.push_back(sight(c, to_camera));
   }
 
-  Sight sight(const SimRay& ray) const {
-    Sight seen{ray, {}, {}, {}, 0};
-    if (!ray.enters) return seen;
-    const double radius_mm = model::resin_radius_mm(bench.printer.vial);
-    const double half_mm = std::sqrt(std::max(0.0, radius_mm * radius_mm - ray.offset_mm * ray.offset_mm));
-    const double turn = ray.turn_rad + bench.printer.camera.azimuth_deg * rad_per_deg;
-    const double pixel = bench.printer.projector.pixel_mm;
-    double before = 0;
-    for (int i = 0; i <= steps; ++i) {
-      const double u = half_mm * (2.0 * i / steps - 1);
-      const double x = ray.offset_mm * std::cos(turn) - u * std::sin(turn);
-      const double y = ray.offset_mm * std::sin(turn) + u * std::cos(turn);
-      const Crossing here = crossing(x, y);
-      seen.edges.push_back(here.column);
-      if (i > 0) seen.gains.push_back(0.5 * (before + here.irradiance));
-      before = here.irradiance;
-      if (i < steps) {
-        const double spread = 2 * std::abs(y) * std::tan(bench.divergence_deg * rad_per_deg);
-        seen.widths.push_back(std::hypot(bench.beam_mm, spread) / pixel);
+  [[nodiscard]] Sight sight(int column, const SimShells& shells) const {
+    const auto ray_at = [&](double place) {
+      return sim_ray((place - 0.5 * (columns - 1)) * pixel_mm, bench.printer.camera.distance_mm, shells);
+    };
+    const std::size_t sheets = beams.columns().size() - 1;
+    Sight seen{ray_at(column), std::vector<float>(sheets), std::vector<float>(sheets)};
+    const double diameter_mm = 2 * model::resin_radius_mm(bench.printer.vial);
+    for (int i = 0; i < rays_a_column; ++i) {
+      const SimRay ray = ray_at(column + (i + 0.5) / rays_a_column - 0.5);
+      const auto crossings = beams.along(ray, bench.printer.camera.azimuth_deg * rad_per_deg);
+      const double gain = bench.glow * ray.transmittance / diameter_mm / rays_a_column;
+      for (std::size_t k = 0; k < sheets; ++k) {
+        seen.gains[k] += static_cast<float>(gain * crossings[k].path_mm);
+        const double blur = std::abs(crossings[k].y_mm - bench.focus_mm) / furthest_mm * (most_blurs - 1);
+        seen.blurs[k] += static_cast<float>(blur / rays_a_column);
       }
     }
-    seen.weight = ray.transmittance * half_mm / (steps * radius_mm);
     return seen;
   }
 
-  // The projector column (fractional) whose ray goes through a point of the resin, and the light there, of that in the
-  // plane of the axis without a vial: rays that come closer together are brighter. 0 where none comes.
-  struct Crossing {
-    double column = 0;
-    double irradiance = 0;
-  };
-  [[nodiscard]] Crossing crossing(double x, double y) const {
-    const auto beyond = [&](const SimRay& beam) {  // how far the point is on the side of the higher columns
-      return x * std::cos(beam.turn_rad) + y * std::sin(beam.turn_rad) - beam.offset_mm;
-    };
-    const auto column = [](std::size_t beam) { return static_cast<double>(beam) / beams_a_column - 0.5; };
-    std::size_t low = first_beam;
-    std::size_t high = last_beam;
-    if (beyond(beams[low]) < 0) return {column(low), 0};
-    if (beyond(beams[high]) > 0) return {column(high), 0};
-    while (high - low > 1) {
-      const std::size_t middle = (low + high) / 2;
-      (beyond(beams[middle]) >= 0 ? low : high) = middle;
+  // Light that the camera gets out of the resin, by camera column, when the vial stands `shift` columns to the right;
+  // lit: by the beam's width.
+  [[nodiscard]] std::vector<double> glow(const std::vector<LitRow>& lit, double shift) const {
+    const auto& ends = beams.columns();
+    std::vector<std::vector<double>> sheets(lit.size());
+    for (std::size_t b = 0; b < lit.size(); ++b) {
+      for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+        sheets[b].push_back(lit[b].mean(ends[k] + shift, ends[k + 1] + shift));
+      }
     }
-    const double apart_mm = beyond(beams[low]) - beyond(beams[high]);
-    const double part = beyond(beams[low]) / std::max(apart_mm, 1e-9);
-    const double even_mm = bench.printer.projector.pixel_mm / beams_a_column;
-    const double through = (1 - part) * beams[low].transmittance + part * beams[high].transmittance;
-    return {column(low) + part / beams_a_column, through * std::min(even_mm / std::max(apart_mm, 1e-9), 20.0)};
-  }
-
-  [[nodiscard]] LitRow lit_row(const GreyImage& picture, int row) const {
-    LitRow lit;
-    lit.sum.assign(static_cast<std::size_t>(picture.width) + 1, 0);
-    for (int c = 0; c < picture.width; ++c) {
-      const double grey = static_cast<double>(picture(c, row)) / picture.full();
-      const auto at = static_cast<std::size_t>(c);
-      lit.sum[at + 1] = lit.sum[at] + (grey > 0 ? std::pow(grey, bench.gamma) : 0);
-    }
-    return lit;
-  }
-
-  // Light that the camera gets out of the resin, by camera column, when the vial stands `shift` columns to the right.
-  [[nodiscard]] std::vector<double> glow(const LitRow& lit, double shift) const {
     std::vector<double> light(static_cast<std::size_t>(columns));
     for (std::size_t c = 0; c < light.size(); ++c) {
       const Sight& seen = sights[c];
-      double sum = 0;
-      for (std::size_t i = 0; i + 1 < seen.edges.size(); ++i) {
-        sum += seen.gains[i] * lit.mean(seen.edges[i] + shift, seen.edges[i + 1] + shift, seen.widths[i]);
+      for (std::size_t k = 0; k < seen.gains.size(); ++k) {
+        const auto narrow = std::min(static_cast<std::size_t>(seen.blurs[k]), lit.size() - 1);
+        const auto wide = std::min(narrow + 1, lit.size() - 1);
+        const double part = seen.blurs[k] - static_cast<double>(narrow);
+        light[c] += seen.gains[k] * ((1 - part) * sheets[narrow][k] + part * sheets[wide][k]);
       }
-      light[c] = bench.glow * seen.weight * sum;
     }
     return light;
   }
 
-  [[nodiscard]] double printed(std::size_t column, double z_mm, double angle_deg, double growth) const {
-    const SimRay& ray = sights[column].ray;
+  // The chief ray between two columns.
+  [[nodiscard]] SimRay ray_at(double column) const {
+    const auto left = static_cast<std::size_t>(std::clamp(std::floor(column), 0.0, columns - 2.0));
+    const double part = column - static_cast<double>(left);
+    const SimRay& a = sights[left].ray;
+    const SimRay& b = sights[left + 1].ray;
+    if (!a.enters || !b.enters || part < 0 || part > 1) return {};
+    const auto between = [part](double one, double other) { return one + part * (other - one); };
+    return {true, between(a.offset_mm, b.offset_mm), between(a.turn_rad, b.turn_rad),
+            between(a.transmittance, b.transmittance)};
+  }
+
+  [[nodiscard]] double printed(double column, double z_mm, double angle_deg, double growth) const {
+    const SimRay ray = ray_at(column);
     if (!ray.enters || growth <= 0) return 0;
     const double turn = ray.turn_rad + (angle_deg + bench.printer.camera.azimuth_deg) * rad_per_deg;
     double sum_mm = 0;
@@ -235,46 +136,70 @@ struct SimScene::State {
   [[nodiscard]] Image light(const SimMoment& moment) const;
 };
 
+// Rows of camera pixels that see the same rows of the picture glow alike.
+class GlowingRow {
+ public:
+  GlowingRow(const SimScene::State& scene, const GreyImage* picture, double shift)
+      : scene_(scene), shift_(shift), light_(static_cast<std::size_t>(scene.columns)) {
+    if (picture != nullptr) picture_.emplace(*picture, scene.bench.gamma);
+  }
+  // Between two heights, top first.
+  const std::vector<double>& light(double top_mm, double bottom_mm) {
+    if (!picture_) return light_;
+    const auto& projector = scene_.bench.printer.projector;
+    const double top = projector.axis_row - top_mm / projector.pixel_mm;
+    const double bottom = projector.axis_row - bottom_mm / projector.pixel_mm;
+    const int twin = picture_->uniform(top, bottom, scene_.blurs_px.back());
+    if (twin < 0 || twin != twin_) {
+      std::vector<LitRow> lit;
+      for (const double blur : scene_.blurs_px) lit.push_back(picture_->between(top, bottom, blur));
+      light_ = scene_.glow(lit, shift_);
+    }
+    twin_ = twin;
+    return light_;
+  }
+
+ private:
+  const SimScene::State& scene_;
+  double shift_;
+  std::optional<LitPicture> picture_;
+  std::vector<double> light_;
+  int twin_ = -1;
+};
+
 Image SimScene::State::light(const SimMoment& moment) const {
   const auto& printer = bench.printer;
+  Image image(columns, rows);
+  if (bench.card) {
+    const double even = moment.picture == nullptr ? 0 : LitPicture(*moment.picture, bench.gamma).mean();
+    std::fill(image.values.begin(), image.values.end(), static_cast<float>(bench.glow * even));
+    return image;
+  }
   const double growth = std::cbrt(std::clamp(moment.lit_s / bench.lit_s, 0.0, 1.0));
   const double seat_rad = (moment.angle_deg - bench.wobble_deg) * rad_per_deg;
   const double aside_mm = bench.wobble_mm * std::cos(seat_rad);   // along the projector's columns
   const double along_mm = bench.wobble_mm * -std::sin(seat_rad);  // along its light
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
   const double seen_mm = aside_mm * std::cos(azimuth) + along_mm * std::sin(azimuth);
-  const double to_projector = bench.centre_px + aside_mm / printer.projector.pixel_mm;
   // Heights in the vial look enlarged [OST22 eq S5].
   const double enlarged = 1 / (1 - printer.vial.radius_mm * (1 - printer.bath.index / printer.camera.index_resin) /
                                        printer.camera.distance_mm);
-  Image image(columns, rows);
-  std::vector<double> row_glow(static_cast<std::size_t>(columns), 0);
-  int glowing_row = -1;
+  GlowingRow glowing(*this, moment.picture, bench.centre_px + aside_mm / printer.projector.pixel_mm);
   for (int r = 0; r < rows; ++r) {
     const double z_mm = (0.5 * (rows - 1) - r) * pixel_mm / enlarged;
+    const double half_mm = 0.5 * pixel_mm / enlarged;
     const double moved_px = (bench.axis_column * printer.camera.pixel_mm + seen_mm) / pixel_mm +
                             std::tan(bench.tilt_deg * rad_per_deg) * (r - 0.5 * (rows - 1));
-    if (moment.picture != nullptr) {
-      const auto lit = static_cast<int>(std::lround(printer.projector.axis_row - z_mm / printer.projector.pixel_mm));
-      const int row = std::clamp(lit, 0, moment.picture->height - 1);
-      const auto width = static_cast<std::size_t>(moment.picture->width);
-      const auto* values = moment.picture->values.data();
-      const bool same = glowing_row >= 0 && std::equal(values + static_cast<std::size_t>(row) * width,
-                                                       values + static_cast<std::size_t>(row + 1) * width,
-                                                       values + static_cast<std::size_t>(glowing_row) * width);
-      if (!same) row_glow = glow(lit_row(*moment.picture, row), to_projector);
-      glowing_row = row;
-    }
+    const std::vector<double>& row_glow = glowing.light(z_mm + half_mm, z_mm - half_mm);
     for (int c = 0; c < columns; ++c) {
       // The picture of a vial that stands moved_px to the right, between two computed columns.
       const double from = c - moved_px;
       const auto left = static_cast<int>(std::floor(from));
       const double part = from - left;
-      double value = 0;
+      double value = printed(from, z_mm, moment.angle_deg, growth);
       for (const auto& [column, weight] : {std::pair(left, 1 - part), std::pair(left + 1, part)}) {
         if (column < 0 || column >= columns) continue;
-        const auto at = static_cast<std::size_t>(column);
-        value += weight * (row_glow[at] + printed(at, z_mm, moment.angle_deg, growth));
+        value += weight * row_glow[static_cast<std::size_t>(column)];
       }
       image(c, r) = static_cast<float>(value);
     }
@@ -289,8 +214,18 @@ int SimScene::columns() const { return state_->columns; }
 int SimScene::rows() const { return state_->rows; }
 
 GreyImage SimScene::render(const SimMoment& moment, double exposure_us, long number) const {
+  return render(std::vector{moment}, exposure_us, number);
+}
+
+GreyImage SimScene::render(const std::vector<SimMoment>& exposure, double exposure_us, long number) const {
   const State& s = *state_;
-  const Image light = s.light(moment);
+  Image light(s.columns, s.rows);
+  for (const SimMoment& moment : exposure) {
+    const Image part = s.light(moment);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      light.values[i] += static_cast<float>(moment.share) * part.values[i];
+    }
+  }
   GreyImage levels(s.columns, s.rows, s.bits);
   const double gain = exposure_us / reference_us;
   const double reach = 0.25 * (s.columns * s.columns + s.rows * s.rows);

@@ -1,25 +1,16 @@
 // What a camera beside the vial would see, for simulated cameras: the projector's picture as fluorescence in the resin,
-// and the print, which scatters. Geometry of its own, so that it can judge what is made with lib/optics.
+// and the print, which scatters; or an even card in the vial's place. Geometry of its own, so that it can judge what is
+// made with lib/optics.
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "base/pixels.hpp"
+#include "device/sim_body.hpp"
 #include "model/printer.hpp"
 
 namespace vam::device {
-
-/// A body of the print in the part's frame (mm): a sphere, or an upright cylinder of that height.
-struct SimBody {
-  double x_mm = 0, y_mm = 0, z_mm = 0;
-  double radius_mm = 2;
-  double height_mm = 0;  // 0: a sphere
-};
-
-/// "sphere:x=2,diameter=4;cylinder:diameter=6,height=3"; keys x, y, z, diameter, height. Throws Fault::usage.
-[[nodiscard]] std::vector<SimBody> parse_bodies(const std::string& text);
 
 /// The bench and its faults, as they truly are: what a calibration has to find.
 struct SimBench {
@@ -31,8 +22,10 @@ struct SimBench {
   double centre_px = 0;       // of the vial in the projector's columns, from printer.projector.axis_column
   double wobble_mm = 0;       // the vial's axis goes round the table's axis, at this distance
   double wobble_deg = 0;      // and stands towards +x of the lab at this stage angle
-  double beam_mm = 0;         // full width at half maximum that the optics add to a pixel in the plane of the axis
-  double divergence_deg = 0;  // growth of the half width per distance from that plane
+  double beam_mm = 0;         // full width at half maximum of the blur where the projector is in focus, a Gaussian
+  double focus_mm = 0;        // where that is, along the light from the axis
+  double divergence_deg = 0;  // growth of the full width per distance from there
+  bool card = false;          // an even card stands in the vial's place: it shines by the picture's mean
   double glow = 0.6;          // of full scale in 20 ms, for full light all through the vial
   double gamma = 1;           // intensity = (grey / full)^gamma
   double vignetting = 0;      // part of the light that the corners of the image lack
@@ -48,6 +41,7 @@ struct SimMoment {
   double angle_deg = 0;                // of the table
   const GreyImage* picture = nullptr;  // that the projector shows; none: black
   double lit_s = 0;                    // how long there was light so far
+  double share = 1;                    // of the exposure
 };
 
 /// Renders frames of one size.
@@ -60,9 +54,12 @@ class SimScene {
   [[nodiscard]] int rows() const;
   /// number seeds the noise; exposure_us scales all light, 20 ms being 1.
   [[nodiscard]] GreyImage render(const SimMoment& moment, double exposure_us, long number) const;
+  /// An exposure during which the bench changes: moments whose shares add up to 1.
+  [[nodiscard]] GreyImage render(const std::vector<SimMoment>& exposure, double exposure_us, long number) const;
+
+  struct State;
 
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

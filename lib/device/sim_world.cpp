@@ -1,12 +1,15 @@
 #include "device/sim_world.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace vam::device {
 
 namespace {
 constexpr double kept_s = 5;  // of the logs, for a camera that looks back
-}
+constexpr double finest_turn_deg = 0.5;
+constexpr int most_parts = 8;
+}  // namespace
 
 std::vector<Json> LogTail::fresh() {
   std::vector<Json> lines;
@@ -44,6 +47,7 @@ void SimWorld::read_logs() {
     }
   }
   for (const Json& line : shown_.fresh()) {
+    if (line.value("event", "") == "pattern" && sources_.draw) sources_.pictures = sources_.draw(line);
     if (line.value("event", "") != "flip") continue;
     const double t_s = line.value("t_monotonic_s", 0.0);
     double lit_s = 0;
@@ -67,8 +71,7 @@ double SimWorld::angle_deg(double t_s) const {
   return before.angle_deg + before.speed_deg_s * later_s;
 }
 
-SimMoment SimWorld::at(double t_s) {
-  read_logs();
+SimMoment SimWorld::moment(double t_s) const {
   SimMoment moment;
   moment.angle_deg = angle_deg(t_s);
   if (sources_.shown.empty()) {
@@ -83,6 +86,29 @@ SimMoment SimWorld::at(double t_s) {
   if (now.frame >= 0) moment.lit_s += t_s - now.t_s;
   moment.picture = picture(now.frame);
   return moment;
+}
+
+SimMoment SimWorld::at(double t_s) {
+  read_logs();
+  return moment(t_s);
+}
+
+std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
+  read_logs();
+  const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
+  const int parts = std::clamp(static_cast<int>(std::ceil(turn_deg / finest_turn_deg)), 1, most_parts);
+  std::vector<double> cuts;
+  for (int i = 0; i <= parts; ++i) cuts.push_back(from_s + (to_s - from_s) * i / parts);
+  for (const Shown& flip : flips_) {
+    if (flip.t_s > from_s && flip.t_s < to_s) cuts.push_back(flip.t_s);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<SimMoment> exposure;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    exposure.push_back(moment(0.5 * (cuts[i] + cuts[i + 1])));
+    exposure.back().share = (cuts[i + 1] - cuts[i]) / (to_s - from_s);
+  }
+  return exposure;
 }
 
 }  // namespace vam::device

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@ struct SimSources {
   std::string angles;               // log of vam-sim-stage (or of sim: of vam-stage): the true angle
   std::string shown;                // log of vam-project: which frame was on when; without it the first is always on
   std::vector<GreyImage> pictures;  // that glow in the resin, by frame index; none: the print alone is seen
+  std::function<std::vector<GreyImage>(const Json& event)> draw;  // of the test pattern that `shown` says comes next
 };
 
 /// Times are on CLOCK_MONOTONIC, as in the logs.
@@ -37,6 +39,9 @@ class SimWorld {
   SimWorld(SimSources sources, double start_s);
   /// The moment t_s; times must not fall by more than a second from call to call.
   SimMoment at(double t_s);
+  /// What an exposure sees: cut where the picture changes, and so finely that the table turns by half a degree at most
+  /// in a part (but into no more than eight).
+  std::vector<SimMoment> during(double from_s, double to_s);
 
  private:
   struct TableSample {
@@ -50,6 +55,7 @@ class SimWorld {
   void read_logs();
   [[nodiscard]] const GreyImage* picture(int frame) const;
   [[nodiscard]] double angle_deg(double t_s) const;
+  [[nodiscard]] SimMoment moment(double t_s) const;
 
   SimSources sources_;
   double start_s_;

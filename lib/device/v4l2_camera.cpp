@@ -260,7 +260,8 @@ class V4l2Camera final : public Camera {
     const double stamp_s =
         static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
     const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-    frame.time_s = monotonic ? stamp_s : clock_.now_s();
+    const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    frame.time_s = (monotonic ? stamp_s : clock_.now_s()) + (at_start ? 0.5e-6 : -0.5e-6) * mode_.exposure_us;
     frame.device_s = stamp_s;
     const auto used = std::min<std::size_t>(buffer.bytesused, mapping.size);
     const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,

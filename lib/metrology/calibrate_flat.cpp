@@ -91,7 +91,7 @@ double FrameMean::noise() const {
   return std::sqrt(variance / static_cast<double>(sum_.size()));
 }
 
-FlatField flat_field(const FrameMean& frames, const Image& dark) {
+FlatField flat_field(const FrameMean& frames, const Image& dark, double dark_sigma) {
   if (frames.count() < 3) {
     throw Error{Fault::data, "flat: " + std::to_string(frames.count()) + " frames; at least 3 are needed"};
   }
@@ -105,7 +105,7 @@ FlatField flat_field(const FrameMean& frames, const Image& dark) {
     for (std::size_t i = 0; i < dark.size(); ++i) flat.field.values[i] -= dark.values[i];
   }
   const double mean = mean_of(flat.field);
-  const double error = frames.noise() / std::sqrt(frames.count());
+  const double error = std::hypot(frames.noise() / std::sqrt(frames.count()), dark_sigma);
   if (!(mean > 3 * error)) {
     throw Error{Fault::data, "flat: the scene is dark, " + format_number(mean) + " +- " + format_number(error)};
   }

@@ -46,7 +46,7 @@ void draw(GreyImage& image, std::uint16_t level, const Lit& lit) {
 }  // namespace
 
 const std::vector<std::string>& pattern_names() {
-  static const std::vector<std::string> names{"star", "axis", "grid", "grey", "ramp", "sweep"};
+  static const std::vector<std::string> names{"star", "axis", "grid", "grey", "ramp", "sweep", "row"};
   return names;
 }
 
@@ -73,6 +73,8 @@ GreyImage pattern_frame(const PatternPlan& plan, const model::Projector& project
   } else if (plan.name == "sweep") {
     const int first = n * plan.pitch_px;
     draw(image, level, [&](int x, int) { return x >= first && x < first + plan.width_px; });
+  } else if (plan.name == "row") {
+    draw(image, level, [&](int, int y) { return on_line(y, projector.axis_row, plan.width_px); });
   } else if (plan.name == "axis") {
     draw(image, level, [&](int x, int y) {
       return on_line(x, projector.axis_column, plan.width_px) || on_line(y, projector.axis_row, plan.width_px);

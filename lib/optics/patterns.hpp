@@ -11,7 +11,8 @@ namespace vam::optics {
 
 /// star: 36 spokes about the middle, for focus · axis: the rotation axis' column and the row of z = 0 · grid: lines
 /// every pitch_px from the axis outwards · grey: one uniform level · ramp: `steps` uniform frames from 0 to full ·
-/// sweep: a line of width_px that steps by pitch_px from the first column to the last, one position a frame.
+/// sweep: a line of width_px that steps by pitch_px from the first column to the last, one position a frame · row: a
+/// level line of width_px at z = 0, whose beam a camera at the side sees from end to end.
 struct PatternPlan {
   std::string name = "grid";
   double level = 1;   // of the lines or the field, fraction of full grey

@@ -1,4 +1,5 @@
-"""Uncompressed multi-part EXR stacks by the published format alone, for tests: an independent writer and reader.
+"""Multi-part EXR stacks, plain or run-length coded, by the published format alone, for tests: an independent writer and
+reader.
 
     exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value reach
     exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
@@ -74,6 +75,26 @@ def make(path, job):
                 out.write(struct.pack("<3i", i, a, len(row)) + row)
 
 
+def unpacked(packed, size):
+    """A run-length coded line: runs, then differences, then the bytes' halves one after the other."""
+    if len(packed) == size:
+        return packed
+    out, at = bytearray(), 0
+    while at < len(packed):
+        count = struct.unpack_from("b", packed, at)[0]
+        if count < 0:
+            out += packed[at + 1:at + 1 - count]
+            at += 1 - count
+        else:
+            out += packed[at + 1:at + 2] * (count + 1)
+            at += 2
+    for i in range(1, len(out)):
+        out[i] = (out[i] + out[i - 1] - 128) & 255
+    line = bytearray(size)
+    line[0::2], line[1::2] = out[:(size + 1) // 2], out[(size + 1) // 2:]
+    return bytes(line)
+
+
 def read(path):
     """Headers as dictionaries of raw bytes, and an iterator of (part, row, floats)."""
     file = sys.stdin.buffer if path == "-" else open(path, "rb")
@@ -90,7 +111,7 @@ def read(path):
             head[name.decode()] = data[at + 4:at + 4 + size]
             at += 4 + size
         at += 1
-        assert head["compression"] == b"\0", "compressed"
+        assert head["compression"] in (b"\0", b"\1"), "compressed otherwise than by run lengths"
         parts.append(head)
     at += 1 + 8 * sum(struct.unpack("<i", head["chunkCount"])[0] for head in parts)
 
@@ -98,7 +119,8 @@ def read(path):
         where = at
         while where < len(data):
             part, row, size = struct.unpack_from("<3i", data, where)
-            yield part, row, struct.unpack_from("<%df" % (size // 4), data, where + 12)
+            width = struct.unpack("<4i", parts[part]["dataWindow"])[2] + 1
+            yield part, row, struct.unpack("<%df" % width, unpacked(data[where + 12:where + 12 + size], 4 * width))
             where += 12 + size
     return parts, rows()
 
@@ -127,4 +149,5 @@ def main(verb, path, *rest):
         print("%.10g" % struct.unpack("<d", raw)[0] if is_number else raw.decode())
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -65,6 +65,44 @@ for key in sys.argv[2].split("."): value=value[int(key)] if isinstance(value,lis
 print(str(value).lower() if isinstance(value,bool) else value)' "$1" "$2"
 }
 
+await() {  # await COMMAND...: until it succeeds, at most 10 s
+  tries=0
+  until "$@"; do
+    [ $tries -lt 500 ] || return 1
+    tries=$((tries + 1)); sleep 0.02
+  done
+}
+
+screen_up() {  # screen_up WIDTH HEIGHT: an X server without a screen, its picture in screen/Xvfb_screen0; $server
+  mkdir -p screen
+  exec 4>screen.number
+  # -noreset, -nocursor: what the server itself draws when its last client goes is no part of a test.
+  Xvfb -displayfd 4 -screen 0 "$1x$2x24" -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
+  server=$!
+  await test -s screen.number || { echo "# no X server"; exit 1; }
+  DISPLAY=:$(cat screen.number); export DISPLAY
+  export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+}
+screen_down() { kill $server; wait $server 2>/dev/null; }
+
+answered() { [ -s camera ] || ! kill -0 $camera 2>/dev/null; }
+camera_up() {  # camera_up OPTIONS...: vam-sim-camera at its address; $camera
+  # GigE Vision's port is the machine's: tests take turns, and another program may have it for a while.
+  exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9
+  turns=0
+  while :; do
+    : >camera
+    vam-sim-camera --die-with-parent "$@" >camera 2>camera.err 9>&- & camera=$!
+    await answered
+    if [ -s camera ] || [ $turns -ge 60 ]; then return; fi
+    turns=$((turns + 1)); sleep 2
+  done
+}
+camera_down() {  # at once: its library may wait for its threads for ever
+  kill -KILL $camera 2>/dev/null; wait $camera 2>/dev/null
+  exec 9>&-
+}
+
 box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through its middle, standing on z = 0
   x=$(awk "BEGIN { print $1 / 2 }"); y=$(awk "BEGIN { print $2 / 2 }")
   printf 'OFF\n8 12 0\n'

@@ -19,6 +19,9 @@ fails 64 'name them with --from' vam-capture edges
 fails 66 'missing' vam-capture edges --from missing
 fails 64 'needs --flips' vam-capture latency --from ramp
 fails 64 'needs --pixel' vam-capture beam --from beam
+fails 64 'leave out --first and --step' vam-capture beam --from beam --side --step 1
+fails 65 'at least 32 are needed' vam-capture beam --from ramp --side
+fails 65 'looks at 45 degrees to the light' vam-capture beam --from beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-capture check
 fails 65 'are not 16 levels' vam-capture response --from ramp --steps 16
 fails 65 'no height shows light' vam-capture edges --from flat --pitch 4 --width 2

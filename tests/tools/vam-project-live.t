@@ -31,8 +31,10 @@ fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 # Test pictures, to files and to a dry run.
 fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
 fails 64 'out of range' vam-project --pattern grey --level 2 -o grey/
-for pattern in star axis grid grey ramp sweep; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
+for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
+ok 'a dry run tells which pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
+is 'in its log' "$(grep '"event":"pattern"' rows | grep -c '"name":"row"')" 1
 is 'a sweep has 64 / 16 places' "$(ls sweep | grep -c png)" 4
 ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o null: --log ramps --light sim:
 is 'each in its turn' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' ')" '"frame":0 "frame":1 "frame":2 "frame":-1 '

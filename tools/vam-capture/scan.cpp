@@ -8,14 +8,11 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/calibration_record.hpp"
-#include "io/exr_stack.hpp"
 #include "io/printer_file.hpp"
 #include "io/stream.hpp"
 #include "io/view_source.hpp"
 #include "metrology/calibrate_axis.hpp"
-#include "metrology/calibrate_beam.hpp"
 #include "metrology/calibrate_edges.hpp"
-#include "metrology/calibrate_flat.hpp"
 #include "metrology/calibrate_latency.hpp"
 #include "metrology/calibrate_response.hpp"
 #include "optics/patterns.hpp"
@@ -28,6 +25,7 @@ constexpr double wanted_axis_sigma_px = 0.1;
 constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is told from noise
 constexpr double allowed_shift_px = 1;
 constexpr double allowed_radius_change = 0.005;
+constexpr int settling_frames = 10;  // until the way of the time stamps from camera to machine is known
 
 // Every frame must be there before it is known how the pattern went.
 std::vector<double> mean_levels(const Image& image) {
@@ -156,62 +154,6 @@ Finding response(const ScanOptions& options, const model::Printer& printer) {
   return finding;
 }
 
-Finding flat(const ScanOptions& options, const model::Printer& printer) {
-  metrology::FrameMean frames;
-  each_frame(options, printer, [&](const ScanFrame& frame) { frames.add(frame.image); });
-  const auto field = metrology::flat_field(frames, options.dark.empty() ? Image() : io::read_field(options.dark));
-  Finding finding;
-  finding.value("level", field.level, "camera units", "mean of frames");
-  finding.facts["flat"] = {{"unevenness", field.unevenness},
-                           {"pixel_sigma", field.pixel_sigma},
-                           {"frame_noise", frames.noise()},
-                           {"dead_pixels", field.dead}};
-  finding.products.push_back({"flat", ".exr", [image = field.field, &printer](const std::string& path) {
-                                model::StackInfo info;
-                                info.kind = model::Kind::frames;
-                                info.space = model::Space::camera;
-                                info.width = image.width;
-                                info.height = image.height;
-                                info.count = 1;
-                                info.pixel_mm = info.row_mm = printer.camera.pixel_mm * printer.camera.binning;
-                                info.units = "part of the mean";
-                                io::StackWriter writer(path, info);
-                                writer.write(image);
-                                writer.commit();
-                              }});
-  return finding;
-}
-
-Finding beam(const ScanOptions& options, const model::Printer& printer) {
-  if (options.pixel_mm <= 0 || options.step_mm == 0) {
-    throw Error{Fault::usage, "beam: needs --pixel, the sensor's pitch, and --first and --step, where the planes are"};
-  }
-  metrology::BeamWidths widths;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    const double plane_mm = options.first_mm + options.step_mm * frame.shown;
-    const auto px = metrology::line_width_px(frame.image, "plane at " + format_number(plane_mm) + " mm");
-    widths.plane_mm.push_back(plane_mm);
-    widths.fwhm_mm.push_back({px.value * options.pixel_mm, px.sigma * options.pixel_mm, px.n});
-  });
-  const auto found = metrology::measure_beam(widths);
-  Finding finding;
-  finding.value("waist", found.waist_mm, "mm", "fit over planes");
-  finding.value("focus", found.focus_mm, "mm", "fit over planes");
-  finding.value("axis_fwhm", found.axis_fwhm_mm, "mm", "fit over planes");
-  finding.value("divergence", found.divergence_deg, "deg", "atan of width over distance");
-  Json planes = Json::array();
-  for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
-    planes.push_back({{"plane_mm", widths.plane_mm[i]},
-                      {"value", widths.fwhm_mm[i].value},
-                      {"unit", "mm"},
-                      {"sigma", widths.fwhm_mm[i].sigma},
-                      {"n", widths.fwhm_mm[i].n},
-                      {"method", "full width at half maximum"}});
-  }
-  finding.facts["planes"] = planes;
-  return finding;
-}
-
 Finding axis(const ScanOptions& options, const model::Printer& printer) {
   metrology::TurnScan scan;
   double pixel_mm = 0;
@@ -247,7 +189,9 @@ Finding latency(const ScanOptions& options, const model::Printer& printer) {
     if (flips[i].frame > 0) scan.lit_s.emplace_back(flips[i].t_s, flips[i + 1].t_s);
   }
   scan.exposure_s = 1e-6 * printer.camera.exposure_us;
+  int number = 0;
   each_frame(options, printer, [&](const ScanFrame& frame) {
+    if (number++ < settling_frames) return;
     if (frame.time_s < flips.front().t_s || frame.time_s > flips.back().t_s) return;
     scan.begin_s.push_back(frame.time_s - 0.5 * scan.exposure_s);
     scan.light.push_back(mean_levels(frame.image).front());
@@ -262,8 +206,8 @@ Finding latency(const ScanOptions& options, const model::Printer& printer) {
 
 using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
 const std::map<std::string, Scan>& scans() {
-  static const std::map<std::string, Scan> all{{"edges", edges}, {"response", response}, {"flat", flat},
-                                               {"beam", beam},   {"axis", axis},         {"latency", latency}};
+  static const std::map<std::string, Scan> all{{"edges", edges},    {"response", response}, {"flat", scan_flat},
+                                               {"beam", scan_beam}, {"axis", axis},         {"latency", latency}};
   return all;
 }
 
@@ -294,14 +238,16 @@ void add_scans(cli::App& app, ScanOptions& options, std::string& chosen) {
   ramp.option("--steps", "N", options.steps, {2, 65536}, "Levels of the ramp.");
   ramp.option("--dark", "FILE", options.dark, "Picture or stack without any light.");
   auto& even = app.subcommand("flat", "the camera's flat field, from frames of an even scene", chosen);
-  add_input(even, options, false);
+  add_input(even, options, true);
   even.option("--dark", "FILE", options.dark, "Picture or stack without any light.");
-  auto& line =
-      app.subcommand("beam", "width and divergence of a lit column, on a sensor moved along the light", chosen);
-  add_input(line, options, false);
+  auto& line = app.subcommand(
+      "beam", "width and divergence of a lit line, on a sensor moved along the light or in resin", chosen);
+  add_input(line, options, true);
+  line.flag("--side", options.side,
+            "The frames are the camera's, of a lit row in fluorescing resin (vam-project --pattern row).");
   line.option("--first", "MM", options.first_mm, cli::any, "Plane of the first frame, from the rotation axis.");
   line.option("--step", "MM", options.step_mm, cli::any, "From plane to plane.");
-  line.option("--pixel", "MM", options.pixel_mm, cli::non_negative, "Of the bare sensor.");
+  line.option("--pixel", "MM", options.pixel_mm, cli::non_negative, "Of the bare sensor; with --side at the axis.");
   auto& turn = app.subcommand("axis", "rotation axis and wobble in the camera's frames, over a turn", chosen);
   add_input(turn, options, false);
   turn.option("--step", "DEG", options.step_deg, cli::any, "Angle between frames that carry none.");
@@ -321,6 +267,11 @@ void run_scan(const cli::App& app, const ScanOptions& given, const std::string& 
   options.command = command;
   model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
   if (command == "check") return check_records(options, printer.calibration);
+  // Where the axis stands in the camera's picture, as measured before.
+  const auto axis_record = io::current_record(printer.calibration, "axis");
+  if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, io::utc_seconds()).empty()) {
+    printer.camera.axis_column = axis_record->value("axis_column");
+  }
   // A latency that was measured before helps to tell which picture a frame shows.
   const auto known = io::current_record(printer.calibration, "latency");
   if (known && command != "latency" && io::objection(*known, printer.calibration, io::utc_seconds()).empty()) {

@@ -22,6 +22,7 @@ struct ScanOptions {
   int bands = 5;
   int pitch_px = 4, width_px = 4, steps = 17;      // of the pattern
   double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
+  bool side = false;                               // beam: frames of a camera beside the vial
   double step_deg = 0;                             // axis: frames without angles
   std::string devices;                             // who took part
   std::vector<std::string> needed;                 // check
@@ -57,6 +58,11 @@ struct Showing {
 };
 /// The changes of picture in a log of vam-project. Throws Error: no_input, data.
 [[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
+
+// ---- scan_beam.cpp, scan_flat.cpp: scans with files of their own
+class Finding;
+[[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);
 
 // ---- record.cpp: what becomes of the result
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "device/event_log.hpp"
 #include "device/player.hpp"
@@ -19,6 +20,8 @@ class Live {
   Live(const LiveOptions& options, const std::string& output, const device::DisplayMode& wanted);
 
   void add(const GreyImage& levels);
+  /// A line of the log that is no flip.
+  void note(const std::string& event, Json facts) { log_(event, std::move(facts)); }
   /// One turn's frames are loaded: prints with them.
   device::PlayTally play(double speed_deg_s, int turns);
   /// Shows the loaded frames one after the other.

@@ -35,6 +35,15 @@ io::ProjectorFrame pattern_as_frame(const GreyImage& levels, double time_s) {
   return frame;
 }
 
+// For whoever reads the log: which frames the flips speak of.
+Json facts(const optics::PatternPlan& plan) {
+  return {{"name", plan.name},
+          {"level", plan.level},
+          {"pitch_px", plan.pitch_px},
+          {"width_px", plan.width_px},
+          {"steps", plan.steps}};
+}
+
 model::StackInfo stack_info(const model::Projector& projector, int count) {
   model::StackInfo info;
   info.kind = model::Kind::frames;
@@ -58,6 +67,7 @@ void show_pattern(const cli::App& app, const Options& options, const model::Proj
     const auto play = [&] {
       Live live(options.live, options.output, {projector.columns, projector.rows, 60});
       for (int n = 0; n < count; ++n) live.add(oriented_pattern(pattern, projector, n));
+      live.note("pattern", facts(pattern.plan));
       live.play_through(pattern.hold_s, pattern.repeat);
     };
     return device::interruptible([&] { device::logged(options.live.log, play); });

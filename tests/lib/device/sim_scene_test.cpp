@@ -111,9 +111,9 @@ TEST_CASE("Noise is seeded by frame and has its spread; vignetting darkens the c
   bench.background = 0.5;
   bench.noise = 0.01;
   const SimScene scene(bench, 1, 16);
-  const GreyImage one = scene.render({}, 20000, 3);
-  CHECK(one == scene.render({}, 20000, 3));
-  CHECK(one != scene.render({}, 20000, 4));
+  const GreyImage one = scene.render(SimMoment{}, 20000, 3);
+  CHECK(one == scene.render(SimMoment{}, 20000, 3));
+  CHECK(one != scene.render(SimMoment{}, 20000, 4));
   double sum = 0;
   double squares = 0;
   for (const auto level : one.values) {
@@ -160,5 +160,52 @@ TEST_CASE("The world follows the logs as they grow: true angle, shown picture, s
   CHECK(world.at(101).picture != nullptr);
   CHECK(world.at(102).lit_s == doctest::Approx(1.5));
   CHECK(world.at(102).picture == nullptr);
+  // An exposure across the black flip at 101.5, while the table stands.
+  const auto exposure = world.during(101.4, 101.7);
+  REQUIRE(exposure.size() == 2);
+  CHECK(exposure[0].picture != nullptr);
+  CHECK(exposure[0].share == doctest::Approx(1.0 / 3));
+  CHECK(exposure[1].picture == nullptr);
+  // And one while it turns by 2 degrees: four parts, their middles half a degree apart.
+  const auto turning = world.during(100, 100.1);
+  REQUIRE(turning.size() == 4);
+  CHECK(turning[1].angle_deg - turning[0].angle_deg == doctest::Approx(0.5));
   std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("The world shows the test pattern that the projector's log names") {
+  const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-shown-" + std::to_string(getpid()));
+  SimSources sources;
+  sources.shown = shown;
+  sources.draw = [](const Json& event) { return std::vector(1, GreyImage(event.value("width_px", 0), 1, 8)); };
+  SimWorld world(sources, 100);
+  std::ofstream flips(shown);
+  flips << R"({"t_monotonic_s":99.0,"event":"pattern","name":"row","width_px":7})"
+        << "\n"
+        << R"({"t_monotonic_s":100.0,"event":"flip","frame":0})"
+        << "\n"
+        << std::flush;
+  REQUIRE(world.at(100.5).picture != nullptr);
+  CHECK(world.at(100.5).picture->width == 7);
+  flips << R"({"t_monotonic_s":101.0,"event":"pattern","name":"row","width_px":9})"
+        << "\n"
+        << std::flush;
+  CHECK(world.at(101.5).picture->width == 9);
+  std::filesystem::remove(shown);
+}
+
+TEST_CASE("An exposure is the sum of its parts; a card shines by the picture's mean and has the lens' shading") {
+  SimBench bench = small_bench();
+  bench.bodies.clear();
+  bench.card = true;
+  bench.glow = 0.8;
+  bench.vignetting = 0.4;
+  const SimScene scene(bench, 1, 16);
+  GreyImage half(4, 4, 8);
+  std::fill_n(half.values.begin(), 8, std::uint16_t{255});
+  CHECK(scene.render({0, &half, 0}, 20000, 0)(150, 20) == doctest::Approx(0.4 * 65535).epsilon(1e-3));
+  CHECK(scene.render({0, &half, 0}, 20000, 0)(0, 0) == doctest::Approx(0.24 * 65535).epsilon(0.01));
+  CHECK(scene.render(SimMoment{}, 20000, 0)(150, 20) == 0);
+  const std::vector<SimMoment> blink{{0, &half, 0, 0.25}, {0, nullptr, 0, 0.75}};
+  CHECK(scene.render(blink, 20000, 0)(150, 20) == doctest::Approx(0.1 * 65535).epsilon(1e-3));
 }

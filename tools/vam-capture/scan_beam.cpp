@@ -1,0 +1,76 @@
+// vam-capture beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "metrology/calibrate_beam.hpp"
+#include "metrology/calibrate_flat.hpp"
+#include "vam-capture/scan.hpp"
+
+namespace vam::capture_tool {
+
+namespace {
+
+constexpr int side_planes = 9;
+constexpr double wanted_width_sigma = 0.1;  // of the width at the axis
+
+metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
+  if (options.pixel_mm <= 0 || options.step_mm == 0) {
+    throw Error{Fault::usage,
+                "beam: needs --pixel, the sensor's pitch, and --first and --step, where the planes are; or "
+                "--side"};
+  }
+  metrology::BeamWidths widths;
+  each_frame(options, printer, [&](const ScanFrame& frame) {
+    const double plane_mm = options.first_mm + options.step_mm * frame.shown;
+    const auto px = metrology::line_width_px(frame.image, "plane at " + format_number(plane_mm) + " mm");
+    widths.plane_mm.push_back(plane_mm);
+    widths.fwhm_mm.push_back({px.value * options.pixel_mm, px.sigma * options.pixel_mm, px.n});
+  });
+  return widths;
+}
+
+metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Printer& printer) {
+  if (options.step_mm != 0 || options.first_mm != 0) {
+    throw Error{Fault::usage, "beam: --side sees all planes at once; leave out --first and --step"};
+  }
+  metrology::FrameMean frames;
+  metrology::SideView view;
+  each_frame(options, printer, [&](const ScanFrame& frame) {
+    frames.add(frame.image);
+    view.pixel_mm = options.pixel_mm > 0 ? options.pixel_mm : frame.pixel_mm;
+  });
+  if (frames.count() == 0) throw Error{Fault::data, options.from + ": no frame shows the lit row"};
+  const Image mean = frames.mean();
+  view.axis_column = printer.camera.axis_column.value_or(0.5 * (mean.width - 1));
+  return metrology::side_widths(mean, view, printer, side_planes);
+}
+
+}  // namespace
+
+Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
+  const auto widths = options.side ? from_the_side(options, printer) : plane_by_plane(options, printer);
+  const auto found = metrology::measure_beam(widths);
+  Finding finding;
+  finding.value("waist", found.waist_mm, "mm", "fit over planes");
+  finding.value("focus", found.focus_mm, "mm", "fit over planes");
+  finding.value("axis_fwhm", found.axis_fwhm_mm, "mm", "fit over planes");
+  finding.value("divergence", found.divergence_deg, "deg", "atan of width over distance");
+  Json planes = Json::array();
+  for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
+    planes.push_back({{"plane_mm", widths.plane_mm[i]},
+                      {"value", widths.fwhm_mm[i].value},
+                      {"unit", "mm"},
+                      {"sigma", widths.fwhm_mm[i].sigma},
+                      {"n", widths.fwhm_mm[i].n},
+                      {"method", "full width at half maximum"}});
+  }
+  finding.facts["planes"] = planes;
+  finding.facts["settings"] = {{"seen", options.side ? "from the side, in resin" : "on a bare sensor"}};
+  if (found.axis_fwhm_mm.sigma > wanted_width_sigma * found.axis_fwhm_mm.value) {
+    finding.fail_because("the width at the axis is known to " +
+                         format_number(100 * found.axis_fwhm_mm.sigma / found.axis_fwhm_mm.value, 3) + " % only, not " +
+                         format_number(100 * wanted_width_sigma));
+  }
+  return finding;
+}
+
+}  // namespace vam::capture_tool
