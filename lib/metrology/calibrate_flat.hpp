@@ -32,8 +32,8 @@ struct FlatField {
   int dead = 0;            // pixels below a fifth of the mean
 };
 
-/// (mean - dark) / its mean; dark_sigma is that of a pixel of the dark. An empty dark is 0. Throws Fault::data: fewer than 3 frames, no light, sizes that differ,
-/// more than 1 % dead pixels, or over-exposed frames.
+/// (mean - dark) / its mean; dark_sigma is that of a pixel of the dark. An empty dark is 0. Throws Fault::data: fewer
+/// than 3 frames, no light, sizes that differ, more than 1 % dead pixels, or over-exposed frames.
 [[nodiscard]] FlatField flat_field(const FrameMean& frames, const Image& dark, double dark_sigma = 0);
 
 }  // namespace vam::metrology
