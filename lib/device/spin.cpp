@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -13,7 +14,8 @@ namespace vam::device {
 namespace {
 
 constexpr double assumed_acceleration_deg_s2 = 40;  // when the controller does not say
-constexpr double settle_s = 1.2;                    // at speed before the run-up turn is judged: the fit's window
+constexpr double judged_s = 0.6;  // before angle 0: a projector that follows is told in time, and never shines
+constexpr double settle_s = 1.6;  // at speed before angle 0: the fit's window, and the time before
 
 struct Course {
   double start_deg;  // of printing coordinates
@@ -88,15 +90,14 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   const double longest_s = 2 * (course.end_deg - course.start_deg) / plan.speed_deg_s + 10;
   const double start_s = clock.now_s();
   AngleFit fit;
-  bool printing = false;
+  bool judged = false;
   for (double next_s = start_s;; next_s += plan.period_s) {
     clock.sleep_until(next_s);
     next_s = std::max(next_s, clock.now_s() - plan.period_s);  // late samples are not made up for
     StageSample raw = stage.sample();
     raw.angle_deg *= plan.direction;
     const AngleSample now = to_angle_sample(raw, plan.speed_deg_s);
-    if (now.angle_deg >= 0 && !printing) require_speed(plan, fit);
-    printing = now.angle_deg >= 0;
+    if (now.angle_deg >= -judged_s * plan.speed_deg_s && !std::exchange(judged, true)) require_speed(plan, fit);
     if (now.angle_deg >= course.cruise_deg) {
       require_on_line(fit, now);
       fit.add(now);

@@ -21,9 +21,9 @@ struct SpinPlan {
 /// Turns the table and reports its angle. Angles count from 0 where printing begins: negative during ramp and run-up,
 /// past 360 * turns when it ends. Angle 0 is the table's own zero (its reference after homing), whatever the number of
 /// runs before. One long motion, inside the controller's limits, re-zeroed before each run.
-/// Throws Fault::data (limits too narrow for so many turns), Fault::protocol (speed off by more than the tolerance when
-/// angle 0 is due, or a table that does not follow its own line), and what the stage throws. Stops the table whenever
-/// it leaves.
+/// Throws Fault::data (limits too narrow for so many turns), Fault::protocol (speed off by more than the tolerance
+/// shortly before angle 0, or a table that does not follow its own line), and what the stage throws. Stops the table
+/// whenever it leaves.
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report);
 
 /// Waits until the table stands, sampling every period_s. Throws Fault::busy after timeout_s.

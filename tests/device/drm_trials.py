@@ -55,14 +55,16 @@ def pictures(frames, flips):
 class Trial:
     """A print on a card of its own, until a picture is on."""
 
-    def __init__(self, folder, card):
+    def __init__(self, folder, card, cause):
+        self.cause = cause
         os.makedirs(folder + "/dri")
         open(folder + "/dri/card0", "w").close()
         self.log = folder + "/log"
         self.tool = subprocess.Popen(["vam-project", "part.exr", "-o", "drm:HDMI-A-1", "--speed", "30", "--turns", "9",
-                                      "--missed", "1", "--printer", "printer.toml"],
-                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                     env=dict(os.environ, LD_PRELOAD=card, FAKE_DRM=folder, VAM_LOCK_DIR=folder))
+                                      "--missed", "1", "--printer", "printer.toml", "--log", "/dev/stdout"],
+                                     stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                                     env=dict(os.environ, LD_PRELOAD=card, FAKE_DRM=folder, VAM_LOCK_DIR=folder,
+                                              FAKE_DRM_FAULT="busy:30" if cause == "device error" else ""))
 
     def shown(self):
         return [line for line in lines(self.log) if "shade" in line]
@@ -70,9 +72,10 @@ class Trial:
     def lit(self):
         return any(line["shade"] == "lit" for line in self.shown())
 
-    def end(self, cause):
-        self.cause = cause
-        self.ended = end_by(cause, self.tool)
+    def end(self):
+        self.ended = time.monotonic()
+        if self.cause != "device error":  # which comes by itself
+            self.ended = end_by(self.cause, self.tool)
 
     def took(self):
         """From the end to the vertical blank at which black is on."""
@@ -83,7 +86,10 @@ class Trial:
             time.sleep(0.002)
             shown = self.shown()
         lit = [i for i, line in enumerate(shown) if line["shade"] == "lit"]
-        return shown[lit[-1] + 1]["t_monotonic_s"] - self.ended if lit and lit[-1] + 1 < len(shown) else NEVER
+        if not lit or lit[-1] + 1 == len(shown):
+            return NEVER
+        begin = shown[lit[-1]]["t_monotonic_s"] if self.cause == "device error" else self.ended
+        return shown[lit[-1] + 1]["t_monotonic_s"] - begin
 
 
 def trials(cause, count, card):
@@ -91,19 +97,20 @@ def trials(cause, count, card):
     times = []
     for first in range(0, count, 10):
         with tempfile.TemporaryDirectory(dir=".") as folder:
-            batch = [Trial(os.path.abspath(f"{folder}/{n}"), card) for n in range(min(10, count - first))]
+            batch = [Trial(os.path.abspath(f"{folder}/{n}"), card, cause) for n in range(min(10, count - first))]
             deadline = time.monotonic() + 10
             while not all(one.lit() for one in batch) and time.monotonic() < deadline:
                 time.sleep(0.01)
             for one in batch:
-                one.end(cause)
+                one.end()
                 time.sleep(0.02)
             times += [one.took() for one in batch]
     return times
 
 
 def ends(count, card):
-    failed = sum([report(cause, trials(cause, count, card)) for cause in SIGNALS + ["hang"]])
+    causes = SIGNALS + ["hang", "closed stdout", "device error"]
+    failed = sum([report(cause, trials(cause, count, card)) for cause in causes])
     sys.exit(failed > 0)
 
 

@@ -65,6 +65,12 @@ is 'a stage that ends is an error' $? 75
 ok 'which is named' grep -q 'ended after line 550' errors
 is 'and the light is off' "$(tail -n 1 leds2 | grep -o '"bits":[0-9]*')" '"bits":0'
 
+# A stage that is too fast: refused before there is any light.
+vam-stage spin --device 'sim:?acceleration_deg_s2=1000&speed_error=0.03' --speed 85 --run-up 0.1 2>errors |
+  vam-project part.exr -o null: --follow - --light 'sim:?log=leds3' --log flips3 --missed 0.9 2>/dev/null
+is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % off, allowed 1 %' errors)" '75 1'
+is 'the light never came on, and all was black' "$(grep -c '"bits":[1-9]' leds3) $(grep -c '"frame":[0-9]' flips3)" '0 0'
+
 # A real window, on a virtual screen whose picture is a file.
 mkdir screen
 exec 4>screen.number
