@@ -89,11 +89,14 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   stage.start_move(plan.direction * course.end_deg);
   const double longest_s = 2 * (course.end_deg - course.start_deg) / plan.speed_deg_s + 10;
   const double start_s = clock.now_s();
+  const double looks = std::ceil(plan.period_s / heartbeat_s);  // for every sample that is reported
+  const double period_s = plan.period_s / looks;
   AngleFit fit;
   bool judged = false;
-  for (double next_s = start_s;; next_s += plan.period_s) {
+  long look = 0;
+  for (double next_s = start_s;; next_s += period_s) {
     clock.sleep_until(next_s);
-    next_s = std::max(next_s, clock.now_s() - plan.period_s);  // late samples are not made up for
+    next_s = std::max(next_s, clock.now_s() - period_s);  // late samples are not made up for
     StageSample raw = stage.sample();
     raw.angle_deg *= plan.direction;
     const AngleSample now = to_angle_sample(raw, plan.speed_deg_s);
@@ -106,8 +109,9 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
                                        " deg in " + format_number(course.cruise_s, 3) +
                                        " s; it is blocked, or its drive is off"};
     }
-    report(now);
-    if (now.angle_deg >= 360.0 * plan.turns) break;
+    const bool ended = now.angle_deg >= 360.0 * plan.turns;
+    if (ended || look++ % std::lround(looks) == 0) report(now);
+    if (ended) break;
     if (clock.now_s() - start_s > longest_s) {
       throw Error{Fault::busy, "stage: " + format_number(now.angle_deg, 6) + " deg after " + format_number(longest_s) +
                                    " s, where " + std::to_string(360 * plan.turns) + " was due"};

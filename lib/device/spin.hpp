@@ -9,12 +9,15 @@
 
 namespace vam::device {
 
+/// A table that moves is asked at least so often: a good answer tells the guardian that all is well.
+constexpr double heartbeat_s = 0.1;
+
 struct SpinPlan {
   double speed_deg_s = 10;
   int turns = 1;                  // of printing
   double run_up_turns = 1;        // at constant speed, before angle 0
   int direction = 1;              // +1 or -1: the sign of the controller's angle
-  double period_s = 0.01;         // of samples
+  double period_s = 0.01;         // of the samples reported
   double speed_tolerance = 0.01;  // of the speed reached before angle 0; a slower or faster table is refused
 };
 

@@ -1,4 +1,5 @@
 // The short commands: home, move, stop, follow, identify, status.
+#include <algorithm>
 #include <optional>
 
 #include "base/error.hpp"
@@ -16,7 +17,7 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
       throw Error{Fault::busy, "stage: still moves after " + format_number(timeout_s) + " s"};
     }
     if (report) report(to_angle_sample(stage.sample(), 0));
-    clock.sleep_until(clock.now_s() + period_s);
+    clock.sleep_until(clock.now_s() + std::min(period_s, heartbeat_s));
   }
 }
 

@@ -55,6 +55,9 @@ ok 'the table stands' stood
 is 'two events' "$(wc -l <events)" 2
 ok 'with both times' grep -Eq '"utc":"20[0-9-]+T[0-9:.]+Z","t_monotonic_s":[0-9.]+,"event":"end"' events
 
+stage spin --speed 360 --run-up 0 --rate 1 >samples
+is 'a sample a second is no reason to be taken for dead' $? 0
+
 # A second user is turned away at once and told by whom.
 LD_PRELOAD=$shim vam-stage spin --device "gcs:$PWD/stage" --speed 1 >/dev/null &
 first=$!

@@ -64,6 +64,31 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
   }
 }
 
+TEST_CASE("Promise 2: however seldom a sample is wanted, a table that moves is asked every 200 ms") {
+  VirtualStage lab;
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  plan.period_s = 1;
+  std::vector<AngleSample> samples;
+  spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
+  CHECK_FALSE(lab.truly_moves());
+  for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
+    CHECK(samples[i].t_s - samples[i - 1].t_s == doctest::Approx(1).epsilon(0.01));
+  }
+  CHECK(samples.back().angle_deg >= 360);
+  CHECK(samples.back().angle_deg < 360 + 0.2 * 60);
+  double asked_s = 0;
+  bool moves = false;
+  for (const auto& line : lab.log) {
+    const double now_s = line["t_monotonic_s"];
+    if (line["event"] == "moving") moves = true;
+    if (line["event"] == "standing") moves = false;
+    if (line["event"] != "command") continue;
+    if (moves) CHECK(now_s - asked_s < 0.2);
+    asked_s = now_s;
+  }
+}
+
 TEST_CASE("Angle zero is at the same place in every run") {
   VirtualStage lab;
   home(*lab.stage, lab.clock, 60);
