@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <new>
 #include <set>
 
@@ -15,6 +14,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "cli/declaration.hpp"
+#include "cli/values.hpp"
 
 namespace vam::cli {
 
@@ -33,36 +33,6 @@ struct App::State {
 
 namespace {
 
-std::string describe(const Range& range) {
-  const bool has_low = range.low > any.low;
-  const bool has_high = range.high < any.high;
-  const std::string low = format_number(range.low);
-  const std::string high = format_number(range.high);
-  if (has_low && has_high) return (range.open_low ? "more than " + low + ", at most " : low + " to ") + high;
-  if (has_low) return (range.open_low ? "more than " : "at least ") + low;
-  if (has_high) return "at most " + high;
-  return "";
-}
-
-double checked_number(const std::string& flag, const std::string& text, const Range& range) {
-  const auto value = parse_number(text);
-  if (!value) throw Error{Fault::usage, flag + ": '" + text + "' is not a number"};
-  const bool low_ok = range.open_low ? *value > range.low : *value >= range.low;
-  if (!low_ok || *value > range.high) {
-    throw Error{Fault::usage, flag + ": " + text + " is out of range; give " + describe(range)};
-  }
-  return *value;
-}
-
-int checked_integer(const std::string& flag, const std::string& text, const Range& range) {
-  const double value = checked_number(flag, text, range);
-  const int whole = value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()
-                        ? static_cast<int>(value)
-                        : 0;
-  if (static_cast<double>(whole) != value) throw Error{Fault::usage, flag + ": '" + text + "' is not a whole number"};
-  return whole;
-}
-
 // Shell quoting for the history line: words of harmless characters stay as they are.
 std::string quoted(const std::string& word) {
   const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
@@ -78,6 +48,16 @@ std::vector<std::string> all_flags(const Declaration& tool) {
     for (const auto& option : group.options) flags.push_back(long_flag(option));
   }
   return flags;
+}
+
+// The subcommand of that name with the tool's before its own, or the tool.
+Declaration asked_about(const Declaration& tool, const std::string& subcommand) {
+  for (Declaration nested : tool.subcommands) {
+    if (nested.manual.name != subcommand) continue;
+    nested.manual.name = tool.manual.name + " " + subcommand;
+    return nested;
+  }
+  return tool;
 }
 
 }  // namespace
@@ -265,15 +245,7 @@ bool App::print_about(int argc, char** argv) const {
     const std::string word = argv[i];
     if (word == "--") return false;
     if (word == "--help" || word == "-h") {
-      Declaration tool = whole();
-      for (const auto& nested : tool.subcommands) {
-        if (i > 1 && nested.manual.name == argv[1]) {
-          Declaration one = nested;
-          one.manual.name = tool.manual.name + " " + nested.manual.name;
-          tool = one;
-          break;
-        }
-      }
+      const Declaration tool = i > 1 ? asked_about(whole(), argv[1]) : whole();
       std::fputs(help_text(tool).c_str(), stdout);
     } else if (word == "--version") {
       std::printf("%s %s\n", state_->tool.manual.name.c_str(), VAM_VERSION);

@@ -8,13 +8,13 @@ namespace vam::optimize {
 
 namespace {
 
-/// Mean over the slices with part of IoU + PW: IoU moves while part and void overlap, PW when they have come apart.
-double merit(const std::vector<model::DoseMetrics>& slices) {
+/// Mean over the slices with part.
+double mean_merit(const std::vector<model::DoseMetrics>& slices) {
   double sum = 0;
   int count = 0;
   for (const auto& m : slices) {
     if (m.part == 0) continue;
-    sum += m.iou + m.pw;
+    sum += merit(m);
     ++count;
   }
   return count > 0 ? sum / count : 0.0;
@@ -29,9 +29,9 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
 }
 
 /// Nothing has improved for `patience` iterations.
-bool lost_patience(Course& course, const Limits& limits, double merit) {
-  if (merit > course.best + limits.least_gain) {
-    course.best = merit;
+bool lost_patience(Course& course, const Limits& limits, double reached) {
+  if (reached > course.best + limits.least_gain) {
+    course.best = reached;
     course.best_at = course.iteration;
   }
   return limits.patience > 0 && course.iteration - course.best_at >= limits.patience;
@@ -45,7 +45,7 @@ std::string look(const Problem& problem, const Limits& limits, const Iterate& st
     const auto slices = metrics(state.dose, problem);
     if (watch) watch(course.iteration, slices);
     if (course.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
-    if (!last && lost_patience(course, limits, merit(slices))) return "no progress";
+    if (!last && lost_patience(course, limits, mean_merit(slices))) return "no progress";
   }
   return last ? "iterations" : "";
 }

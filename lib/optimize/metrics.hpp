@@ -21,6 +21,9 @@ namespace vam::optimize {
 /// square error, iou = 1 - ver.
 [[nodiscard]] std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem);
 
+/// IoU + PW: IoU moves while part and void overlap, PW when they have come apart.
+[[nodiscard]] inline double merit(const model::DoseMetrics& slice) { return slice.iou + slice.pw; }
+
 /// The factor for each slice that puts window.threshold() in the middle of the slice's own process window or, where
 /// that window is wider than needed, its least part dose on window.high; 0 for a slice without part. This is what makes
 /// one threshold dose print all slices. Grey targets are doses already: 1.

@@ -32,7 +32,7 @@ struct Budget {
 
 const std::vector<Budget>& budgets() {
   static const std::vector<Budget> all{{"fbp", 0, 2},   {"dose-norm", 1, 4}, {"cal", 59, 120}, {"osmo", 29, 119},
-                                       {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 53, 120}};
+                                       {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 51, 120}};
   return all;
 }
 

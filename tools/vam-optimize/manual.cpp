@@ -18,8 +18,10 @@ cli::Manual manual() {
        "the print's error with the resin's threshold inside the loop. osmo corrects a model of the part by the dose's "
        "errors, void and part in turn. pm minimises how far doses are on the wrong side of LOW and HIGH, to the power "
        "P; bclp how far the resin's response is outside a band around the target. apg, the best of them, asks the void "
-       "to stay below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient; a "
-       "slice that has reached both is asked for a wider window. No method has a step length to choose.",
+       "to stay below LOW and the part to reach HIGH and descends by preconditioned, accelerated projected gradient, "
+       "slice by slice from the better of fbp and dose-norm; a slice that has reached both is asked for a wider "
+       "window. "
+       "No method has a step length to choose.",
        "The dose that the projections give is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's least dose is HIGH where the window is wider than that. Adding up "

@@ -1,0 +1,30 @@
+#include "vam-optimize/sink.hpp"
+
+#include "io/response_file.hpp"
+
+namespace vam::optimize_tool {
+
+Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
+    : out_(options.output, info, options.stack), progress_("optimising", info.count) {
+  if (!options.bits) return;
+  const auto& file = printer.projector.response;
+  const auto response =
+      file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
+  levels_.emplace(resin::GreyLevels(response, *options.bits), options.peak, options.error_feedback,
+                  [this](const Image& image) { out_.write(image); });
+}
+
+void Sink::add(const Image& image) {
+  if (levels_) {
+    levels_->add(image);
+  } else {
+    out_.write(image);
+  }
+  progress_.tick();
+}
+
+void Sink::finish() {
+  if (levels_) levels_->finish();
+}
+
+}  // namespace vam::optimize_tool

@@ -1,0 +1,30 @@
+// Where finished slices go.
+#pragma once
+
+#include <optional>
+
+#include "base/image.hpp"
+#include "base/log.hpp"
+#include "io/exr_stack.hpp"
+#include "model/printer.hpp"
+#include "optimize/quantise.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Through the projector's grey levels if asked, into the stack.
+class Sink {
+ public:
+  Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);
+  void add(const Image& image);
+  /// After the last slice.
+  void finish();
+  void commit() { out_.commit(); }
+
+ private:
+  io::StackWriter out_;
+  std::optional<optimize::Quantiser> levels_;
+  Progress progress_;
+};
+
+}  // namespace vam::optimize_tool

@@ -1,0 +1,19 @@
+// What is to be done.
+#pragma once
+
+#include "model/stack.hpp"
+#include "optimize/volume.hpp"
+#include "vam-optimize/inputs.hpp"
+#include "vam-optimize/light.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Of the projections that come out.
+[[nodiscard]] model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
+                                          const Options& options);
+
+/// Without the way of the results. Scene, inputs and options stay the caller's.
+[[nodiscard]] optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options);
+
+}  // namespace vam::optimize_tool
