@@ -3,12 +3,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -209,26 +207,6 @@ std::string slurp(const std::string& file) {
   return text;
 }
 
-// Shortest decimal form that reads back to the same double, with the point that TOML wants in a float.
-std::string decimal(double value) {
-  char text[32];
-  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
-  std::string shortest(static_cast<char*>(text), end);
-  return shortest.find_first_of(".e") == std::string::npos ? shortest + ".0" : shortest;
-}
-
-struct Print {
-  std::string operator()(const int* value) const { return std::to_string(*value); }
-  std::string operator()(const double* value) const { return decimal(*value); }
-  std::string operator()(const std::optional<double>* value) const { return *value ? decimal(**value) : ""; }
-  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
-  std::string operator()(const std::string* value) const {
-    std::ostringstream quoted;
-    quoted << toml::toml_formatter{toml::value<std::string>(*value), toml::format_flags::none};
-    return quoted.str();
-  }
-};
-
 }  // namespace
 
 Printer parse_printer(std::string_view toml, const std::string& subject) {
@@ -256,33 +234,6 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
   const bool only_sets = path.empty() && !sets.empty();
   check(printer, sets.empty() ? Fault::data : Fault::usage, only_sets ? "--set " + sets.back() : path);
   return printer;
-}
-
-std::string printer_toml(const Printer& given) {
-  Printer printer = given;
-  std::ostringstream text;
-  text << "# Printer settings of the VAM tools. Every setting is here; delete what should keep its default.\n";
-  std::string section;
-  for (const auto& field : printer_fields()) {
-    if (section != field.section) text << "\n[" << (section = field.section) << "]\n";
-    std::string value = std::visit(Print{}, field.slot(printer));
-    std::string line = value.empty() ? "# " + std::string(field.key) + " =" : std::string(field.key) + " = " + value;
-    constexpr std::size_t comment_column = 34;
-    if (line.size() < comment_column) line.append(comment_column - line.size(), ' ');
-    text << line << "  # " << field.comment << (value.empty() ? " (not set)" : "") << '\n';
-  }
-  return text.str();
-}
-
-std::string printer_settings(const Printer& given) {
-  Printer printer = given;
-  Printer standard;
-  std::vector<std::string> settings;
-  for (const auto& field : printer_fields()) {
-    const std::string value = std::visit(Print{}, field.slot(printer));
-    if (value != std::visit(Print{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
-  }
-  return settings.empty() ? "default" : join(settings, " ");
 }
 
 }  // namespace vam::io

@@ -3,38 +3,22 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "lib/meshes.hpp"
 #include "metrology/deviation.hpp"
 #include "solid/align.hpp"
 
 namespace {
 
+using vam::Vector3;
 using vam::model::TriangleSoup;
 
-// A lumpy ball without symmetry, turned by `turn_rad` about z: 2 rings (rings + 1) points, 4 rings (rings - 1)
-// triangles.
+// A lumpy ball without symmetry, turned by `turn_rad` about z.
 TriangleSoup lumpy(int rings, double growth_mm, double turn_rad) {
-  TriangleSoup mesh;
-  const int around = 2 * rings;
-  for (int i = 0; i <= rings; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const double t = std::numbers::pi * i / rings;
-      const double p = 2 * std::numbers::pi * j / around;
-      const double r = 6 + growth_mm + std::sin(t) * (std::sin(3 * t + 1) * std::cos(2 * p) + 0.5 * std::cos(p + 2));
-      mesh.points.push_back(
-          {r * std::sin(t) * std::cos(p + turn_rad), r * std::sin(t) * std::sin(p + turn_rad), 1.3 * r * std::cos(t)});
-    }
-  }
-  for (int i = 0; i < rings; ++i) {
-    for (int j = 0; j < around; ++j) {
-      const int a = i * around + j;
-      const int b = i * around + (j + 1) % around;
-      if (i > 0) mesh.triangles.push_back({a, a + around, b});
-      if (i + 1 < rings) mesh.triangles.push_back({b, a + around, b + around});
-    }
-  }
-  return mesh;
+  return vam::test::globe(rings, [&](double t, double p) -> Vector3 {
+    const double r = 6 + growth_mm + std::sin(t) * (std::sin(3 * t + 1) * std::cos(2 * p) + 0.5 * std::cos(p + 2));
+    return {r * std::sin(t) * std::cos(p + turn_rad), r * std::sin(t) * std::sin(p + turn_rad), 1.3 * r * std::cos(t)};
+  });
 }
 
 const TriangleSoup& print() {

@@ -9,17 +9,15 @@
 
 namespace vam::test {
 
-/// A sphere by latitude and longitude with 4 * rings * (rings - 1) outward triangles.
-inline model::TriangleSoup sphere(const Vector3& centre, double radius, int rings) {
+/// A closed surface by latitude and longitude, 2 rings (rings + 1) points and 4 rings (rings - 1) outward triangles;
+/// place(theta, phi) gives its points.
+template <class Place>
+model::TriangleSoup globe(int rings, const Place& place) {
   model::TriangleSoup mesh;
   const int around = 2 * rings;
   for (int i = 0; i <= rings; ++i) {
     for (int j = 0; j < around; ++j) {
-      const double theta = std::numbers::pi * i / rings;
-      const double phi = 2 * std::numbers::pi * j / around;
-      mesh.points.push_back({centre[0] + radius * std::sin(theta) * std::cos(phi),
-                             centre[1] + radius * std::sin(theta) * std::sin(phi),
-                             centre[2] + radius * std::cos(theta)});
+      mesh.points.push_back(place(std::numbers::pi * i / rings, 2 * std::numbers::pi * j / around));
     }
   }
   for (int i = 0; i < rings; ++i) {
@@ -31,6 +29,13 @@ inline model::TriangleSoup sphere(const Vector3& centre, double radius, int ring
     }
   }
   return mesh;
+}
+
+inline model::TriangleSoup sphere(const Vector3& centre, double radius, int rings) {
+  return globe(rings, [&](double theta, double phi) -> Vector3 {
+    return {centre[0] + radius * std::sin(theta) * std::cos(phi), centre[1] + radius * std::sin(theta) * std::sin(phi),
+            centre[2] + radius * std::cos(theta)};
+  });
 }
 
 /// Adds the box [low, high] with 12 outward triangles.
