@@ -1,0 +1,44 @@
+#!/bin/sh
+# What a full disk, a bad one and kill -9 leave behind, at every system call that matters: of a file the old one; of a
+# capture folder what can be gone on with, to the identical result (promise 5).
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
+strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may not trace here: nothing is tried'; exit 77; }
+inject() { fault=$1; shift; strace -f -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" "$@" 2>.log/err; }
+
+spoilt() {  # spoilt STATUS INJECTION TOOL...: the last argument is its output, of which there is an old one
+  want=$1; what=$2; shift 2
+  for out; do :; done
+  echo old >"$out"
+  inject "$what" "$@"; status=$?
+  is "$what, $1: the old file" "$status $(cat "$out")" "$want old"
+  [ "$want" = 137 ] || is "$what, $1: said in a line" "$(grep -c "^$1: $out: " .log/err) $(wc -l <.log/err)" '1 1'
+}
+for tool in 'vam-slice --shape disc-grid --voxel 1 -o out.vdb' 'vam-project --pattern star -o out.exr' \
+  'vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o views.exr'; do
+  for what in write:error=ENOSPC:when=1 write:error=EIO:when=1 fsync:error=EIO; do spoilt 74 $what $tool; done
+  spoilt 73 rename:error=EIO $tool
+  for call in write fsync rename; do spoilt 137 $call:signal=SIGKILL:when=1 $tool; done
+done
+rm -f .vam-*  # killed between link and rename, the new file stands under a name of its own
+is 'nothing else is left' "$(ls -A)" "$(printf '.log\nlocks\nout.exr\nout.vdb\nviews.exr')"
+
+# A capture folder: a run of two frames makes so many of these calls.
+vam-capture --device 'sim:?pace=virtual&noise=0.004' --binning 12 --frames 2 -o views.exr
+take() { vam-capture --device replay:views.exr --frames 2 -o "$1/"; }
+take whole
+sort whole/manifest.jsonl >whole.lines
+resumed() {  # resumed INJECTION STATUS: of a first run; the second one makes up for it
+  rm -rf folder
+  inject "$1" vam-capture --device replay:views.exr --frames 2 -o folder/; status=$?
+  take folder 2>.log/again; again=$?
+  sort folder/manifest.jsonl >lines
+  different=$(for file in whole/*.png; do cmp -s "$file" "folder/$(basename "$file")" || echo "$file"; done; cmp lines whole.lines)
+  is "$1: gone on with" "$status $again$different" "$2 0"
+}
+for call in fdatasync:1 fdatasync:2 fdatasync:3 fdatasync:4 fsync:1 fsync:2 write:1 write:2 write:3 write:4; do
+  resumed "${call%:*}:signal=SIGKILL:when=${call#*:}" 137
+done
+for call in fdatasync:2 fdatasync:3 write:2 write:3; do resumed "${call%:*}:error=EIO:when=${call#*:}" 74; done
+resumed write:error=ENOSPC:when=2 74
+done_testing
