@@ -8,13 +8,14 @@
 #include "operator_checks.hpp"
 #include "optics/blur.hpp"
 #include "optimize/metrics.hpp"
-#include "optimize/vial_operator.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
 #include "parts.hpp"
+#include "vials.hpp"
 
 using namespace vam::optimize;
 using parts::dot;
+using parts::vial_setup;
 
 namespace {
 
@@ -72,16 +73,6 @@ void check_adjoint(const Operator& sharp) {
   light.adjoint(g, dose);
   const double scale = std::sqrt(dot_all(projected, projected) * dot_all(g, g));
   CHECK(std::abs(dot_all(projected, g) - dot_all(f, dose)) < 1e-5 * scale);
-}
-
-VialSetup vial_setup(int size, int angles) {
-  VialSetup setup;
-  setup.view = {119.808, 1.0, 0.0, {{12.7, 1.53}}};  // [RAY21]
-  setup.projector = vam::optics::centred_detector(440, 0.065);
-  setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
-  setup.radius_mm = vam::optics::reach_mm(setup.view);
-  setup.grid = vam::model::centred_grid(size, size, 1, 2 * setup.radius_mm / size);
-  return setup;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
@@ -11,26 +10,12 @@
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_dose.hpp"
 #include "parts.hpp"
+#include "vials.hpp"
 
 using namespace vam::optimize;
-using parts::dot;
+using parts::vial_setup;
 
 namespace {
-
-const vam::optics::View vial{119.808, 1.0, 0.0, {{12.7, 1.53}}};             // [RAY21]
-const vam::optics::View walled{60, 1.0, 0.0, {{12.7, 1.47}, {11.5, 1.51}}};  // a glass wall, a short throw
-
-/// The writable circle in `size` voxels.
-VialSetup setup_of(const vam::optics::View& view, int size, int angles) {
-  VialSetup setup;
-  setup.view = view;
-  setup.projector = vam::optics::centred_detector(440, 0.065);
-  setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
-  const double reach_mm = vam::optics::reach_mm(view);
-  setup.grid = vam::model::centred_grid(size, size, 1, 2 * reach_mm / size);
-  setup.radius_mm = reach_mm;
-  return setup;
-}
 
 /// Smooth light without symmetry.
 double shine(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * theta) + 0.1 * std::cos(theta); }
@@ -38,9 +23,9 @@ double shine(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * 
 }  // namespace
 
 TEST_CASE("in the vial A and A* are adjoint, whatever stands in the light's way and whichever way the stage turns") {
-  CHECK(parts::adjoint_error(VialOperator(setup_of(vial, 64, 90))) < 1e-5);
-  CHECK(parts::adjoint_error(VialOperator(setup_of(walled, 37, 91))) < 1e-5);
-  VialSetup turned = setup_of(vial, 50, 72);
+  CHECK(parts::adjoint_error(VialOperator(vial_setup(64, 90))) < 1e-5);
+  CHECK(parts::adjoint_error(VialOperator(vial_setup(37, 91, parts::walled_vial))) < 1e-5);
+  VialSetup turned = vial_setup(50, 72);
   turned.direction = -1;
   turned.angle_offset_rad = 0.4;
   turned.absorption_per_mm = 0.07;
@@ -49,7 +34,7 @@ TEST_CASE("in the vial A and A* are adjoint, whatever stands in the light's way 
 }
 
 TEST_CASE("four slabs at once give what each gives alone") {
-  const VialOperator light(setup_of(vial, 40, 60));
+  const VialOperator light(vial_setup(40, 60));
   std::vector<Slab> g;
   for (unsigned s = 0; s < 7; ++s) g.push_back(parts::noise(light.sinogram(), s));
   auto together = slabs(7, 40, 40);
@@ -67,8 +52,8 @@ TEST_CASE("four slabs at once give what each gives alone") {
 }
 
 TEST_CASE("A* is the dose of rays counted one by one") {
-  for (const auto& view : {vial, walled}) {
-    VialSetup setup = setup_of(view, 256, 360);
+  for (const auto& view : {parts::plain_vial, parts::walled_vial}) {
+    VialSetup setup = vial_setup(256, 360, view);
     setup.absorption_per_mm = 0.07;
     const VialOperator light(setup);
     Slab image(light.image().width, light.image().height);
@@ -98,7 +83,7 @@ TEST_CASE("A* is the dose of rays counted one by one") {
 }
 
 TEST_CASE("what is projected is the unknowns as fluence, and the way back") {
-  const VialOperator light(setup_of(vial, 40, 60));
+  const VialOperator light(vial_setup(40, 60));
   const Slab g = parts::noise(light.sinogram(), 5);
   Slab image(light.image().width, light.image().height);
   Slab back(light.sinogram().width, light.sinogram().height);
@@ -113,16 +98,16 @@ TEST_CASE("what is projected is the unknowns as fluence, and the way back") {
 }
 
 TEST_CASE("A* filter A is about the identity in the vial, and the preconditioner is symmetric and positive") {
-  const VialOperator light(setup_of(vial, 128, 360));
+  const VialOperator light(vial_setup(128, 360));
   parts::check_disc_comes_back(light, 0.05, 0.05);
   parts::check_preconditioner(light);
 }
 
 TEST_CASE("a projector that does not see the vial is told so") {
-  VialSetup setup = setup_of(vial, 40, 60);
+  VialSetup setup = vial_setup(40, 60);
   setup.projector.axis_column = 5000;
   CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
-  setup = setup_of(vial, 40, 60);
+  setup = vial_setup(40, 60);
   setup.turn.rows = 50;
   CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
 }

@@ -2,28 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "operator_checks.hpp"
-#include "optimize/vial_operator.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
 #include "parts.hpp"
+#include "vials.hpp"
 
 using namespace vam::optimize;
-using parts::dot;
+using parts::vial_setup;
 
 namespace {
-
-VialSetup setup_of(int size, int angles) {
-  VialSetup setup;
-  setup.view = {119.808, 1.0, 0.0, {{12.7, 1.53}}};  // [RAY21]
-  setup.projector = vam::optics::centred_detector(440, 0.065);
-  setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
-  setup.radius_mm = vam::optics::reach_mm(setup.view);
-  setup.grid = vam::model::centred_grid(size, size, 1, 2 * setup.radius_mm / size);
-  return setup;
-}
 
 Slab packed(const std::vector<float>& image, int size) {
   Slab slab(size, size);
@@ -34,7 +23,7 @@ Slab packed(const std::vector<float>& image, int size) {
 }  // namespace
 
 TEST_CASE("around an insert in the vial A and A* are adjoint, also round a concave one in a resin that absorbs") {
-  VialSetup setup = setup_of(64, 72);
+  VialSetup setup = vial_setup(64, 72);
   setup.absorption_per_mm = 0.07;
   setup.direction = -1;
   const Slab cross =
@@ -48,7 +37,7 @@ TEST_CASE("around an insert in the vial A and A* are adjoint, also round a conca
 }
 
 TEST_CASE("an insert of nothing casts no shadow in the vial") {
-  const VialSetup setup = setup_of(48, 60);
+  const VialSetup setup = vial_setup(48, 60);
   const Slab nothing(48, 48);
   const VialOperator plain(setup);
   const VialOperator around(setup, {&nothing, 1});
@@ -64,7 +53,7 @@ TEST_CASE("an insert of nothing casts no shadow in the vial") {
 
 TEST_CASE("a ray traced by Snell's law is lit up to the insert and dark behind it") {
   const int size = 128;
-  const VialSetup setup = setup_of(size, 36);
+  const VialSetup setup = vial_setup(size, 36);
   vam::oracle::Bench bench;
   bench.lens_distance = 119.808L;
   bench.cylinders = {{12.7L, 1.53L}};
@@ -99,7 +88,7 @@ TEST_CASE("a closed ring leaves its inside dark, in the vial too") {
   const int size = 64;
   const Slab ring =
       packed(oracle::draw(size, [](double x, double y) { return std::abs(std::hypot(x, y) - 12) < 2; }), size);
-  const VialOperator light(setup_of(size, 90), {&ring, 1});
+  const VialOperator light(vial_setup(size, 90), {&ring, 1});
   Slab g(light.sinogram().width, light.sinogram().height);
   std::fill(g.values.begin(), g.values.end(), 1.0F);
   const Slab dose = parts::dose_of(light, g);
