@@ -12,8 +12,6 @@ namespace {
 
 constexpr int buffer_bytes = 1 << 16;
 
-bool ends_with(const std::string& text, const char* ending) { return text.ends_with(ending); }
-
 AVPixelFormat pixel_format(bool lossless, int bits) {
   if (!lossless) return AV_PIX_FMT_YUV420P;
   if (bits > 10) return AV_PIX_FMT_GRAY16LE;
@@ -84,7 +82,7 @@ struct VideoWriter::State {
   std::int64_t written = 0;
 
   State(const std::string& path, const VideoFormat& wanted)
-      : format(wanted), lossless(ends_with(path, ".mkv")), sink(path) {}
+      : format(wanted), lossless(path.ends_with(".mkv")), sink(path) {}
   ~State() {
     avformat_free_context(container);
     if (io != nullptr) av_freep(&io->buffer);
@@ -188,7 +186,7 @@ struct VideoWriter::State {
 };
 
 VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
-  if (!ends_with(path, ".mkv") && !ends_with(path, ".mp4")) {
+  if (!path.ends_with(".mkv") && !path.ends_with(".mp4")) {
     throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (for looking at)"};
   }
   av_log_set_level(AV_LOG_QUIET);

@@ -8,16 +8,11 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/median.hpp"
 
 namespace vam::metrology {
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // White noise between pixels has less variance than on them, so that its energy would draw the axis to where it is
 // least; blurred by this, it is nearly the same everywhere.

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/median.hpp"
 #include "base/text.hpp"
 #include "metrology/outline.hpp"
 
@@ -111,12 +112,6 @@ Image placed(const Design& design, const Similar& pose, const Relief& print) {
     }
   }
   return image;
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Overlap, and the height well inside the design's area.

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/median.hpp"
+
 namespace vam::metrology {
 
 namespace {
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Ends of the profile, a tenth on either side.
 std::vector<double> margins(const std::vector<double>& profile) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "metrology/angle_grid.hpp"
 #include "metrology/axis.hpp"
 #include "metrology/views.hpp"
 #include "model/grid.hpp"

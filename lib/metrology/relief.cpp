@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/median.hpp"
 #include "base/text.hpp"
 #include "metrology/emboss.hpp"
 
@@ -127,12 +128,6 @@ void fill_gaps(Image& heights) {
     }
   }
   for (float& height : heights.values) height = std::isfinite(height) ? height : 0.0F;
-}
-
-double median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/median.hpp"
 #include "base/text.hpp"
 #include "solid/geometry.hpp"
 #include "solid/orient.hpp"
@@ -47,9 +48,7 @@ void close_cracks(model::TriangleSoup& mesh, Repair& done) {
   if (open.points.empty()) return;
   Bounds bounds;
   for (const Point& p : mesh.points) bounds.add(p);
-  const auto middle = open.lengths.begin() + static_cast<std::ptrdiff_t>(open.lengths.size() / 2);
-  std::nth_element(open.lengths.begin(), middle, open.lengths.end());
-  const double distance = std::min(1e-4 * bounds.diagonal(), 0.2 * *middle);
+  const double distance = std::min(1e-4 * bounds.diagonal(), 0.2 * median(open.lengths));
   const long welded = weld_near_points(mesh, open.points, distance);
   if (welded == 0) return;
   done.points_welded += welded;

@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "metrology/angle_grid.hpp"
 #include "metrology/axis.hpp"
 
 using namespace vam;

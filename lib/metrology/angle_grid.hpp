@@ -1,0 +1,39 @@
+// Even angles made of uneven ones.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace vam::metrology {
+
+struct EvenTurn {
+  int angles = 0;              // over one full turn, first at 0 deg
+  int used = 0;                // frames that contributed
+  int repeated = 0;            // of these, frames at an angle that was there already; averaged
+  double largest_gap_deg = 0;  // between neighbouring frames
+};
+
+/// For each of `angles` even angles the two neighbouring frames and their weights, interpolating linearly over the
+/// circle; frames closer than a tenth of the even step count as one, their mean. angles = 0 takes the number that the
+/// median distance of the frames suggests.
+class AngleGrid {
+ public:
+  /// Throws Fault::data when there are fewer than 8 different angles or a gap is wider than max_gap_deg.
+  AngleGrid(std::span<const double> angles_deg, int angles, double max_gap_deg = 15);
+
+  [[nodiscard]] const EvenTurn& summary() const { return summary_; }
+
+  struct Tap {
+    int frame;
+    float weight;
+  };
+  /// The frames that make even angle `a`; the weights add up to 1.
+  [[nodiscard]] const std::vector<Tap>& taps(int a) const { return taps_[static_cast<std::size_t>(a)]; }
+
+ private:
+  EvenTurn summary_;
+  std::vector<std::vector<Tap>> taps_;
+};
+
+}  // namespace vam::metrology
