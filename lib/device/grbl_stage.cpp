@@ -1,5 +1,6 @@
 #include "device/grbl_stage.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -35,7 +36,11 @@ class GrblStage final : public Stage {
     }
   }
 
-  Json identify() override { return {{"maker", "GRBL"}, {"model", greeting_}, {"axis", letter()}}; }
+  // A board has no serial number; the name that its owner gave it ($I=name) must do.
+  Json identify() override {
+    return {
+        {"maker", "GRBL"}, {"model", greeting_}, {"serial", given_name_}, {"firmware", version_}, {"axis", letter()}};
+  }
 
   StageCaps caps() override {
     read_settings();
@@ -144,12 +149,20 @@ class GrblStage final : public Stage {
     for (;;) {
       const std::string line = next_line(timeout_s, true);
       if (line == "ok") break;
-      if (line.rfind("[VER:", 0) == 0) greeting_ = "Grbl " + line.substr(5, line.find(':', 5) - 5);
+      if (line.rfind("[VER:", 0) == 0) read_version(line);
       if (line.rfind('[', 0) != 0) {
         throw Error{Fault::protocol,
                     port_->name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
       }
     }
+  }
+
+  // "[VER:1.1h.20190830:name]"
+  void read_version(const std::string& line) {
+    const std::size_t colon = line.find(':', 5);
+    version_ = line.substr(5, std::min(colon, line.size() - 1) - 5);
+    greeting_ = "Grbl " + version_;
+    if (colon != std::string::npos) given_name_ = line.substr(colon + 1, line.find(']', colon) - colon - 1);
   }
 
   void read_settings() {
@@ -253,6 +266,8 @@ class GrblStage final : public Stage {
   int axis_;
   StopOrder stop_order_;
   std::string greeting_ = "Grbl";
+  std::string version_;
+  std::string given_name_;
   std::string buffer_;
   std::map<std::string, double> settings_;
   double offset_deg_ = 0;

@@ -68,7 +68,11 @@ class SimTic final : public UsbLink {
   std::string read_report() override { throw Error{Fault::protocol, name_ + ": has no reports"}; }
   const std::string& name() const override { return name_; }
   Json about() const override {
-    return {{"usb_id", "1ffb:00b3"}, {"serial", "00312345"}, {"maker", "Pololu Corporation"}, {"model", "Tic T825"}};
+    return {{"usb_id", "1ffb:00b3"},
+            {"serial", "00312345"},
+            {"maker", "Pololu Corporation"},
+            {"model", "Tic T825"},
+            {"firmware", "1.06"}};
   }
 
  private:

@@ -35,6 +35,14 @@ std::string ids_text(int vendor, int product) {
   return text.data();
 }
 
+// Binary-coded decimal: 0x0106 is "1.06". Makers put the firmware's version there.
+std::string release_text(int bcd) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "%x.%02x", static_cast<unsigned>(bcd >> 8),
+                static_cast<unsigned>(bcd & 0xFF));
+  return text.data();
+}
+
 std::string string_of(libusb_device_handle* handle, unsigned char index) {
   std::array<unsigned char, 256> text{};
   if (index == 0 || libusb_get_string_descriptor_ascii(handle, index, text.data(), text.size()) <= 0) return "";
@@ -141,6 +149,7 @@ std::vector<Found> search(libusb_context* context, const UsbId& id, int& closed)
     Json about{{"usb_id", ids_text(descriptor.idVendor, descriptor.idProduct)}, {"serial", serial}};
     about["maker"] = string_of(opened, descriptor.iManufacturer);
     about["model"] = string_of(opened, descriptor.iProduct);
+    about["firmware"] = release_text(descriptor.bcdDevice);
     found.push_back({std::move(handle), std::move(about)});
   }
   libusb_free_device_list(list, 1);

@@ -29,7 +29,7 @@ class UsbLink {
   virtual std::string read_report() = 0;
   /// "usb:1ffb:00b3:00312345", for messages and locks.
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// vendor, product, serial and product text.
+  /// usb_id, serial, maker, model and firmware.
   [[nodiscard]] virtual Json about() const = 0;
 };
 

@@ -34,6 +34,7 @@ struct TicLab {
 TEST_CASE("A Tic homes, moves and prints like any other stage") {
   TicLab lab;
   CHECK(describe(*lab.stage)["serial"] == "00312345");
+  CHECK(describe(*lab.stage)["firmware"] == "1.06");
   CHECK(lab.stage->caps().acceleration_deg_s2 == 60);
   home(*lab.stage, lab.clock, 60);
   move(*lab.stage, lab.clock, 30, false, 30, 60);
