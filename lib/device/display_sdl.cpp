@@ -90,7 +90,10 @@ class SdlDisplay final : public Display {
     pace();
     if (index < 0) unwatch();
     const double now_s = clock_.now_s();
-    return {std::lround((now_s - origin_s_) * mode_.hz), now_s};
+    const long sequence = std::lround((now_s - origin_s_) * mode_.hz);
+    next_s_ =
+        origin_s_ + static_cast<double>(sequence) / mode_.hz;  // however late: the next one has a blank of its own
+    return {sequence, now_s};
   }
 
  private:

@@ -66,11 +66,14 @@ Error GcsLink::nonsense(const std::string& question, const std::string& answer, 
   return {Fault::protocol, port_->name() + ": '" + shown(question) + "' was answered '" + shown(answer) + "', " + what};
 }
 
-void GcsLink::send(const std::string& text) {
+double GcsLink::send(const std::string& text) {
   // Bytes that nobody asked for would be taken for the answer. 1 ns: only what is there already.
   while (!port_->read(1e-9).empty()) continue;
+  // Before the bytes leave: a process that must wait for its processor right after has its answer before it knows.
+  const double t0_s = clock_.now_s();
   const std::string prefix = settings_.address ? std::to_string(*settings_.address) + " " : "";
   port_->write(text.size() == 1 ? text : prefix + text + "\n");
+  return t0_s;
 }
 
 std::string GcsLink::read_more(const std::string& question, const std::string& so_far) {
@@ -104,8 +107,7 @@ std::string GcsLink::without_sender(const std::string& question, const std::stri
 
 GcsAnswer GcsLink::ask(const std::string& text) {
   GcsAnswer answer;
-  send(text);
-  answer.t0_s = clock_.now_s();
+  answer.t0_s = send(text);
   std::string received;
   for (;;) {
     const std::size_t end = received.find('\n');

@@ -53,7 +53,7 @@ class GcsLink {
   [[nodiscard]] Error nonsense(const std::string& question, const std::string& answer, const std::string& what) const;
 
  private:
-  void send(const std::string& text);
+  double send(const std::string& text);  // when, no later than the first byte left
   std::string read_more(const std::string& question, const std::string& so_far);
   std::string without_sender(const std::string& question, const std::string& line) const;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -12,6 +13,7 @@ namespace vam::device {
 namespace {
 
 constexpr double light_lead_s = 0.1;  // the engine's own time to come on
+constexpr double told_late_s = 0.002;
 
 // Black and dark on every way out, and said so: who reads the log must not take the last picture for still on.
 class DarkOnExit {
@@ -41,11 +43,36 @@ class DarkOnExit {
   const std::function<void(const FlipRecord&)>& log_;
 };
 
+// When the vertical blanks are, out of flips that are never early, but late when the machine is busy.
+class Blanks {
+ public:
+  explicit Blanks(double hz) : period_s_(1 / hz) {}
+  /// How late the flip was.
+  double take(const Flip& flip) {
+    const double since_s = static_cast<double>(flip.sequence - last_.sequence) * period_s_;
+    if (std::abs(flip.time_s - last_.time_s - since_s) > 0.5 * period_s_) offsets_s_.clear();  // they count anew
+    last_ = flip;
+    offsets_s_.push_back(flip.time_s - static_cast<double>(flip.sequence) * period_s_);
+    if (offsets_s_.size() > remembered) offsets_s_.pop_front();
+    return offsets_s_.back() - offset_s();
+  }
+  [[nodiscard]] double next_s() const { return offset_s() + static_cast<double>(last_.sequence + 1) * period_s_; }
+
+ private:
+  static constexpr std::size_t remembered = 16;
+  [[nodiscard]] double offset_s() const { return *std::min_element(offsets_s_.begin(), offsets_s_.end()); }
+  double period_s_;
+  Flip last_;
+  std::deque<double> offsets_s_;
+};
+
 // Presents, counts and logs.
 class Presenter {
  public:
-  Presenter(Display& display, const std::function<void(const FlipRecord&)>& log) : display_(display), log_(log) {
+  Presenter(Display& display, const std::function<void(const FlipRecord&)>& log)
+      : display_(display), log_(log), blanks_(display.mode().hz) {
     last_ = display_.present(-1);
+    blanks_.take(last_);
   }
 
   void show(int frame, const AngleSample& predicted, bool count) {
@@ -55,6 +82,7 @@ class Presenter {
     record.angle_deg = predicted.angle_deg;
     record.sigma_deg = predicted.sigma_deg;
     record.missed = std::max(0L, record.flip.sequence - last_.sequence - 1);
+    record.late_s = blanks_.take(record.flip);
     last_ = record.flip;
     ++tally_.flips;
     if (frame >= 0) ++tally_.lit;
@@ -62,12 +90,13 @@ class Presenter {
     log_(record);
   }
 
-  [[nodiscard]] double next_s() const { return last_.time_s + 1 / display_.mode().hz; }
+  [[nodiscard]] double next_s() const { return blanks_.next_s(); }
   [[nodiscard]] const PlayTally& tally() const { return tally_; }
 
  private:
   Display& display_;
   const std::function<void(const FlipRecord&)>& log_;
+  Blanks blanks_;
   Flip last_;
   PlayTally tally_;
 };
@@ -87,6 +116,7 @@ Json to_json(const FlipRecord& record) {
   line["angle_deg"] = record.angle_deg;
   line["sigma_deg"] = record.sigma_deg;
   if (record.missed > 0) line["missed"] = record.missed;
+  if (record.late_s > told_late_s) line["late_ms"] = 1e3 * record.late_s;
   return line;
 }
 

@@ -23,7 +23,8 @@ struct FlipRecord {
   int frame = -1;        // -1: black
   double angle_deg = 0;  // predicted for the middle of its showing
   double sigma_deg = 0;
-  long missed = 0;  // vertical blanks between the flip before and this one
+  long missed = 0;    // vertical blanks between the flip before and this one
+  double late_s = 0;  // after the vertical blank that it counts as
 };
 /// What of it is logged besides its time.
 [[nodiscard]] Json to_json(const FlipRecord& record);

@@ -35,8 +35,8 @@ def main():
     for line in map(json.loads, open(sys.argv[2])):
         if line["event"] != "flip" or line["frame"] < 0:
             continue
-        if line.get("missed"):
-            late += 1  # a missed blank is counted by itself
+        if line.get("missed") or line.get("late_ms"):
+            late += 1  # a missed or late blank is counted by itself
             continue
         middle = line["t_monotonic_s"] + 0.5 / HZ
         followed.append(apart(360 * line["frame"] / FRAMES, angle(middle)))

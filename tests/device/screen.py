@@ -1,4 +1,5 @@
-"""The picture on an Xvfb screen, read from its memory-mapped file (Xvfb -fbdir), without asking the X server.
+"""The picture on an Xvfb screen: now from its memory-mapped file (Xvfb -fbdir), which tells how late it is, without
+asking the X server; to watch it by the X server of $DISPLAY, which never shows half an update.
 usage: screen.py FILE now                 prints "black" or the number of lit pixels
        screen.py FILE watch SECONDS IDLE  prints each new picture as hex of its grey bytes; ends after SECONDS, or when
                                           the screen was lit once and then black for IDLE seconds
@@ -6,7 +7,9 @@ usage: screen.py FILE now                 prints "black" or the number of lit pi
                                           a lossless video) were seen"""
 
 import mmap
+import os
 import pathlib
+import socket
 import struct
 import subprocess
 import sys
@@ -33,6 +36,43 @@ class Screen:
         return b"".join(rows)
 
 
+class Server:
+    """The same picture by way of the X server (X protocol 11, GetImage), which answers between two updates: never half
+    a picture, however late it is itself."""
+
+    def __init__(self, display):
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.connect("/tmp/.X11-unix/X" + display.lstrip(":").split(".")[0])
+        self.socket.sendall(struct.pack("<BxHHHHxx", ord("l"), 11, 0, 0, 0))
+        status, length = struct.unpack("<BxxxxxH", self.receive(8))
+        if status != 1:
+            raise ConnectionError("the X server does not let us in")
+        facts = self.receive(4 * length)
+        vendor, formats = struct.unpack_from("<H", facts, 16)[0], facts[21]
+        root = 32 + (vendor + 3) // 4 * 4 + 8 * formats  # of the first screen
+        self.root, = struct.unpack_from("<I", facts, root)
+        self.width, self.height = struct.unpack_from("<HH", facts, root + 20)
+
+    def receive(self, count):
+        data = b""
+        while len(data) < count:
+            more = self.socket.recv(count - len(data))
+            if not more:
+                raise ConnectionError("the X server has gone")
+            data += more
+        return data
+
+    def grey(self):
+        self.socket.sendall(struct.pack("<BBHIhhHHI", 73, 2, 5, self.root, 0, 0, self.width, self.height, 0xFFFFFFFF))
+        kind, length = struct.unpack_from("<BxxxI", self.receive(32))
+        if kind != 1:
+            raise ValueError("the X server shows no picture")
+        pixels = self.receive(4 * length)
+        if pixels[0::4] != pixels[1::4] or pixels[1::4] != pixels[2::4]:
+            raise ValueError("a pixel is not grey")
+        return pixels[0::4]
+
+
 def settled(screen):
     """A picture that two readings agree on: an update may be under way."""
     while True:
@@ -49,7 +89,7 @@ def watch(screen, seconds, idle):
     end = time.monotonic() + seconds
     lit_at = None
     while time.monotonic() < end and (lit_at is None or time.monotonic() < lit_at + idle):
-        picture = settled(screen)
+        picture = screen.grey()
         if any(picture):
             lit_at = time.monotonic()
         if picture not in seen:
@@ -81,7 +121,7 @@ def main():
         lit = sum(1 for value in settled(Screen(screen)) if value)
         print(lit or "black")
     elif sys.argv[2] == "watch":
-        watch(Screen(screen), float(sys.argv[3]), float(sys.argv[4]))
+        watch(Server(os.environ["DISPLAY"]), float(sys.argv[3]), float(sys.argv[4]))
     else:
         compare(sys.argv[3], sys.argv[4])
 

@@ -122,3 +122,38 @@ TEST_CASE("Each protocol answer wrong in turn: the right fault, in time, and the
   }
   CHECK(cases > 100);
 }
+
+namespace {
+
+// A line to the stage whose user must wait for the processor right after he has written.
+class StallingPort final : public Port {
+ public:
+  StallingPort(std::unique_ptr<Port> port, Clock& clock, double stall_s)
+      : port_(std::move(port)), clock_(clock), stall_s_(stall_s) {}
+  void write(std::string_view bytes) override {
+    port_->write(bytes);
+    clock_.sleep_until(clock_.now_s() + stall_s_);
+  }
+  std::string read(double timeout_s) override { return port_->read(timeout_s); }
+  [[nodiscard]] const std::string& name() const override { return port_->name(); }
+
+ private:
+  std::unique_ptr<Port> port_;
+  Clock& clock_;
+  double stall_s_;
+};
+
+}  // namespace
+
+TEST_CASE("A sample's times hold the moment of its angle, also when the process stalls after the question") {
+  VirtualStage lab;
+  home(*lab.stage, lab.clock, 60);
+  auto line = make_sim_port(std::make_unique<SharedDevice>(lab.device), lab.clock);
+  const auto stalling =
+      make_gcs_stage(std::make_unique<StallingPort>(std::move(line), lab.clock, 0.06), lab.clock, {}, "1", nullptr);
+  const double before_s = lab.clock.now_s();
+  const StageSample sample = stalling->sample();
+  CHECK(sample.t0_s >= before_s);
+  CHECK(sample.t1_s - sample.t0_s > 0.0599);
+  CHECK(to_angle_sample(sample, 25).sigma_deg > 0.4);  // 25 deg/s x 60 ms / sqrt(12)
+}

@@ -257,6 +257,57 @@ TEST_CASE("A light engine that goes wrong in a print: the right fault, the scree
   }
 }
 
+namespace {
+
+// Wakes late every now and then, as a busy machine does, and says when; blanks are every 1/60 s.
+class LateDisplay final : public Display {
+ public:
+  explicit LateDisplay(VirtualClock& clock) : clock_(clock), origin_s_(clock.now_s()) {}
+  [[nodiscard]] DisplayMode mode() const override { return {16, 8, 60}; }
+  int add(const GreyImage&) override { return count_++; }
+  Flip present(int) override {
+    const long sequence = std::max(sequence_ + 1, std::lround((clock_.now_s() - origin_s_) * 60));
+    const double late_s = ++presented_ % 10 == 0 ? 0.007 : 0;
+    clock_.sleep_until(origin_s_ + static_cast<double>(sequence) / 60 + late_s);
+    sequence_ = sequence;
+    return {sequence, clock_.now_s()};
+  }
+
+ private:
+  VirtualClock& clock_;
+  double origin_s_;
+  long sequence_ = 0;
+  int count_ = 0;
+  int presented_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("A flip that comes late says so, and those after it are still predicted for their own blanks") {
+  VirtualClock clock(100);
+  LateDisplay display(clock);
+  for (int i = 0; i < frames_per_turn; ++i) display.add(GreyImage(16, 8, 8));
+  const auto angles = elapsed_angle(25, clock);
+  PlayPlan plan;
+  plan.frames_per_turn = frames_per_turn;
+  int late = 0;
+  int lit = 0;
+  double worst_deg = 0;
+  const auto begin_s = clock.now_s();
+  play(display, nullptr, *angles, clock, plan, [&](const FlipRecord& record) {
+    if (record.frame < 0) return;
+    ++lit;
+    const bool is_late = to_json(record).contains("late_ms");
+    late += is_late ? 1 : 0;
+    const double true_deg = 25 * (record.flip.time_s + 0.5 / 60 - begin_s);
+    if (!is_late) worst_deg = std::max(worst_deg, std::abs(true_deg - record.angle_deg - 25.0 / 60));
+  });
+  CHECK(lit > 800);
+  CHECK(std::abs(late - lit / 10) <= 1);
+  MESSAGE("worst of the flips in time: " << worst_deg << " deg");
+  CHECK(worst_deg < 1e-6);
+}
+
 TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are errors") {
   std::array<int, 2> line{};
   const auto start = [&](VirtualClock& clock) {
