@@ -69,7 +69,15 @@ cli::Manual manual() {
        "A camera that falls silent is asked once more: status 75 when it answers, 69 when it is gone, within the "
        "time-out plus 5 s.",
        "A device has one user at a time: the second one exits with status 75 and names the process that has it."},
-      {"vam-calibrate", "vam-sim-camera", "vam-stage", "vam-project", "vam-ost"}};
+      {"vam-calibrate", "vam-sim-camera", "vam-stage", "vam-project", "vam-ost"},
+      {"Beside what all frame stacks have, every image of a captured stack has the attributes vam:time_s (seconds on "
+       "CLOCK_MONOTONIC, the middle of the exposure), vam:angle_deg (degrees, where the stage's angle is known), "
+       "vam:number (whole number, counts the frames that the camera made from 0 on; a gap is frames that were dropped) "
+       "and, where parts of the frame did not arrive, vam:incomplete (1).",
+       "A folder's manifest.jsonl begins with a line about the camera and its settings. A line for each frame follows "
+       "when its picture is on the disk: frame (its place), file, number, t_monotonic_s, device_s (the camera's own "
+       "stamp), angle_deg, sigma_deg, complete and levels (a fingerprint of the grey levels); a line "
+       "{\"dropped\":[FIRST,LAST]} for frames that never came."}};
 }
 
 void add_camera(cli::App& app, Options& o) {

@@ -48,7 +48,9 @@ cli::Manual manual() {
        "their standard deviations are reported.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
        "maximum likelihood reconstruction, 1982 (--statistical)."},
-      {"vam-capture", "vam-sdf", "vam-view", "vam-resample"}};
+      {"vam-capture", "vam-sdf", "vam-view", "vam-resample"},
+      {"Of the attributes of captured stacks vam:angle_deg and vam:time_s place a view; one that is marked "
+       "vam:incomplete is left out with a warning, which names it by its vam:number."}};
 }
 
 void declare(cli::App& app, Options& o) {

@@ -19,6 +19,7 @@ struct Manual {
   std::vector<std::pair<std::string, std::string>> examples;  // sentence, shell command; run by a test, in this order
   std::vector<std::string> notes;                             // paragraphs: memory, accuracy, sources
   std::vector<std::string> see_also;                          // vam-sinogram, ...
+  std::vector<std::string> files = {};                        // paragraphs on what its files hold beside the usual
 };
 
 struct Range {

@@ -184,6 +184,7 @@ std::string manual_page(const Declaration& tool) {
       "A dash means standard input or standard output; outputs appear under their\n"
       "final name only when complete.\n"
       "Settings of the printer are read from a TOML file.\n";
+  for (const auto& file : manual.files) out += ".Pp\n" + paragraph(file);
   out += ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
   for (const auto& status : exit_statuses()) out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
   out += ".El\n";

@@ -80,10 +80,19 @@ is 'flat: the shape of the light' "$(cut -d' ' -f1 judged)" good
 sed 's/^/# flat: /' judged
 ok 'all are in force' vam-capture check --need latency --need response --need axis --need beam --need edges --need flat
 
-# A print takes them up, and freezes them.
+# A print takes them up, and freezes them; not with a camera that they were not made with.
 python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=256 height=36 count=3 pixel=0.1 row=0.1
-quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 --run run
+bench --serial another
+vam-print part.exr --screen null: --need 'latency response axis' --views 90 --run foreign 2>foreign.err
+is 'a foreign camera is refused' "$? $(grep -c 'was made with the camera VAM1, this is another; run vam-calibrate' foreign.err)" '65 1'
+is 'before anything moves' "$(ls foreign | grep -c 'stage.jsonl\|flips.jsonl\|views') $(json foreign/summary.json status)" '0 65'
+camera_down
+bench
+quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 \
+  --views 90 --run run
+camera_down
 is 'whose summary names them' "$(json run/summary.json calibration.response.sha256)" "$(sha256sum <cal/current-response.json | cut -d' ' -f1)"
+is 'and the camera' "$(json run/devices.json camera.camera.serial)" VAM1
 is 'and the stage' "$(json run/devices.json stage.serial)" "$(json cal/current-axis.json devices.stage.serial)"
 echo '{"stage": {"serial": "another"}}' >other.json
 fails 65 'was made with the stage .*, this is another; run vam-calibrate' vam-capture check --devices other.json

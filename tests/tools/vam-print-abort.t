@@ -4,14 +4,10 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-VAM_LOCK_DIR=$PWD/locks; mkdir locks screen; export VAM_LOCK_DIR
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 shim=$(vam-sim-stage --shim)
-await() {  # await COMMAND...: until it succeeds, at most 10 s
-  tries=0
-  until "$@" || [ $tries -ge 500 ]; do tries=$((tries + 1)); sleep 0.02; done
-}
 cat >printer.toml <<TOML
 [projector]
 columns = 64
@@ -25,12 +21,7 @@ speed_deg_s = 60
 TOML
 python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr space=projector width=64 height=36 count=3
 
-exec 4>screen.number
-Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
-server=$!
-await test -s screen.number
-DISPLAY=:$(cat screen.number); export DISPLAY
-export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+screen_up 64 48
 
 simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
   rm -f truth path
@@ -98,5 +89,5 @@ simulate --fault error@VEL
 printing=$!
 aborted refused 76 'stage failed' 'refused with error 17'
 finish
-kill $server; wait $server 2>/dev/null
+screen_down
 done_testing

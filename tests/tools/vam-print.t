@@ -4,15 +4,11 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-VAM_LOCK_DIR=$PWD/locks; mkdir locks screen; export VAM_LOCK_DIR
+VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 judge="python3 $VAM_SOURCE/tests/device/print_judge.py"
 shim=$(vam-sim-stage --shim)
-await() {  # await COMMAND...: until it succeeds, at most 10 s
-  tries=0
-  until "$@" || [ $tries -ge 500 ]; do tries=$((tries + 1)); sleep 0.02; done
-}
 address=127.0.0.1
 
 cat >printer.toml <<TOML
@@ -70,12 +66,7 @@ is 'a print needs its calibration' "$(vam-print frames.exr --screen null: --run 
 is 'which the summary says, too' "$(json no/summary.json status)" 65
 rm -r no
 
-exec 4>screen.number
-Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
-server=$!
-await test -s screen.number
-DISPLAY=:$(cat screen.number); export DISPLAY
-export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+screen_up 64 48
 simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
   rm -f truth path
   vam-sim-stage --link stage --log truth --die-with-parent --acceleration 1000 --max-speed 360 "$@" >path &
@@ -86,31 +77,33 @@ finish() { kill $simulator; wait $simulator; }
 stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
 print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
 
-# The print of the promises: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
-simulate --speed-error 0.01 --jitter 5
-# An address serves one camera at a time; another test of this machine may have it.
-for try in 1 2 3 4 5 6 7 8; do
-  vam-sim-camera --address $address --angles truth --shown run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 \
-    --die-with-parent $plain >camera 2>camera.err &
-  camera=$!
-  tries=0; until [ -s camera ] || ! kill -0 $camera 2>/dev/null || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
-  [ -s camera ] && break
-  sleep 5
+# The print of the promises: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it. A machine that
+# is too busy with others to turn a table safely ends a print, as it must (too late an answer, no progress): that says
+# nothing of the angles, and the print is made again.
+for attempt in 1 2 3; do
+  simulate --speed-error 0.01 --jitter 5
+  camera_up --address $address --angles truth --shown run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
+  $screen watch 45 1 >seen &
+  watcher=$!
+  print --run-up 0.2 --frames-per-turn 3600 --missed 0.2 --views 10 --run run 2>errors
+  printed=$?
+  wait $watcher
+  camera_down
+  { [ $printed -ne 75 ] && [ $printed -ne 137 ]; } || [ $attempt -eq 3 ] && break
+  sed 's/^/# attempt ended: /' errors
+  finish
+  rm -r run
 done
-$screen watch 45 1 >seen &
-watcher=$!
-print --run-up 0.2 --frames-per-turn 3600 --missed 0.2 --views 10 --run run 2>errors
-is 'the print ends well' $? 0
+is 'the print ends well' $printed 0
 is 'without a word' "$(cat errors)" ''
-wait $watcher
-kill -KILL $camera; wait $camera 2>/dev/null
 ok 'the table stands' stood
 is 'the light came on once and went off' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 is 'the screen is black' "$($screen now)" black
 $judge truth run/flips.jsonl >judged
 cat judged | sed 's/^/# /'
 holds 'shown-frame angle error, p99' "$(json judged p99_deg) <= 0.1"
-holds 'of a whole turn of flips' "$(json judged flips) > 600"
+# 864 blanks a turn. A busy machine misses some, or wakes late; the log says which, and they are no more than may be.
+holds 'of a whole turn of flips' "$(json judged flips) > 600 && $(json judged late) < 0.25 * 864"
 holds 'by elapsed time it would have been worse' "$(json judged elapsed_p99_deg) > 1"
 $screen compare frames.mkv seen >compared
 is 'every picture seen on the screen is one of the frames, exactly' "$(cut -d' ' -f1 compared)" exact
@@ -135,5 +128,5 @@ await stood; ok 'the table stands' stood
 is 'black' "$($screen now)" black
 is 'and dark' "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
 finish
-kill $server; wait $server 2>/dev/null
+screen_down
 done_testing

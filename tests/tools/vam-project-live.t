@@ -74,14 +74,7 @@ is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % off, allowed 1 %' error
 is 'the light never came on, and all was black' "$(grep -c '"bits":[1-9]' leds3) $(grep -c '"frame":[0-9]' flips3)" '0 0'
 
 # A real window, on a virtual screen whose picture is a file.
-mkdir screen
-exec 4>screen.number
-# -noreset, -nocursor: what the server itself draws when its last client goes is no part of this test.
-Xvfb -displayfd 4 -screen 0 64x48x24 -fbdir "$PWD/screen" -nolisten tcp -noreset -nocursor >/dev/null 2>&1 &
-server=$!
-tries=0; while [ ! -s screen.number ] && [ $tries -lt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
-DISPLAY=:$(cat screen.number); export DISPLAY
-export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
+screen_up 64 48
 
 fails 65 'do not fit the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
 fails 69 'no such screen' vam-project part.exr -o sdl:7
@@ -90,7 +83,7 @@ vam-project part.exr -o sdl:0 --speed 90 --log shown --missed 0.5 2>errors &
 tool=$!
 $screen watch 6 0.5 >seen &
 watcher=$!
-tries=0; until [ -s shown ] || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+await test -s shown
 vam-project part.exr -o sdl:0 2>second
 is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool
@@ -102,6 +95,5 @@ holds 'and of the 19 different frames nearly all were seen' "$(cut -d' ' -f2 com
 is 'black at the end' "$($screen now)" black
 is 'nothing was said' "$(cat errors)" ''
 
-kill $server
-wait $server 2>/dev/null
+screen_down
 done_testing

@@ -2,20 +2,6 @@
 # vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the judge.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
-# The port is the machine's: one such test at a time.
-exec 9>"${XDG_RUNTIME_DIR:-/tmp}/vam-gige-test.lock"; flock -w 120 9
-
-serve() {  # serve OPTIONS...: starts the camera, waits until it answers; another program may have the port for a while
-  turns=0
-  while :; do
-    : >address
-    vam-sim-camera --die-with-parent "$@" >address 2>busy 9>&- & server=$!
-    tries=0; until [ -s address ] || ! kill -0 $server 2>/dev/null || [ $tries -ge 500 ]; do tries=$((tries + 1)); sleep 0.02; done
-    { [ -s address ] || [ $turns -ge 60 ]; } && break
-    turns=$((turns + 1)); sleep 2
-  done
-}
-end() { kill $server; wait $server 2>/dev/null; }
 take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"
 
 fails 64 'no IPv4 address' vam-sim-camera --address here
@@ -26,14 +12,14 @@ fails 64 'shows --pattern already' vam-sim-camera --pattern grid --frames x.exr
 fails 66 'missing' vam-sim-camera --frames missing
 fails 73 'cannot be written' vam-sim-camera --log missing/log
 
-serve --lose 5 --cut 8,11 --speed 45 --lit 0.5 --log truth
+camera_up --lose 5 --cut 8,11 --speed 45 --lit 0.5 --log truth
 vam-capture identify --device aravis:127.0.0.1 >who
 is 'it says who it is' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
 fails 75 'UDP port 3956 is taken' vam-sim-camera
 fails 64 'no trigger Line9; the camera has Line0, Software' $take --trigger Line9 --frames 1 -o no.exr
 fails 64 'no pixel format Mono12' $take --format Mono12 --frames 1 -o no.exr
 $take --frames 40 -o views/ --log log 2>said & tool=$!
-tries=0; until [ -s views/manifest.jsonl ] || [ $tries -gt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+await test -s views/manifest.jsonl
 vam-capture identify --device aravis:127.0.0.1 2>second
 is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool
@@ -52,17 +38,17 @@ PY
 is 'every other frame arrived, exactly as sent' "$(sed -n 1p judged)" '37 37'
 is 'the lost and the cut ones are marked' "$(sed -n 2p judged)" '[8, 11] [[5, 5]]'
 is 'times are those of the sender, but for a steady delay' "$(sed -n 3p judged)" True
-end
+camera_down
 
-serve --vanish 12
+camera_up --vanish 12
 begun=$(date +%s)
 $take --frames 40 -o gone.exr 2>said; status=$?
 is 'a camera whose cable is pulled is absent' "$status $(grep -c 'the camera is gone' said)" '69 1'
 holds 'which is known within the time-out and 5 s, and what a busy machine adds' "$(($(date +%s) - begun)) <= 12"
 is 'nothing is left of the stack' "$(ls | grep -c gone)" 0
-wait $server 2>/dev/null
+wait $camera 2>/dev/null
 
-serve --pattern sweep --pitch 200 --width 40 --shown flips --background 0 --set projector.rows=60 --set projector.axis_row=30 --log truth2
+camera_up --pattern sweep --pitch 200 --width 40 --shown flips --background 0 --set projector.rows=60 --set projector.axis_row=30 --log truth2
 $take --format Mono16 --frames 60 -o swept/ & tool=$!
 sleep 0.5
 vam-project --pattern sweep --pitch 200 --width 40 --hold 0.2 -o null: --log flips --set projector.rows=60 --set projector.axis_row=30
@@ -75,6 +61,6 @@ taken = [json.loads(line) for line in open("swept/manifest.jsonl")][1:]
 print(all(e["levels"] == sent[e["number"]]["levels"] for e in taken), len({e["levels"] for e in taken}) >= 5)
 PY
 is 'exactly as sent, and the line moved: five places and black' "$(cat seen)" 'True True'
-end
+camera_down
 fails 69 'no such camera' vam-capture --device aravis:127.0.0.9 --frames 1 -o none.exr
 done_testing

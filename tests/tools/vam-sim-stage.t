@@ -12,7 +12,7 @@ fails 73 'cannot make the link' vam-sim-stage --link missing/link
 
 vam-sim-stage --link stage --log truth --baud 19200 --at 33 --die-with-parent >path &
 simulator=$!
-tries=0; while [ ! -s path ] && [ $tries -lt 250 ]; do tries=$((tries + 1)); sleep 0.02; done
+await test -s path
 is 'its path is a link, too' "$(readlink stage)" "$(cat path)"
 
 cat >ask.sh <<'EOF'

@@ -10,10 +10,6 @@ simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./trut
   simulator=$!
   await test -s path
 }
-await() {  # await COMMAND...: until it succeeds, at most 5 s
-  tries=0
-  until "$@" || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
-}
 finish() { kill $simulator; wait $simulator; }
 stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
