@@ -1,4 +1,4 @@
-// Even angles made of uneven ones.
+// Even angles made of uneven ones, whatever the camera delivered [OST22 section 2.4].
 #pragma once
 
 #include <cstddef>

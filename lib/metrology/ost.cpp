@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "metrology/angle_grid.hpp"
 #include "optics/resample.hpp"
 #include "optics/vial.hpp"
 #include "tomo/filter.hpp"

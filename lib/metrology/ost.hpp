@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "metrology/angle_grid.hpp"
 #include "metrology/axis.hpp"
 #include "metrology/views.hpp"
 #include "model/grid.hpp"

@@ -1,5 +1,5 @@
 // Camera views of the turning vial, made ready for reconstruction: dark and flat field, binning, rotation about the
-// measured axis, and an even grid of angles whatever the camera delivered [OST22 sections 2.2 and 2.4].
+// measured axis [OST22 sections 2.2 and 2.4].
 #pragma once
 
 #include <optional>
