@@ -20,6 +20,7 @@ fails 66 'missing' vam-capture edges --from missing
 fails 64 'needs --flips' vam-capture latency --from ramp
 fails 64 'needs --pixel' vam-capture beam --from beam
 fails 64 'leave out --first and --step' vam-capture beam --from beam --side --step 1
+fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames 160 x 32' vam-capture beam --from beam --side --dark ramp/00000.png
 fails 65 'at least 32 are needed' vam-capture beam --from ramp --side
 fails 65 'looks at 45 degrees to the light' vam-capture beam --from beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-capture check

@@ -245,6 +245,7 @@ void add_scans(cli::App& app, ScanOptions& options, std::string& chosen) {
   add_input(line, options, true);
   line.flag("--side", options.side,
             "The frames are the camera's, of a lit row in fluorescing resin (vam-project --pattern row).");
+  line.option("--dark", "FILE", options.dark, "Picture or stack without the projector's light.");
   line.option("--first", "MM", options.first_mm, cli::any, "Plane of the first frame, from the rotation axis.");
   line.option("--step", "MM", options.step_mm, cli::any, "From plane to plane.");
   line.option("--pixel", "MM", options.pixel_mm, cli::non_negative, "Of the bare sensor; with --side at the axis.");

@@ -1,6 +1,7 @@
 // vam-capture beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/view_source.hpp"
 #include "metrology/calibrate_beam.hpp"
 #include "metrology/calibrate_flat.hpp"
 #include "vam-capture/scan.hpp"
@@ -12,16 +13,41 @@ namespace {
 constexpr int side_planes = 9;
 constexpr double wanted_width_sigma = 0.1;  // of the width at the axis
 
+// What shines without the projector: a print, the room.
+class Dark {
+ public:
+  explicit Dark(const std::string& path) : path_(path) {
+    if (!path.empty()) image_ = io::read_field(path);
+  }
+  void take_off(Image& image) const {
+    if (image_.values.empty()) return;
+    if (image.width != image_.width || image.height != image_.height) {
+      throw Error{Fault::data, path_ + ": has " + size_text(image_) + " pixels, the frames " + size_text(image)};
+    }
+    for (std::size_t i = 0; i < image.size(); ++i) image.values[i] -= image_.values[i];
+  }
+
+ private:
+  static std::string size_text(const Image& image) {
+    return std::to_string(image.width) + " x " + std::to_string(image.height);
+  }
+  std::string path_;
+  Image image_;
+};
+
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
   if (options.pixel_mm <= 0 || options.step_mm == 0) {
     throw Error{Fault::usage,
                 "beam: needs --pixel, the sensor's pitch, and --first and --step, where the planes are; or "
                 "--side"};
   }
+  const Dark dark(options.dark);
   metrology::BeamWidths widths;
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const double plane_mm = options.first_mm + options.step_mm * frame.shown;
-    const auto px = metrology::line_width_px(frame.image, "plane at " + format_number(plane_mm) + " mm");
+    Image lit = frame.image;
+    dark.take_off(lit);
+    const auto px = metrology::line_width_px(lit, "plane at " + format_number(plane_mm) + " mm");
     widths.plane_mm.push_back(plane_mm);
     widths.fwhm_mm.push_back({px.value * options.pixel_mm, px.sigma * options.pixel_mm, px.n});
   });
@@ -39,7 +65,8 @@ metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Pri
     view.pixel_mm = options.pixel_mm > 0 ? options.pixel_mm : frame.pixel_mm;
   });
   if (frames.count() == 0) throw Error{Fault::data, options.from + ": no frame shows the lit row"};
-  const Image mean = frames.mean();
+  Image mean = frames.mean();
+  Dark(options.dark).take_off(mean);
   view.axis_column = printer.camera.axis_column.value_or(0.5 * (mean.width - 1));
   return metrology::side_widths(mean, view, printer, side_planes);
 }
