@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "device/event_log.hpp"
 #include "device/player.hpp"
@@ -21,7 +20,7 @@ class Live {
 
   void add(const GreyImage& levels);
   /// A line of the log that is no flip.
-  void note(const std::string& event, Json facts) { log_(event, std::move(facts)); }
+  void note(const std::string& event, const Json& facts) { log_(event, facts); }
   /// One turn's frames are loaded: prints with them.
   device::PlayTally play(double speed_deg_s, int turns);
   /// Shows the loaded frames one after the other.
