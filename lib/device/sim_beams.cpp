@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace vam::device {
@@ -22,19 +23,20 @@ double share(int row, double top, double bottom, double sigma) {
 }
 
 std::vector<double> blurred(const std::vector<double>& light, double sigma) {
-  const auto n = static_cast<int>(light.size());
-  const int half = static_cast<int>(std::ceil(reach * sigma));
+  const auto n = static_cast<std::ptrdiff_t>(light.size());
+  const auto half = static_cast<std::ptrdiff_t>(std::ceil(reach * sigma));
   std::vector<double> kernel;
   double sum = 0;
-  for (int i = -half; i <= half; ++i) {
-    kernel.push_back(normal_integral((i + 0.5) / sigma) - normal_integral((i - 0.5) / sigma));
+  for (std::ptrdiff_t i = -half; i <= half; ++i) {
+    kernel.push_back(normal_integral((static_cast<double>(i) + 0.5) / sigma) -
+                     normal_integral((static_cast<double>(i) - 0.5) / sigma));
     sum += kernel.back();
   }
   std::vector<double> out(light.size());
-  for (int c = 0; c < n; ++c) {
+  for (std::ptrdiff_t c = 0; c < n; ++c) {
     const double value = light[static_cast<std::size_t>(c)] / sum;
     if (value == 0) continue;
-    for (int i = std::max(-half, -c); i <= std::min(half, n - 1 - c); ++i) {
+    for (std::ptrdiff_t i = std::max(-half, -c); i <= std::min(half, n - 1 - c); ++i) {
       out[static_cast<std::size_t>(c + i)] += value * kernel[static_cast<std::size_t>(i + half)];
     }
   }
