@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "cli/app.hpp"
+#include "device/event_log.hpp"
 #include "device/interrupt.hpp"
 #include "printer.hpp"
 #include "vam-capture/scan.hpp"
@@ -126,7 +127,8 @@ void run(const cli::App& app, const Options& options, const capture_tool::ScanOp
   if (tool::print_printer(options.printer)) return;
   device::interruptible([&] {
     if (options.with_parent) device::end_with_parent();
-    options.command == "identify" ? capture_tool::identify(options) : capture_tool::take(app, options);
+    if (options.command == "identify") return capture_tool::identify(options);
+    device::logged(options.log, [&] { capture_tool::take(app, options); });
   });
 }
 

@@ -14,7 +14,7 @@ sys.dont_write_bytecode = True
 from screen import Screen  # noqa: E402
 from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
 
-LANES = 2  # trials at the same time: mostly they wait
+LANES = 3  # trials at the same time: mostly they wait
 
 
 def black(screen):

@@ -3,6 +3,7 @@ table stood. usage: stage_trials.py TRIALS. Prints a table; exit status 1 when o
 
 The table turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the table's own."""
 
+import concurrent.futures
 import os
 import subprocess
 import sys
@@ -12,6 +13,8 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
+
+LANES = 3  # trials at the same time, each with a table of its own: mostly they wait
 
 
 def at_speed(event):
@@ -79,15 +82,21 @@ def trials_of_device_errors(count, folder, environment):
     return times
 
 
+def trials(cause, count, shim):
+    with tempfile.TemporaryDirectory() as folder:
+        environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder, ASAN_OPTIONS="verify_asan_link_order=0")
+        if cause == "device error":
+            return trials_of_device_errors(count, folder, environment)
+        return trials_on_one_stage(cause, count, folder, environment)
+
+
 def main():
     count = int(sys.argv[1])
     shim = subprocess.run(["vam-sim-stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
-    failed = 0
-    with tempfile.TemporaryDirectory() as folder:
-        environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder, ASAN_OPTIONS="verify_asan_link_order=0")
-        for cause in SIGNALS + ["closed stdout", "hang"]:
-            failed += report(cause, trials_on_one_stage(cause, count, folder, environment))
-        failed += report("device error", trials_of_device_errors(count, folder, environment))
+    causes = SIGNALS + ["closed stdout", "hang", "device error"]
+    with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
+        results = pool.map(lambda cause: trials(cause, count, shim), causes)
+        failed = sum([report(cause, times) for cause, times in zip(causes, results)])
     sys.exit(failed > 0)
 
 

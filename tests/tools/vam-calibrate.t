@@ -51,6 +51,7 @@ calibrate() { vam-calibrate --screen sdl:0 --light sim: --keep keep --log events
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0.001 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'five scans in one go' calibrate 'edges axis beam latency response'
 camera_down
+is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'latency response axis beam edges '
 $judge latency seen keep/latency.exr >delay
 # The flips' own times are exact, and the frames are late by what the camera's log says: 0.1 ms is a 25th of an

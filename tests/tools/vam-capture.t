@@ -18,6 +18,9 @@ fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
 fails 66 'cannot be opened' $take --frames 1 --follow missing -o views.exr
 fails 69 'cannot be opened' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
 fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
+vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr --log why 2>said
+is 'what ended it is logged' "$(json why event) $(json why status)" 'error 69'
+rm why
 fails 73 'cannot be written' $take --frames 1 --log missing/log -o views.exr
 
 # A stack, and the same frames out of it again.

@@ -17,7 +17,7 @@ axis_column = 31.5
 axis_row = 40
 [stage]
 device = "gcs:$PWD/stage"
-speed_deg_s = 60
+speed_deg_s = 180
 TOML
 python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr space=projector width=64 height=36 count=3
 
@@ -25,7 +25,7 @@ screen_up 64 48
 
 simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
   rm -f truth path
-  vam-sim-stage --link stage --log truth --die-with-parent --acceleration 3000 --max-speed 360 "$@" >path &
+  vam-sim-stage --link stage --log truth --die-with-parent --acceleration 9000 --max-speed 360 "$@" >path &
   simulator=$!
   await test -s path
 }
@@ -34,10 +34,19 @@ stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'mo
 lit() { grep -q '"frame":[0-9]' "$1/flips.jsonl" 2>/dev/null; }
 begin() {  # begin RUN: a print of 20 turns that is under way
   rm -f leds
-  (exec env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated --missed 0.9 \
-    --run-up 0.05 --turns 20 --run "$1" 2>errors) &
+  (exec env --default-signal=INT LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" \
+    --uncalibrated --missed 0.9 --run-up 0.05 --turns 20 --run "$1" 2>errors) &
   printing=$!
   await lit "$1"
+}
+end_by() {  # end_by SIGNAL: of the print
+  ended_s=$(perl -MTime::HiRes=clock_gettime,CLOCK_MONOTONIC -e 'printf "%.4f", clock_gettime(CLOCK_MONOTONIC)')
+  kill -"$1" $printing
+}
+in_time() {  # in_time NAME: by the logs of light engine and table, which itself takes 20 ms to brake
+  dark=$(tail -n 1 leds | json /dev/stdin t_monotonic_s)
+  still=$(grep '"standing"' truth | tail -n 1 | json /dev/stdin t_monotonic_s)
+  holds "$1: dark and still within 100 ms" "$dark - $ended_s < 0.1 && $still - $ended_s > 0 && $still - $ended_s < 0.1"
 }
 child() { pgrep -P $printing -x "$1"; }
 aborted() {  # aborted NAME STATUS OUTCOME REGEX: of the run of that name
@@ -52,12 +61,14 @@ aborted() {  # aborted NAME STATUS OUTCOME REGEX: of the run of that name
 }
 
 simulate
-begin term; kill -TERM $printing
-aborted term 143 aborted ''
-begin hangup; kill -HUP $printing
-aborted hangup 129 aborted ''
-begin killed; tools=$(pgrep -P $printing); kill -KILL $printing
-aborted killed 137 '' ''
+begin interrupt; end_by INT
+aborted interrupt 130 aborted ''; in_time interrupt
+begin term; end_by TERM
+aborted term 143 aborted ''; in_time term
+begin hangup; end_by HUP
+aborted hangup 129 aborted ''; in_time hangup
+begin killed; tools=$(pgrep -P $printing); end_by KILL
+aborted killed 137 '' ''; in_time killed
 gone() { for pid in $tools; do ! kill -0 "$pid" 2>/dev/null || return 1; done; }
 await gone; ok 'killed: its tools end, too' gone
 begin projector-killed; kill -KILL "$(child vam-project)"
@@ -71,19 +82,20 @@ kill -TERM $printing
 aborted busy 143 aborted ''
 finish
 
-# Each kind of wrong answer of the stage, in the middle of the print.
+# Each kind of wrong answer of the stage, a second into the light of the print.
 spoilt() {  # spoilt NAME STATUS REGEX FAULT
   simulate --fault "$4"
   begin "$1"
+  ok "$1: was under way" lit "$1"
   aborted "$1" "$2" 'stage failed' "$3"
   finish
 }
-spoilt garbage 76 'was answered' garbage@POS?:150
-spoilt truncated 75 'no end of the answer' truncated@POS?:150
-spoilt late 75 'no answer' late@POS?:150
-spoilt wrong-sender 76 'controller 7 instead of 1' wrong-sender@POS?:150
-spoilt blocked 76 'was due|is blocked' block@POS?:150
-spoilt unplugged 69 'unplugged' unplug@POS?:150
+spoilt garbage 76 'was answered' garbage@POS?:250
+spoilt truncated 75 'no end of the answer' truncated@POS?:250
+spoilt late 75 'no answer' late@POS?:250
+spoilt wrong-sender 76 'controller 7 instead of 1' wrong-sender@POS?:250
+spoilt blocked 76 'was due|is blocked' block@POS?:250
+spoilt unplugged 69 'unplugged' unplug@POS?:250
 simulate --fault error@VEL
 (exec env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated --run refused 2>errors) &
 printing=$!
