@@ -8,10 +8,6 @@ FAKE_DRM=$PWD/card; export FAKE_DRM
 ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 23.5\n' >printer.toml
 shim=$(vam-sim-stage --shim)
-await() {  # await COMMAND...: until it succeeds, at most 5 s
-  tries=0
-  until "$@" || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
-}
 on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "$device" "$log" sh -c 'exec "$@"' sh "$@"; }
 
 Xvfb -displayfd 4 -screen 0 64x48x24 -nolisten tcp -noreset 4>number >/dev/null 2>&1 & server=$!

@@ -4,8 +4,7 @@
 # In memory: a disk that is busy with others would hold up the log.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 40\n' >printer.toml
-python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=64 height=36 count=3
+tiny_print part.exr
 ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 python3 "$VAM_SOURCE/tests/device/drm_trials.py" ends "${VAM_TRIALS:-10}" "$VAM_BUILD/lib/vam-test/drm_card.so" >table
 status=$?

@@ -112,6 +112,11 @@ box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through i
   done
 )
 
+tiny_print() {  # tiny_print FILE: three projections, and printer.toml with a projector of 64 x 48 pixels for them
+  printf '%s\n' '[projector]' 'columns = 64' 'rows = 48' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 40' >printer.toml
+  python3 "$VAM_SOURCE/tests/tools/exr.py" make "$1" space=projector width=64 height=36 count=3
+}
+
 small_printer() {  # a projector of 64 x 8 pixels of 0.26 mm; 36 frames a turn at 1 frame per second and 10 deg/s
   printf '%s\n' '[projector]' 'columns = 64' 'rows = 8' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 5' 'fps = 1'
 }

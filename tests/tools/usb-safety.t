@@ -5,8 +5,7 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
-printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 40\n' >printer.toml
-python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=64 height=36 count=3
+tiny_print part.exr
 on() { umockdev-wrapper "$VAM_BUILD/usb_host" "$@"; }  # on DEVICE LOG PROGRAM...
 
 on tic log vam-stage identify --device 'tic:?steps_per_deg=100' >about

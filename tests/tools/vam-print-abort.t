@@ -8,18 +8,8 @@ VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 shim=$(vam-sim-stage --shim)
-cat >printer.toml <<TOML
-[projector]
-columns = 64
-rows = 48
-pixel_mm = 0.26
-axis_column = 31.5
-axis_row = 40
-[stage]
-device = "gcs:$PWD/stage"
-speed_deg_s = 180
-TOML
-python3 "$VAM_SOURCE/tests/tools/exr.py" make frames.exr space=projector width=64 height=36 count=3
+tiny_print frames.exr
+printf '[stage]\ndevice = "gcs:%s/stage"\nspeed_deg_s = 180\n' "$PWD" >>printer.toml
 
 screen_up 64 48
 

@@ -7,15 +7,7 @@ exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 
-cat >printer.toml <<'TOML'
-[projector]
-columns = 64
-rows = 48
-pixel_mm = 0.26
-axis_column = 31.5
-axis_row = 40
-TOML
-$exr make part.exr space=projector width=64 height=36 count=3
+tiny_print part.exr
 
 fails 64 'whole turns' vam-project part.exr -o null: --turns 1.5
 fails 64 'cannot be both' vam-project - -o null: --follow -

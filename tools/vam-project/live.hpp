@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "device/event_log.hpp"
 #include "device/player.hpp"
@@ -42,34 +43,18 @@ class Live {
 /// Preloads what it is given; commit() plays it.
 class LiveSink final : public io::FrameSink {
  public:
-  LiveSink(Live& live, double speed_deg_s, int turns) : live_(live), speed_deg_s_(speed_deg_s), turns_(turns) {}
+  using Play = std::function<device::PlayTally()>;
+  LiveSink(Live& live, Play play) : live_(live), play_(std::move(play)) {}
   void write(std::span<const io::ProjectorFrame> frames) override {
     for (const auto& frame : frames) live_.add(frame.levels);
   }
-  void commit() override { tally = live_.play(speed_deg_s_, turns_); }
+  void commit() override { tally = play_(); }
 
   device::PlayTally tally;
 
  private:
   Live& live_;
-  double speed_deg_s_;
-  int turns_;
-};
-
-/// The same for frames that belong to times: each is held for `hold_s`, once.
-class LiveSequence final : public io::FrameSink {
- public:
-  LiveSequence(Live& live, double hold_s) : live_(live), hold_s_(hold_s) {}
-  void write(std::span<const io::ProjectorFrame> frames) override {
-    for (const auto& frame : frames) live_.add(frame.levels);
-  }
-  void commit() override { tally = live_.play_through(hold_s_, false); }
-
-  device::PlayTally tally;
-
- private:
-  Live& live_;
-  double hold_s_;
+  Play play_;
 };
 
 }  // namespace vam::project

@@ -23,7 +23,7 @@ void write_report(const Options& options, Json& report, const device::PlayTally&
 void play_slices(const cli::App& app, const Options& options, const model::Printer& printer, const SliceStack& slices,
                  Live& live) {
   const Frames frames = slices_in_time(app, options, printer, slices);
-  LiveSequence sink(live, 1 / frames.fps);
+  LiveSink sink(live, [&] { return live.play_through(1 / frames.fps, false); });
   const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
   const auto tally = show(frames, scale, printer.projector, app.given("--bits"), sink);
   Json report = slice_figures(frames, options, printer.projector, tally);
@@ -43,7 +43,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const double peak = options.peak.value_or(light.peak);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
   const auto schedule = optics::frame_schedule(frames, 360, 1);
-  LiveSink sink(live, printer.stage.speed_deg_s, turns);
+  LiveSink sink(live, [&] { return live.play(printer.stage.speed_deg_s, turns); });
   const Frames shown = frames_of(light, schedule);
   const auto tally =
       show(shown, static_cast<float>(options.intensity / peak), printer.projector, app.given("--bits"), sink);
