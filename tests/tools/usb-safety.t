@@ -19,8 +19,9 @@ ok 'a light engine shines for a print' on dlpc350 leds vam-project part.exr -o n
 is 'off, on, off' "$(grep -o '"bits":[0-9]*' leds | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 
 trials() { python3 "$VAM_SOURCE/tests/device/usb_trials.py" "$1" "${VAM_TRIALS:-10}" >"$1.table"; }
-trials dlpc350; light=$?
+trials dlpc350 & light=$!
 trials tic; stage=$?
+wait $light; light=$?
 cat dlpc350.table tic.table
 is 'every trial was dark in time' $light 0
 is 'every trial was told to stand in time' $stage 0
