@@ -7,6 +7,7 @@ import os
 import queue
 import subprocess
 import sys
+import threading
 import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -14,7 +15,7 @@ sys.dont_write_bytecode = True
 from screen import Screen  # noqa: E402
 from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
 
-LANES = 3  # trials at the same time: mostly they wait
+LANES = 9  # of trials: a cause each; every lane must have as many as the others
 
 
 def black(screen):
@@ -43,27 +44,53 @@ def angles(table):
     return "".join(lines).encode()
 
 
-def trial(cause, screen, environment):
+class Feeder(threading.Thread):
+    """Says where a table is, until told to stop or until nobody listens."""
+
+    def __init__(self, pipe):
+        super().__init__(daemon=True)
+        self.pipe, self.enough = pipe, threading.Event()
+        self.start()
+
+    def run(self):
+        table = [time.monotonic() - 1] * 2
+        while not self.enough.wait(0.02):
+            try:
+                self.pipe.write(angles(table))
+                self.pipe.flush()
+            except (BrokenPipeError, ValueError):
+                return
+
+    def stop(self):
+        self.enough.set()
+        self.join()
+
+
+def begin(venue):
+    """A tool that has had a picture on for 50 ms, and what feeds it; or None for a tool."""
     tool = subprocess.Popen(["vam-project", "part.exr", "-o", "sdl:0", "--follow", "-", "--turns", "9", "--missed", "1"],
-                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment)
-    begin = time.monotonic()
-    table = [begin - 1, begin - 1]
-    lit_until = None
-    while lit_until is None or time.monotonic() < lit_until:  # a steady table, until a picture was on for 50 ms
-        tool.stdin.write(angles(table))
-        tool.stdin.flush()
-        if lit_until is None and not black(screen):
-            lit_until = time.monotonic() + 0.05
-        if tool.poll() is not None or time.monotonic() > begin + 5:
-            return NEVER
-        time.sleep(0.005)
-    if cause == "end of the angles":
-        tool.stdin.close()
+                            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
+                            env=venue.environment)
+    feeder = Feeder(tool.stdin)
+    lit = wait(lambda: tool.poll() is not None or not black(venue.screen), 10)
+    time.sleep(0.05)
+    if not lit or tool.poll() is not None:
+        feeder.stop()
+        tool.kill()
+        return None, feeder
+    return tool, feeder
+
+
+def end(cause, tool, feeder, screen):
+    """Ends the tool; the seconds until the screen was black."""
+    if cause in ("end of the angles", "nonsense for an angle"):
+        feeder.stop()
         start = time.monotonic()
-    elif cause == "nonsense for an angle":
-        tool.stdin.write(b"garbage\n")
-        tool.stdin.flush()
-        start = time.monotonic()
+        if cause == "nonsense for an angle":
+            tool.stdin.write(b"garbage\n")
+            tool.stdin.flush()
+        else:
+            tool.stdin.close()
     else:
         start = end_by(cause, tool)
     dark = wait(lambda: black(screen), 3)
@@ -85,9 +112,17 @@ class Venue:
                                 VAM_LOCK_DIR=os.path.abspath(folder))
 
 
-def trials(cause, count, free):
+def trials(cause, count, free, step, turn):
+    """All lanes begin their tools together, then end them one at a time: a tool that begins would hold up the others."""
     venue = free.get()
-    times = [trial(cause, venue.screen, venue.environment) for _ in range(count)]
+    times = []
+    for _ in range(count):
+        tool, feeder = begin(venue)
+        step.wait(60)
+        with turn:
+            times.append(end(cause, tool, feeder, venue.screen) if tool else NEVER)
+        feeder.stop()
+        step.wait(60)
     free.put(venue)
     return times
 
@@ -99,9 +134,10 @@ def main():
     free = queue.SimpleQueue()
     for venue in venues:
         free.put(venue)
+    step, turn = threading.Barrier(LANES), threading.Lock()
     try:
         with concurrent.futures.ThreadPoolExecutor(LANES) as pool:
-            results = pool.map(lambda cause: trials(cause, count, free), causes)
+            results = pool.map(lambda cause: trials(cause, count, free, step, turn), causes)
             failed = sum([report(cause, times) for cause, times in zip(causes, results)])
     finally:
         for venue in venues:
