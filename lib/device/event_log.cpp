@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <utility>
 
 #include "base/error.hpp"
 #include "device/clock.hpp"
@@ -32,7 +33,16 @@ std::string utc_now(double ago_s) {
 
 EventLog::EventLog(const std::string& path) : path_(path) {
   if (path.empty()) return;
-  fd_ = path == "-" ? dup(STDERR_FILENO) : open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const auto opened = [&](int more) {
+    return open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | more, 0644);
+  };
+  if (path == "-") {
+    fd_ = dup(STDERR_FILENO);
+  } else if (fd_ = opened(O_EXCL); fd_ >= 0) {
+    made_ = true;
+  } else {
+    fd_ = opened(0);
+  }
   if (fd_ < 0) throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
 }
 
@@ -62,6 +72,10 @@ void EventLog::sync() {
   if (fd_ >= 0) fdatasync(fd_);
 }
 
+void EventLog::undo() {
+  if (std::exchange(made_, false)) unlink(path_.c_str());
+}
+
 void logged(const std::string& path, const std::function<void()>& body) {
   EventLog log(path);
   const auto note = [&](const char* event, const Json& facts) {
@@ -74,6 +88,7 @@ void logged(const std::string& path, const std::function<void()>& body) {
   try {
     body();
   } catch (const Error& error) {
+    if (error.fault == Fault::usage) log.undo();
     note("error", {{"status", static_cast<int>(error.fault)}, {"message", error.what()}});
     throw;
   } catch (const Interrupted& interrupted) {

@@ -23,14 +23,18 @@ class EventLog {
   void line(const Json& facts);
   /// Until now on the disk.
   void sync();
+  /// Takes the file away again, if there was none before.
+  void undo();
 
  private:
   std::string path_;
   int fd_ = -1;
+  bool made_ = false;
 };
 
 /// Runs body; what ends it early is logged to that path, {"event": "error", "status": 75, "message": "..."} or
-/// {"event": "interrupted", "signal": 15}, when all that body has opened is closed again, and thrown on.
+/// {"event": "interrupted", "signal": 15}, when all that body has opened is closed again, and thrown on. A usage
+/// error leaves no log where there was none.
 void logged(const std::string& path, const std::function<void()>& body);
 
 /// "2026-11-21T04:43:00.123Z", or so many seconds ago.

@@ -5,14 +5,14 @@ VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
 take="vam-capture --device $sim --binning 12 --fps 10"
 
-fails 64 'how many images' $take -o views.exr
+fails 64 'how many images' $take --log why -o views.exr
 fails 64 'streams; name no folder' $take --live -o views/
-fails 64 'no angles to choose by' $take --every 10 -o views.exr
+fails 64 'no angles to choose by' $take --every 10 --log why -o views/
 fails 64 'counts with --every only' $take --frames 3 --turns 2 -o views.exr
 fails 64 'says how many' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
 fails 64 'tells the angle already' $take --frames 3 --follow - --speed 90 -o views.exr
 fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
-fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 -o views.exr
+fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
 fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
 fails 66 'cannot be opened' $take --frames 1 --follow missing -o views.exr

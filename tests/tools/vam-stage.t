@@ -17,10 +17,10 @@ stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'mo
 
 # Bad options touch nothing.
 fails 64 'no command' vam-stage
-fails 64 'unknown scheme' vam-stage identify --device usb:1
+fails 64 'unknown scheme' vam-stage identify --device usb:1 --log events
 fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
 fails 64 'out of range' vam-stage spin --turns 0
-fails 64 'give 1 or -1' vam-stage spin --direction 0
+fails 64 'give 1 or -1' vam-stage spin --direction 0 --log events
 fails 64 'not a number' vam-stage spin --device 'sim:?jitter_ms=much'
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none

@@ -80,8 +80,17 @@ std::unique_ptr<device::AngleSource> open_angles(const Options& o) {
   return nullptr;
 }
 
-void check(const Options& o) {
+std::string device_of(const Options& o, const model::Printer& printer) {
+  return o.device.empty() ? printer.camera.device : o.device;
+}
+
+bool is_recording(const std::string& device) { return device.rfind("replay:", 0) == 0; }
+
+void check(const Options& o, const model::Printer& printer) {
   if (!o.follow.empty() && o.speed_deg_s) throw Error{Fault::usage, "--speed: --follow tells the angle already"};
+  if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
+    throw Error{Fault::usage, "--every: a camera's frames have no angles to choose by; give --follow or --speed"};
+  }
   if (is_folder(o.output) && o.live) throw Error{Fault::usage, "--live: streams; name no folder"};
   if (is_folder(o.output) || o.live || o.frames || o.every_deg) return;
   throw Error{Fault::usage,
@@ -107,9 +116,9 @@ void conclude(const Options& o, const device::CaptureTally& tally, long wanted) 
 }  // namespace
 
 std::unique_ptr<device::Camera> open_camera(const Options& options, const model::Printer& printer) {
-  const std::string device = options.device.empty() ? printer.camera.device : options.device;
+  const std::string device = device_of(options, printer);
   device::CameraSettings settings = options.camera;
-  if (device.rfind("replay:", 0) != 0) {
+  if (!is_recording(device)) {
     settings.exposure_us = settings.exposure_us.value_or(printer.camera.exposure_us);
     settings.fps = settings.fps.value_or(printer.camera.fps);
     settings.binning = settings.binning.value_or(printer.camera.binning);
@@ -122,8 +131,8 @@ void identify(const Options& options) {
 }
 
 void take(const cli::App& app, const Options& options) {
-  check(options);
   const model::Printer printer = tool::load_printer(options.printer);
+  check(options, printer);
   const device::CapturePlan plan = plan_of(options);
   device::EventLog log(options.log);
   const auto angles = open_angles(options);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <vector>
 
@@ -67,6 +68,17 @@ TEST_CASE("What ends a tool is its last event, and is passed on") {
   CHECK(lines[0]["message"] == "stage: in use");
   CHECK(lines[1]["event"] == "interrupted");
   CHECK(lines[1]["signal"] == 15);
+  const auto misused = [&] {
+    logged(file.path, [&] {
+      EventLog(file.path)("begin");  // what is found wrong late
+      throw Error{Fault::usage, "--bits: 3"};
+    });
+  };
+  CHECK(fault_of(misused) == Fault::usage);
+  CHECK(file.lines().size() == 4);
+  std::filesystem::remove(file.path);
+  CHECK(fault_of(misused) == Fault::usage);
+  CHECK_FALSE(std::filesystem::exists(file.path));
   CHECK(fault_of([&] { logged("/nonexistent/log", [] {}); }) == Fault::no_output);
   CHECK(fault_of([&] { logged("/dev/full", [] { throw Error{Fault::busy, "x"}; }); }) == Fault::busy);
 }
