@@ -173,7 +173,7 @@ void CaptureFolder::keep(const CaptureRecord& record, const GreyImage& levels) {
     throw;
   }
   close(file);
-  fsync(directory_);
+  if (fsync(directory_) != 0 && errno != EINVAL) throw failed(folder_);
   write_line(to_line(record));
   manifest_.frames[record.place] = record;
 }
