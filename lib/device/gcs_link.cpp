@@ -81,7 +81,8 @@ std::string GcsLink::read_more(const std::string& question, const std::string& s
   if (bytes.empty()) {
     throw Error{Fault::busy, port_->name() + ": no " + (so_far.empty() ? "answer" : "end of the answer") + " to '" +
                                  shown(question) + "' within " + format_number(settings_.timeout_s) +
-                                 " s; check power, cable and baud rate"};
+                                 " s; check power, cable" +
+                                 (settings_.address ? ", baud rate and address" : " and baud rate")};
   }
   if (so_far.size() + bytes.size() > longest_answer)
     throw nonsense(question, so_far, "more than 64 KiB without an end");

@@ -1,5 +1,6 @@
 #include "device/gcs_stage.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -176,6 +177,18 @@ class GcsStage final : public Stage {
 std::unique_ptr<Stage> make_gcs_stage(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings,
                                       const std::string& axis, Guardian* guardian) {
   return std::make_unique<GcsStage>(std::move(port), clock, settings, axis, guardian);
+}
+
+void require_axis(GcsLink& link, const std::string& axis) {
+  std::vector<std::string> axes;
+  try {
+    for (const auto& line : link.ask("SAI?").lines) axes.push_back(trimmed(line));
+  } catch (const Error& error) {
+    if (error.fault == Fault::busy) return;
+    throw;
+  }
+  if (std::find(axes.begin(), axes.end(), axis) != axes.end()) return;
+  throw Error{Fault::usage, link.port().name() + ": no axis " + axis + "; the controller has " + join(axes, ", ")};
 }
 
 std::unique_ptr<Port> find_gcs(const std::string& path, std::optional<int> baud, Clock& clock,

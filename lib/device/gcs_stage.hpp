@@ -17,4 +17,8 @@ namespace vam::device {
 [[nodiscard]] std::unique_ptr<Port> find_gcs(const std::string& path, std::optional<int> baud, Clock& clock,
                                              const GcsSettings& settings);
 
+/// Throws Fault::usage when the controller tells its axes and this is none of them. One that does not know the question
+/// is taken as it is; the error it then has pending is not cleared.
+void require_axis(GcsLink& link, const std::string& axis);
+
 }  // namespace vam::device

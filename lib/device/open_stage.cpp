@@ -30,8 +30,10 @@ std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* 
   settings.address = address.integer("address", 1, 16);
   settings.timeout_s = address.number("timeout_s", settings.timeout_s, 0.01, 0.4);
   auto lock = lock_device(address.place, guardian);
-  auto port = find_gcs(address.place, address.integer("baud", 50, 4000000), clock, settings);
-  auto stage = make_gcs_stage(std::move(port), clock, settings, address.word("axis", "1"), guardian);
+  const std::string axis = address.word("axis", "1");
+  GcsLink link(find_gcs(address.place, address.integer("baud", 50, 4000000), clock, settings), clock, settings);
+  require_axis(link, axis);
+  auto stage = make_gcs_stage(link.take_port(), clock, settings, axis, guardian);
   stage->hold(std::move(lock));
   (void)stage->fault();  // what a former user left behind, "stopped by command" for one
   return stage;

@@ -35,6 +35,7 @@ const char* const help_lines[] = {"#5 - Request motion status",
                                   "PUN? - Get position unit",
                                   "RON - Set reference mode",
                                   "RON? - Get reference mode",
+                                  "SAI? - Get axis names",
                                   "SPA? - Get parameter",
                                   "STP - Stop all motion",
                                   "SVO - Set servo",
@@ -109,6 +110,7 @@ class SimGcs final : public SimController {
     if (command == "*IDN?") return "(c)2016 Physik Instrumente (PI) GmbH & Co. KG, C-863.11, 0116012345, 1.2.1.0\n";
     if (command == "CSV?") return "2.0\n";
     if (command == "HLP?") return help();
+    if (command == "SAI?") return "1\n";
     if (command == "ERR?") return std::to_string(std::exchange(error_, 0)) + "\n";
     if (command == "#24" || command == "STP") return stop(&SimMotor::brake);
     if (words.empty() || words.front() != "1") return refuse(words.empty() ? 24 : 15);

@@ -41,6 +41,7 @@ holds 'and says where the table stands' "$(sed -n 3p samples | json /dev/stdin a
 simulate --acceleration 5000 --max-speed 720
 stage identify >about
 is 'identify over the line' "$(json about serial)" 0116012345
+fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move --device "gcs:$PWD/stage?axis=7" --log why
 quiet 'home over the line' stage home
 stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
 is 'spin ends well' $? 0

@@ -33,6 +33,18 @@ TEST_CASE("A controller of a daisy chain is addressed and its answers are checke
   CHECK(fault_of([&] { (void)other.stage->identify(); }) == Fault::busy);
 }
 
+TEST_CASE("An axis that the controller does not have is named, with those it has") {
+  VirtualClock clock;
+  SimGcsSettings sim;
+  sim.faults.push_back(parse_sim_fault("silent@SAI?:3"));
+  GcsLink link(make_sim_port(make_sim_gcs(sim, clock.now_s(), {}), clock), clock, {});
+  require_axis(link, "1");
+  const auto wrong = [&] { require_axis(link, "7"); };
+  CHECK(message_of(wrong).find(": no axis 7; the controller has 1") != std::string::npos);
+  require_axis(link, "7");  // a controller that does not know the question may have it
+  CHECK(fault_of(wrong) == Fault::usage);
+}
+
 TEST_CASE("Homing ends at the reference, moves end at their angle") {
   VirtualStage lab;
   home(*lab.stage, lab.clock, 60);
