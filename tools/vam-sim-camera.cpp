@@ -28,7 +28,7 @@ struct Options {
   optics::PatternPlan pattern;
   double lag_ms = 0;
   std::string lose, cut;
-  std::optional<int> vanish;
+  std::optional<int> vanish, shrink;
   std::string log;
   cli::PrinterOptions printer;
   bool with_parent = false;
@@ -51,7 +51,9 @@ cli::Manual manual() {
           {{"A camera, asked who it is",
             "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
           {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
-           "some. --vanish N pulls the cable before frame N: the program ends without a word to its client. The bench "
+           "some. --vanish N pulls the cable before frame N: the program ends without a word to its client. "
+           "--shrink N sends pictures half as high as agreed from frame N on, until a client sets the size again. The "
+           "bench "
            "itself may be out of adjustment; the options of that group are what vam-capture's scans have to find.",
            "The fake camera of Aravis, which serves, keeps up with about 50 frames of 0.3 megapixels a second."},
           {"vam-capture", "vam-sim-stage", "vam-project"}};
@@ -101,6 +103,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--lose", "FRAMES", o.lose, "Frames that never arrive, like 3,7.");
   app.option("--cut", "FRAMES", o.cut, "Frames that arrive in part.");
   app.option("--vanish", "N", o.vanish, {0, 1e9}, "Unplugged before this frame.");
+  app.option("--shrink", "N", o.shrink, {1, 1e9}, "From this frame on, pictures half as high as agreed.");
   app.group("The program");
   app.option("--seed", "N", bench.seed, {0, 1e9}, "Of the random numbers.");
   app.option("--log", "FILE", o.log, "Append what happens, one JSON line an event.");
@@ -172,6 +175,7 @@ void run(Options& o) {
   camera.lose = device::parse_frames(o.lose);
   camera.cut = device::parse_frames(o.cut);
   camera.vanish = o.vanish.value_or(-1);
+  camera.shrink = o.shrink.value_or(-1);
   const device::SimGvCamera server(camera, o.address, o.serial, device::file_sim_log(o.log));
   device::print_line(o.address);
   for (;;) device::real_clock().sleep_until(device::real_clock().now_s() + 3600);

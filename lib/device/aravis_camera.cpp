@@ -348,14 +348,15 @@ class AravisCamera final : public Camera {
     }
     last_s_ = frame.time_s;
     last_number_ = frame.number;
-    const bool wrong_shape = frame.complete && (arv_buffer_get_image_width(buffer) != mode_.columns ||
-                                                arv_buffer_get_image_height(buffer) != mode_.rows);
+    const auto other =  // Aravis tells the size of whole pictures only
+        frame.complete ? another_size(mode_, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer))
+                       : std::nullopt;
     const auto* bytes = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, nullptr));
     const bool whole =
         to_grey({bytes, payload_}, mode_.columns, mode_.rows, 0, format_.layout, format_.bits, frame.levels);
     frame.complete = frame.complete && whole;
     give_back(buffer);
-    if (wrong_shape) throw Error{Fault::protocol, name_ + ": sends pictures of another size than it said"};
+    if (other) throw Error{Fault::protocol, name_ + ": sends pictures of " + *other + "; run it again"};
     return frame;
   }
 

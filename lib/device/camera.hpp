@@ -51,8 +51,8 @@ struct CameraFrame {
 };
 
 /// A source of pictures. Calls return within their time-out and throw Error: absent (gone), busy (no frame in time),
-/// protocol (a setting that does not read back, a picture of another size), usage (a setting that it does not have).
-/// next() throws Interrupted after a signal.
+/// protocol (a setting that does not read back, a picture of another size), data (a recorded picture of another size),
+/// usage (a setting that it does not have). next() throws Interrupted after a signal.
 class Camera {
  public:
   virtual ~Camera() = default;

@@ -32,6 +32,9 @@ class ReplayCamera final : public Camera {
     } else if (!feed_(frame)) {
       return std::nullopt;
     }
+    if (const auto other = another_size(mode_, frame.levels.width, frame.levels.height)) {
+      throw Error{Fault::data, place_ + ": frame " + std::to_string(frame.number) + " has " + *other};
+    }
     if (in_step_) {
       frame.time_s += start_s_ - origin_s_;
       clock_.sleep_until(frame.time_s);

@@ -20,7 +20,7 @@ const std::vector<std::string>& option_names() {
       "columns",        "rows",     "axis_column", "tilt_deg",    "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
       "gamma",          "glow",     "vignetting",  "background",  "noise",     "part",      "lit_s",      "seed",
       "divergence_deg", "focus_mm", "card",        "speed_deg_s", "angles",    "shown",     "bits",       "lag_ms",
-      "lose",           "cut",      "vanish",      "pace",        "log"};
+      "lose",           "cut",      "vanish",      "shrink",      "pace",      "log"};
   return names;
 }
 
@@ -58,6 +58,7 @@ SimCameraSettings settings_of(const Address& address, const CameraSettings& aske
   sim.lose = parse_frames(address.word("lose", ""));
   sim.cut = parse_frames(address.word("cut", ""));
   sim.vanish = address.integer("vanish", 0, 1000000000).value_or(-1);
+  sim.shrink = address.integer("shrink", 1, 1000000000).value_or(-1);
   if (sim.bits != 8 && sim.bits != 16) throw Error{Fault::usage, "device '" + address.text + "': bits=8 or bits=16"};
   return sim;
 }
@@ -102,6 +103,10 @@ class SimCamera final : public Camera {
       clock_.sleep_until(0);  // a signal ends this, too
       if (frame.number == sim_.vanish)
         throw Error{Fault::absent, "sim: the camera is gone; look at its cable and power"};
+      if (frame.number == sim_.shrink) {
+        const auto other = another_size(mode(), scene_.columns(), scene_.rows() / 2);
+        throw Error{Fault::protocol, "sim: sends pictures of " + *other + "; run it again"};
+      }
       if (sim_.lose.contains(frame.number) && !triggered_) continue;
       const double middle_s = frame.time_s - sim_.lag_s;
       const double half_s = 0.5e-6 * sim_.exposure_us;

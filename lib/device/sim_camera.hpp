@@ -22,6 +22,7 @@ struct SimCameraSettings {
   std::set<long> lose;  // numbers of frames that never arrive
   std::set<long> cut;   // and of those whose lower half does not
   long vanish = -1;     // the camera is unplugged before this frame
+  long shrink = -1;     // from this frame on, one after the first, pictures are half as high
 };
 
 /// "3,7" to numbers of frames. Throws Fault::usage.

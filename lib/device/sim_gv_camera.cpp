@@ -105,11 +105,14 @@ struct SimGvCamera::State {
     return value;
   }
 
+  void set(unsigned place, unsigned value) const { arv_fake_camera_write_register(registers(), place, value); }
+
   // In the server's thread, right before the frame's packets leave.
   void fill(ArvBuffer* buffer, double exposure_us, ArvPixelFormat format) {
     const double now_s = real_clock().now_s();
     const long number = next++;
     if (number == settings.vanish) std::_Exit(0);  // no goodbye: the cable is pulled
+    if (number + 1 == settings.shrink) set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, get(ARV_FAKE_CAMERA_REGISTER_HEIGHT) / 2);
     if (!world) world.emplace(settings.sources, now_s);
     const int bits = format == ARV_PIXEL_FORMAT_MONO_16 ? 16 : 8;
     const std::pair wanted(std::max(1U, get(ARV_FAKE_CAMERA_REGISTER_BINNING_HORIZONTAL)), bits);
@@ -173,9 +176,7 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
     throw Error{Fault::busy, address + ": no camera can be served there; is it an address of a network interface?"};
   }
   ArvFakeCamera* camera = state_->registers();
-  const auto set = [&](unsigned place, double value) {
-    arv_fake_camera_write_register(camera, place, static_cast<guint32>(value));
-  };
+  const auto set = [&](unsigned place, double value) { state_->set(place, static_cast<unsigned>(value)); };
   set(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, settings.bench.columns);
   set(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, settings.bench.rows);
   set(ARV_FAKE_CAMERA_REGISTER_WIDTH, settings.bench.columns);

@@ -75,6 +75,17 @@ is 'no picture was written again' "$(find half -name '*.png' -newermt 2002-01-01
 mkdir other; touch other/file
 fails 73 'holds other things' vam-capture --device replay:views.exr --frames 12 -o other/
 
+# A camera that sends pictures of another size: said at once, what came before is kept and gone on with.
+shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6 -o shrunk/; }
+shrinking '&shrink=4' 2>said
+is 'another size' "$? $(grep -c ': sends pictures of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
+is 'four frames are kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl) $(ls shrunk | grep -c png)" '4 4'
+quiet 'the rest is taken' shrinking ''
+is 'all six' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" 6
+vam-capture --device 'sim:?pace=virtual' --binning 20 --frames 4 -o coarse/
+cp -r whole differs; cp coarse/000003.png differs/
+fails 65 'differs: frame 3 has 36 x 27 pixels instead of 60 x 45' vam-capture --device replay:differs --frames 12 -o no.exr
+
 # Killed at any moment: what the manifest lists is there, and the rest can be taken.
 vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/ & victim=$!
 tries=0; until [ -s killed/manifest.jsonl ] && [ "$(wc -l <killed/manifest.jsonl)" -gt 4 ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.01; done

@@ -12,7 +12,7 @@ fails 64 'shows --pattern already' vam-sim-camera --pattern grid --frames x.exr
 fails 66 'missing' vam-sim-camera --frames missing
 fails 73 'cannot be written' vam-sim-camera --log missing/log
 
-camera_up --lose 5 --cut 8,11 --speed 45 --lit 0.5 --log truth
+camera_up --lose 5 --cut 8,11 --speed 45 --lit 0.5 --shrink 60 --log truth
 vam-capture identify --device aravis:127.0.0.1 >who
 is 'it says who it is' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
 fails 75 'UDP port 3956 is taken' vam-sim-camera
@@ -38,6 +38,9 @@ PY
 is 'every other frame arrived, exactly as sent' "$(sed -n 1p judged)" '37 37'
 is 'the lost and the cut ones are marked' "$(sed -n 2p judged)" '[8, 11] [[5, 5]]'
 is 'times are those of the sender, but for a steady delay' "$(sed -n 3p judged)" True
+$take --frames 60 -o shrunk/ 2>said
+is 'other pictures than agreed are nonsense' "$? $(grep -c ': sends pictures of 120 x 45 pixels instead of 120 x 90;' said) $(wc -l <said)" '76 1 1'
+is 'what came before is kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" "$(ls shrunk | grep -c png)"
 camera_down
 
 camera_up --vanish 12

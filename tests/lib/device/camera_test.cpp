@@ -111,6 +111,7 @@ TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error fla
   CameraSettings settings;
   settings.exposure_us = 20000;
   settings.fps = 25;
+  script.short_sequence = 14;
   const auto camera = v4l2(script, clock, settings);
   CHECK(camera->identify()["model"] == "fake");
   CHECK(camera->mode().columns == 4);
@@ -130,7 +131,7 @@ TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error fla
     }
   }
   CHECK(numbers == std::vector<long>{0, 1, 4, 5});
-  CHECK(complete == std::vector<bool>{true, true, true, false});
+  CHECK(complete == std::vector<bool>{true, true, false, false});
   const double before_s = clock.now_s();
   CHECK(fault_of([&] { (void)camera->next(); }) == Fault::busy);
   CHECK(clock.now_s() - before_s < 1.5);
@@ -241,6 +242,11 @@ TEST_CASE("A simulated camera: virtual pace waits for nothing, lost and cut fram
   CHECK(fault_of([&] { (void)triggered->next(); }) == Fault::busy);
   triggered->trigger();
   CHECK(triggered->next()->complete);
+  settings.trigger = "free";
+  const auto shrinking = open_camera("sim:?pace=virtual&shrink=1", settings, {}, clock);
+  shrinking->start();
+  CHECK(shrinking->next()->complete);
+  CHECK(message_of([&] { (void)shrinking->next(); }).find("90 x 33 pixels instead of 90 x 67") != std::string::npos);
 }
 
 TEST_CASE("A camera's address and settings are checked before anything is opened") {

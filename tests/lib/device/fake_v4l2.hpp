@@ -17,6 +17,7 @@ struct V4l2Script {
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY};
   std::vector<std::uint32_t> sequence{10, 11, 14, 15};  // of the frames to come
   std::uint32_t bad_sequence = 15;                      // arrives with the error flag
+  std::uint32_t short_sequence = 99;                    // arrives with half its bytes
   int refuse_open = 0;                                  // errno
   bool streams = true;
   int rate_limit = 1000;  // frames a second; faster is not taken
@@ -110,6 +111,7 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
     queued_.pop_front();
     buffer.sequence = script_.sequence[next_++];
     buffer.bytesused = deep_ ? 16 : 12;
+    if (buffer.sequence == script_.short_sequence) buffer.bytesused /= 2;
     auto& bytes = memory_[buffer.index];
     for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(buffer.sequence + i);
     buffer.flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
