@@ -2,22 +2,16 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-
 #include "base/error.hpp"
+#include "lib/io/scratch.hpp"
 
 using namespace vam;
 
 namespace {
 
 struct File {
-  explicit File(const std::string& text)
-      : path((std::filesystem::temp_directory_path() / "vam-csv-table-test.csv").string()) {
-    std::ofstream(path) << text;
-  }
-  ~File() { std::remove(path.c_str()); }
+  explicit File(const std::string& text) : path(folder.write("table.csv", text)) {}
+  scratch::Folder folder;
   std::string path;
 };
 
