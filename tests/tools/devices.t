@@ -2,10 +2,9 @@
 # Promises 4 and 6 for every kind of device: one user at a time, told by whom within a second, free again after kill -9;
 # and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-VAM_LOCK_DIR=$PWD/locks; mkdir -p locks card/dri screen; export VAM_LOCK_DIR
+mkdir -p card/dri screen
 touch card/dri/card0
 FAKE_DRM=$PWD/card; export FAKE_DRM
-ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 printf '[projector]\ncolumns = 64\nrows = 48\npixel_mm = 0.26\naxis_column = 31.5\naxis_row = 23.5\n' >printer.toml
 shim=$(vam-sim-stage --shim)
 on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "$device" "$log" sh -c 'exec "$@"' sh "$@"; }
@@ -28,10 +27,10 @@ use() {  # use DEVICE LOG
 begun() { grep -Eq '"event":"(begin|flip)"' "$1" 2>/dev/null; }
 
 for device in gcs grbl tic drm sdl dlpc350; do
-  rm -f locks/*
+  rm -f "$VAM_LOCK_DIR"/*
   (use $device first.log) >out 2>err & first=$!
   await begun first.log
-  pid=$(cat locks/*)
+  pid=$(cat "$VAM_LOCK_DIR"/*)
   best=9e9
   for try in 1 2 3; do  # a busy machine may hold up one
     start=$(date +%s%N)
@@ -47,7 +46,7 @@ for device in gcs grbl tic drm sdl dlpc350; do
   (use $device third.log) >third.out 2>third.err & third=$!
   await begun third.log
   ok "$device: free again after kill -9" begun third.log
-  kill -TERM "$(cat locks/*)"; wait $third 2>/dev/null
+  kill -TERM "$(cat "$VAM_LOCK_DIR"/*)"; wait $third 2>/dev/null
   is "$device: a signal is the last event" "$(tail -n 1 third.log | grep -c '"event":"interrupted".*"signal":15')" 1
   cat third.log >>all.log; rm -f third.log
 done
@@ -60,10 +59,10 @@ for try in 1 2 3 4 5 6 7 8; do  # another program may have the port for a while
   [ -s address ] && break
   sleep 2
 done
-rm -f locks/*
+rm -f "$VAM_LOCK_DIR"/*
 look() { vam-capture --device aravis:127.0.0.1 --binning 6 --frames "$1" -o "$2" 9>&-; }
 (exec vam-capture --device aravis:127.0.0.1 --frames 1000 -o first.exr) 2>err 9>&- & first=$!
-await sh -c 'grep -q . locks/* 2>/dev/null'
+await sh -c 'grep -q . "$VAM_LOCK_DIR"/* 2>/dev/null'
 start=$(date +%s%N)
 look 1 second.exr 2>second.err; status=$?
 is 'aravis: the second user is told by whom it is used' "$status $(grep -c "in use by process $first;" second.err)" '75 1'

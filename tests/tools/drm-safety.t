@@ -5,7 +5,6 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tiny_print part.exr
-ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 python3 "$VAM_SOURCE/tests/device/drm_trials.py" ends "${VAM_TRIALS:-10}" "$VAM_BUILD/lib/vam-test/drm_card.so" >table
 status=$?
 cat table

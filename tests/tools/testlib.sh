@@ -6,7 +6,9 @@ unset VAM_PRINTER
 scratch=$(mktemp -d "${TMPDIR:-/tmp}/vam-test.XXXXXX") || exit 1
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch" || exit 1
-mkdir .log
+mkdir -p .log/locks
+VAM_LOCK_DIR=$scratch/.log/locks; export VAM_LOCK_DIR  # to the locks a test is a machine of its own
+ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS  # what is preloaded to stand for a device comes first
 number=0
 failures=0
 
@@ -84,6 +86,14 @@ screen_up() {  # screen_up WIDTH HEIGHT: an X server without a screen, its pictu
   export SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software
 }
 screen_down() { kill $server; wait $server 2>/dev/null; }
+
+stage_up() {  # stage_up OPTIONS...: a simulated stage behind ./stage, its truth in ./truth; $stage
+  rm -f truth path
+  vam-sim-stage --link stage --log truth --die-with-parent "$@" >path & stage=$!
+  await test -s path
+}
+stage_down() { kill $stage; wait $stage 2>/dev/null; }
+stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
 
 answered() { [ -s camera ] || ! kill -0 $camera 2>/dev/null; }
 camera_up() {  # camera_up OPTIONS...: vam-sim-camera at its address; $camera

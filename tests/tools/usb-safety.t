@@ -4,7 +4,6 @@
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 tiny_print part.exr
 on() { umockdev-wrapper "$VAM_BUILD/usb_host" "$@"; }  # on DEVICE LOG PROGRAM...
 

@@ -1,7 +1,6 @@
 #!/bin/sh
 # vam-capture: series, folders that are gone on with, marks on what was lost, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
 take="vam-capture --device $sim --binning 12 --fps 10"
 

@@ -4,8 +4,6 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
-ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 judge="python3 $VAM_SOURCE/tests/device/print_judge.py"
 shim=$(vam-sim-stage --shim)
@@ -67,14 +65,7 @@ is 'which the summary says, too' "$(json no/summary.json status)" 65
 rm -r no
 
 screen_up 64 48
-simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
-  rm -f truth path
-  vam-sim-stage --link stage --log truth --die-with-parent --acceleration 1000 --max-speed 360 --at -130 "$@" >path &
-  simulator=$!
-  await test -s path
-}
-finish() { kill $simulator; wait $simulator; }
-stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
+turntable() { stage_up --acceleration 1000 --max-speed 360 --at -130 "$@"; }
 print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
 
 # A machine that is too busy with others to turn a table safely ends a print, as it must (too late an answer, no
@@ -82,13 +73,13 @@ print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "si
 too_busy() {  # too_busy RUN: after a print that ended with $printed
   { [ $printed -eq 75 ] || [ $printed -eq 137 ]; } && [ $attempt -lt 3 ] || return 1
   sed 's/^/# attempt ended: /' errors
-  finish
+  stage_down
   rm -r "$1"
 }
 
 # The print of the promises: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
 for attempt in 1 2 3; do
-  simulate --speed-error 0.01 --jitter 5
+  turntable --speed-error 0.01 --jitter 5
   camera_up --address $address --angles truth --shown run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
   $screen watch 45 1 >seen &
   watcher=$!
@@ -118,12 +109,12 @@ is 'the run folder: every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","
 is 'the run folder: hash of what was printed' "$(json run/summary.json sinogram_sha256)" "$(sha256sum <frames.exr | cut -d' ' -f1)"
 ok 'the run folder: every file is as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
 is 'the run folder: the reports' "$(json run/summary.json project.missed_flips | grep -c .) $(json run/summary.json capture.frames)" '1 36'
-finish
+stage_down
 
 # Live metrology ends a print: three turns are asked for, and after the first one what is printed is enough.
 ok 'the design' vam-slice box.stl --voxel 0.5 $plain -o part.vdb
 for attempt in 1 2 3; do
-  simulate
+  turntable
   print --run-up 0.05 --missed 0.9 --turns 3 --views 10 --until 'missing<=100' --reference part.vdb --level 0.001 --run live \
     --set stage.speed_deg_s=120 --set camera.device="sim:?angles=$PWD/truth&lit_s=0.01" 2>errors
   printed=$?
@@ -136,6 +127,6 @@ holds 'after one turn of three' "$(json live/summary.json stop_event.turns) < 1.
 await stood; ok 'the table stands' stood
 is 'black' "$($screen now)" black
 is 'and dark' "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
-finish
+stage_down
 screen_down
 done_testing

@@ -4,7 +4,6 @@
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 
 tiny_print part.exr

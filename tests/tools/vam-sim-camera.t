@@ -1,7 +1,6 @@
 #!/bin/sh
 # vam-sim-camera and vam-capture's aravis: camera, over GigE Vision on loopback; its log is the judge.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 take="vam-capture --device aravis:127.0.0.1 --binning 6 --fps 20"
 
 fails 64 'no IPv4 address' vam-sim-camera --address here

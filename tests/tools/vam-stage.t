@@ -1,19 +1,9 @@
 #!/bin/sh
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-VAM_LOCK_DIR=$PWD/locks; mkdir locks; export VAM_LOCK_DIR
 shim=$(vam-sim-stage --shim)
-ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS
 
-simulate() {  # simulate OPTIONS...: a stage behind ./stage, its truth in ./truth
-  rm -f truth path
-  vam-sim-stage --link stage --log truth --die-with-parent "$@" >path &
-  simulator=$!
-  await test -s path
-}
-finish() { kill $simulator; wait $simulator; }
 stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
-stood() { ! grep -E '"(moving|angle|standing)"' truth | tail -n 1 | grep -Eq 'moving|angle_deg.*speed'; }
 
 # Bad options touch nothing.
 fails 64 'no command' vam-stage
@@ -38,7 +28,7 @@ is 'follow takes its samples' "$(wc -l <samples)" 10
 holds 'and says where the table stands' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
 
 # The same controller behind a serial line.
-simulate --acceleration 5000 --max-speed 720
+stage_up --acceleration 5000 --max-speed 720
 stage identify >about
 is 'identify over the line' "$(json about serial)" 0116012345
 fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move --device "gcs:$PWD/stage?axis=7" --log why
@@ -65,33 +55,33 @@ sleep 0.1
 ok 'the device is free again' stage status
 stage status >state
 is 'and the table stands' "$(json state moving)" false
-finish
+stage_down
 
 # Baud rates are found, and a silent line is not waited for.
-simulate --baud 9600
+stage_up --baud 9600
 stage identify >about
 is 'the baud rate is found' "$(json about model)" C-863.11
 LD_PRELOAD=$shim vam-stage identify --device "gcs:$PWD/stage?baud=115200" 2>errors
 is 'the wrong one is a wrong answer or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
-finish
+stage_down
 
 # A GRBL board instead.
-simulate --protocol grbl --acceleration 5000 --max-speed 720
+stage_up --protocol grbl --acceleration 5000 --max-speed 720
 fails 64 'none of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
 LD_PRELOAD=$shim vam-stage spin --home --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 --rate 1 >samples
 is 'a sample a second is no reason to be taken for dead' $? 0
 holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
 ok 'and stands' stood
-finish
+stage_down
 fails 64 'steps_per_deg' vam-stage identify --device tic:
 fails 69 'no such device|not available' vam-stage identify --device 'tic:?steps_per_deg=10'
 
 # Spoilt answers: the fault is named, and the table stands.
 spoilt() {  # spoilt STATUS REGEX FAULT
-  simulate --acceleration 5000 --max-speed 720 --fault "$3"
+  stage_up --acceleration 5000 --max-speed 720 --fault "$3"
   fails "$1" "$2" stage spin --speed 360 --run-up 0.25
   case $3 in unplug*) ;; *) await stood; ok "$3: the table stands" stood ;; esac
-  finish
+  stage_down
 }
 spoilt 76 'was answered' garbage@POS?:20
 spoilt 75 'no end of the answer' truncated@POS?:20
