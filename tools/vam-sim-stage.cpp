@@ -9,6 +9,7 @@
 #include "device/interrupt.hpp"
 #include "device/lines.hpp"
 #include "device/pty_host.hpp"
+#include "device/realtime.hpp"
 #include "device/sim_grbl.hpp"
 #include "device/sim_options.hpp"
 
@@ -125,6 +126,7 @@ void run(Options& options) {
   device::Pty pty;
   const Link link(options.link, pty.path());
   device::print_line(pty.path());
+  device::hurry(device::Urgency::driver);  // a controller has nothing else to do
   device::serve(pty, *stage, options.baud);
 }
 

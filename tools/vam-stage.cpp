@@ -9,6 +9,7 @@
 #include "device/event_log.hpp"
 #include "device/interrupt.hpp"
 #include "device/lines.hpp"
+#include "device/realtime.hpp"
 #include "device/serial_port.hpp"
 #include "device/spin.hpp"
 
@@ -65,6 +66,10 @@ cli::Manual manual() {
        "open. spin refuses to begin printing (status 76) when the speed is off by more than --speed-tolerance, and "
        "ends when the table leaves its own line by more than 2 degrees. The port's latency matters: at 25 deg/s, 16 ms "
        "(the FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
+       "Priority. On a machine that is busy with other things an answer may be read too late to be of use. As root, or "
+       "with leave for a real-time priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for "
+       "the "
+       "members of that group from their next login), vam-stage and its guardian go before all others.",
        "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
       {"vam-project", "vam-sim-stage", "vam-capture"}};
 }
@@ -124,6 +129,7 @@ void drive(const std::string& command, Options& options) {
   const auto stage = device::open_stage(options.device, clock, &guardian);
   const auto print = [](const device::AngleSample& sample) { device::print_line(to_line(sample)); };
   options.plan.period_s = 1 / options.rate_hz;
+  device::hurry(device::Urgency::driver);
   log("begin", {{"command", command}, {"device", options.device}});
   if (command == "home" || options.home_first) device::home(*stage, clock, options.timeout_s);
   const std::map<std::string, std::function<void()>> actions{

@@ -2,8 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sched.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -21,6 +19,7 @@
 #include "base/json.hpp"
 #include "device/clock.hpp"
 #include "device/guardian_actions.hpp"
+#include "device/realtime.hpp"
 
 namespace vam::device {
 
@@ -62,12 +61,6 @@ Packet receive(int socket) {
   return packet;
 }
 
-// Ahead of everybody else's computing, where the system permits: the guardian sleeps but for a few microseconds.
-void hurry() {
-  const sched_param priority{1};
-  if (sched_setscheduler(0, SCHED_RR, &priority) != 0) setpriority(PRIO_PROCESS, 0, -10);
-}
-
 // Terminal signals reach the whole group, and a closing terminal the whole session: leave both, and ignore the rest.
 // Standard input and output belong to the tool's pipes, whose other ends must see them closed when the tool dies. Their
 // numbers stay taken: as 0 or 1 a device's handle would get whatever a library prints.
@@ -104,7 +97,7 @@ std::string carry_all_out(const std::map<int, Action>& actions) {
 
 void guard(int socket, int parent, double stall_s) {
   detach(socket);
-  hurry();
+  hurry(Urgency::guardian);
   std::map<int, Action> actions;
   double last_beat_s = real_clock().now_s();
   const char* reason = "ended without a word";

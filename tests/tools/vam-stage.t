@@ -46,6 +46,12 @@ ok 'with both times' grep -Eq '"utc":"20[0-9-]+T[0-9:.]+Z","t_monotonic_s":[0-9.
 LD_PRELOAD=$shim vam-stage spin --device "gcs:$PWD/stage" --speed 1 >/dev/null &
 first=$!
 await turning
+if chrt -r 2 true 2>/dev/null; then
+  urgency() { chrt -p "$1" | sed -n 's/.*priority: //p'; }
+  is 'it goes before other programs, and its guardian before it' "$(urgency $first) $(urgency "$(pgrep -P $first)")" '1 2'
+else
+  echo '# no leave for real-time priorities: not tried'
+fi
 start=$(date +%s%N)
 fails 75 "in use by process $first;" stage status
 holds 'within a second' "$(date +%s%N) - $start < 1e9"

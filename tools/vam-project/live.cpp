@@ -1,6 +1,7 @@
 #include "vam-project/live.hpp"
 
 #include "device/interrupt.hpp"
+#include "device/realtime.hpp"
 
 namespace vam::project {
 
@@ -26,6 +27,7 @@ void Live::add(const GreyImage& levels) {
 device::PlayTally Live::play(double speed_deg_s, int turns) {
   const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
                                               : device::followed_angle(options_.follow, clock_);
+  device::hurry(device::Urgency::driver);
   device::PlayPlan plan;
   plan.frames_per_turn = frames_;
   plan.turns = turns;
@@ -35,6 +37,7 @@ device::PlayTally Live::play(double speed_deg_s, int turns) {
 }
 
 device::PlayTally Live::play_through(double hold_s, bool forever) {
+  device::hurry(device::Urgency::driver);
   return ended(device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger()));
 }
 

@@ -64,6 +64,9 @@ cli::Manual manual() {
        "its "
        "text console back to the screen: keep the console elsewhere (kernel option fbcon=map:) and let --light, which "
        "then sleeps, or a shutter have the last word.",
+       "Priority. As root, or with leave for a real-time priority of 2 (see vam-stage(1)), the flips and the guardian "
+       "go "
+       "before everything else that the machine computes.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
        "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; b unless given). "
        "The engine is woken, set to video with its gamma off, and every setting is read back before light. In the end "
