@@ -37,10 +37,10 @@ cli::Manual manual() {
        "options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
        "The scans edges, response, flat, beam, axis and latency read frames that were captured while vam-project "
        "showed a test pattern, and what its --log says was on when (--flips), and write a calibration record; check "
-       "says which records are in force. vam-calibrate(1) runs them all. The beam is seen on a bare sensor that is "
-       "moved "
-       "along the light, one frame a plane, or, with --side, by the camera beside the vial while one row is lit: each "
-       "column of its picture is another plane of the resin.",
+       "says which records are in force. vam-calibrate(1) runs them all. For edges the whole vial must be in the "
+       "picture, of a camera where camera.distance_mm and camera.azimuth_deg say. The beam is seen on a bare sensor "
+       "that is moved along the light, one frame a plane, or, with --side, by the camera beside the vial while one row "
+       "is lit: each column of its picture is another plane of the resin.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
        "cal-INSTRUMENT-SCAN-UTC.json, with each value's unit, sigma, number of readings and method, the hashes of the "
        "frames, how long it is valid and for which instrument and vial. The link current-SCAN.json points to the one "

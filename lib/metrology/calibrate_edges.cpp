@@ -3,15 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "base/error.hpp"
+#include "metrology/side_view.hpp"
 #include "optics/vial.hpp"
 
 namespace vam::metrology {
 
 namespace {
 
-constexpr double window = 0.2;  // of R_e, to either side of an edge
+constexpr double window = 0.25;  // of R_e, to either side of an edge
 
 // Impact parameter of the outermost ray that meets resin: n_0 b may not exceed n R on either side of any interface.
 double grazing_mm(const optics::View& view) {
@@ -36,24 +38,27 @@ double column_of_impact_mm(const optics::View& view, double impact) {
   return 0.5 * (low + high);
 }
 
-// What the camera gets of the light of a sheet depends on how the sheet lies, that is on the turn delta of its ray,
-// which near grazing changes with the root of the depth below the edge, and on where it lies. So the share is a
-// polynomial in t, the turn that is missing to that at the edge plus the depth as a part of R_e.
+// What SideView gets of a sheet is what a perfect camera would. What else there is, of lens and place, changes with how
+// the sheet lies, that is with the turn delta of its ray, which near grazing goes with the root of the depth below the
+// edge, and with where it lies. So its share is a polynomial in t, the turn that is missing to that at the edge plus
+// the depth as a part of R_e.
 constexpr std::size_t powers = 3;
 using Terms = std::array<double, powers>;
 
-// Fluorescence along the ray of column q * R_e times 1, t, t^2; 0 beyond the edge. As running integrals over q: a line
+// What is seen of the ray of column q * R_e times 1, t, t^2; 0 beyond the edge. As running integrals over q: a line
 // that has a width is a difference of two integrals, exactly, however steep the edge.
 class EdgeShape {
  public:
-  EdgeShape(const model::Printer& printer, double edge_mm) : integral_{Terms{}} {
+  // sign: -1 at the low edge.
+  EdgeShape(const model::Printer& printer, const SideView& side, double edge_mm, double sign) : integral_{Terms{}} {
     const optics::View view = optics::projector_view(printer);
-    const double most_rad = optics::chief_ray(view, edge_mm * (1 - 1e-9)).delta_rad;
+    const double most_rad = std::abs(optics::chief_ray(view, edge_mm * (1 - 1e-9)).delta_rad);
     for (std::size_t i = 1; i <= cells; ++i) {
       const double q = 0.5 * (node(i - 1) + node(i));
-      const auto ray = optics::chief_ray(view, q * edge_mm);
-      const double t = most_rad - ray.delta_rad + 1 - q;
-      double cell = (node(i) - node(i - 1)) * brightness(printer, view, ray);
+      const auto ray = optics::chief_ray(view, sign * q * edge_mm);
+      const double t = most_rad - std::abs(ray.delta_rad) + 1 - q;
+      const double width = node(i) - node(i - 1);
+      double cell = width * side.seen(ray);
       Terms sum = integral_.back();
       for (std::size_t k = 0; k < powers; ++k, cell *= t) sum[k] += cell;
       integral_.push_back(sum);
@@ -73,22 +78,35 @@ class EdgeShape {
   }
 
  private:
-  static double brightness(const model::Printer& printer, const optics::View& view, const optics::ChiefRay& ray) {
-    if (!ray.hits) return 0;
-    const double radius_mm = optics::resin_radius_mm(view);
-    const double path_mm = 2 * std::sqrt(std::max(radius_mm * radius_mm - ray.x_v_mm * ray.x_v_mm, 0.0));
-    const double mu = printer.resin.absorption_per_mm;
-    return ray.transmittance * (mu > 0 ? -std::expm1(-mu * path_mm) / (mu * radius_mm) : path_mm / radius_mm);
-  }
   // Denser towards the edge.
   static double node(std::size_t i) {
     const double r = 1 - static_cast<double>(i) / static_cast<double>(cells);
     return 1 - r * r * (1 - low);
   }
-  static constexpr std::size_t cells = 1000;
+  static constexpr std::size_t cells = 300;
   static constexpr double low = 1 - 2 * window;
   std::vector<Terms> integral_;
 };
+
+struct EdgeShapes {
+  EdgeShape low, high;
+};
+
+EdgeShapes edge_shapes(const model::Printer& printer) {
+  const optics::View view = optics::projector_view(printer);
+  const SideView side(printer);
+  const double edge_mm = column_of_impact_mm(view, grazing_mm(view));
+  return {{printer, side, edge_mm, -1}, {printer, side, edge_mm, 1}};
+}
+
+// Outer radius of the vial whose outermost lit column is at R_e. Slip 1 is in impact_mm(); where the resin, not the
+// glass, ends the light, the glass is a wall further out.
+double radius_mm(const model::Printer& printer, double edge_px) {
+  const optics::View view = optics::projector_view(printer);
+  const double impact = optics::impact_mm(view, edge_px * printer.projector.pixel_mm);
+  if (grazing_mm(view) >= view.shells.front().radius_mm * (1 - 1e-12)) return impact;
+  return impact * optics::resin_radius_mm(view) / grazing_mm(view) + printer.vial.wall_mm;
+}
 
 // Columns of the two steepest changes, smoothed over three frames, and the smoothed signal's range.
 struct Steepest {
@@ -123,7 +141,7 @@ Steepest steepest(const std::vector<double>& column, const std::vector<double>& 
   return edges;
 }
 
-// Parameters: centre, R_e, blur, background, and the camera's share at the low and at the high edge.
+// Parameters: centre, R_e, blur; then the light: background, and the camera's share at the low and at the high edge.
 enum : std::size_t {
   centre,
   edge,
@@ -133,11 +151,12 @@ enum : std::size_t {
   high_share = low_share + powers,
   count = high_share + powers
 };
+constexpr std::size_t lights = count - ground;
 
 class BandModel {
  public:
-  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShape& shape, const Steepest& first)
-      : shape_(shape), width_px_(scan.width_px) {
+  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes, const Steepest& first)
+      : shapes_(shapes), width_px_(scan.width_px) {
     const double middle = 0.5 * (first.rise + first.fall);
     const double radius = 0.5 * (first.fall - first.rise);
     for (std::size_t i = 0; i < signal.size(); ++i) {
@@ -148,20 +167,40 @@ class BandModel {
     }
   }
 
-  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& p) const {
-    std::vector<double> out(signal_.size());
+  // Row-major, a row for each reading: what each parameter of the light would give if it were 1.
+  [[nodiscard]] std::vector<double> light(const std::vector<double>& p) const {
+    std::vector<double> rows(signal_.size() * lights);
+    for (std::size_t i = 0; i < signal_.size(); ++i) {
+      double* row = rows.data() + i * lights;
+      const bool high = column_[i] > p[centre];
+      const Terms terms =
+          blurred(high ? shapes_.high : shapes_.low, std::abs(column_[i] - p[centre]), p[edge], p[blur]);
+      row[0] = 1;
+      std::copy(terms.begin(), terms.end(), row + (high ? high_share : low_share) - ground);
+    }
+    return rows;
+  }
+  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& rows, const double* parts) const {
+    std::vector<double> out = signal_;
     for (std::size_t i = 0; i < out.size(); ++i) {
-      const std::size_t share = column_[i] > p[centre] ? high_share : low_share;
-      const Terms light = blurred(std::abs(column_[i] - p[centre]), p[edge], p[blur]);
-      out[i] = signal_[i] - p[ground];
-      for (std::size_t k = 0; k < powers; ++k) out[i] -= p[share + k] * light[k];
+      for (std::size_t k = 0; k < lights; ++k) out[i] -= parts[k] * rows[i * lights + k];
     }
     return out;
+  }
+  // Of the light's parameters those that bring it nearest to the readings; with an even share only the first of each
+  // edge's terms.
+  [[nodiscard]] std::vector<double> best_parts(std::vector<double> rows, bool even) const {
+    for (std::size_t i = 0; even && i < signal_.size(); ++i) {
+      for (const std::size_t share : {low_share, high_share}) {
+        for (std::size_t k = 1; k < powers; ++k) rows[i * lights + share - ground + k] = 0;
+      }
+    }
+    return linear_fit(rows, lights, signal_);
   }
 
  private:
   // Mean over the line's width and a Gaussian, in R_e's units.
-  [[nodiscard]] Terms blurred(double x_px, double edge_px, double blur_px) const {
+  [[nodiscard]] Terms blurred(const EdgeShape& shape, double x_px, double edge_px, double blur_px) const {
     constexpr int half_nodes = 6;
     constexpr double reach = 3;
     const double sigma = std::max(std::abs(blur_px), 1e-3);
@@ -171,8 +210,8 @@ class BandModel {
       const double z = reach * n / half_nodes;
       const double weight = std::exp(-0.5 * z * z);
       const double x = x_px + sigma * z;
-      const Terms beyond = shape_.integral((x + 0.5 * width_px_) / edge_px);
-      const Terms before = shape_.integral((x - 0.5 * width_px_) / edge_px);
+      const Terms beyond = shape.integral((x + 0.5 * width_px_) / edge_px);
+      const Terms before = shape.integral((x - 0.5 * width_px_) / edge_px);
       weights += weight;
       for (std::size_t k = 0; k < powers; ++k) sum[k] += weight * (beyond[k] - before[k]);
     }
@@ -180,7 +219,7 @@ class BandModel {
     return sum;
   }
 
-  const EdgeShape& shape_;
+  const EdgeShapes& shapes_;
   double width_px_;
   std::vector<double> column_;
   std::vector<double> signal_;
@@ -190,21 +229,35 @@ struct BandEdges {
   Measured centre, edge, blur;
 };
 
-BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShape& shape,
+// First the edges alone, with the light that suits them best, of an even share: from far away, a wide blur and a bent
+// share may take an edge's place. Then all together, for the sigmas.
+BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
                    const Steepest& first) {
-  const BandModel model(scan, signal, shape, first);
+  using Values = std::vector<double>;
+  const std::string subject = "sweep: vial edges";
+  const BandModel model(scan, signal, shapes, first);
+  const auto lit_best = [&](bool even) {
+    return [&model, even](const Values& edges) {
+      const Values rows = model.light(edges);
+      return model.residuals(rows, model.best_parts(rows, even).data());
+    };
+  };
+  Values at, rows;  // of the edges asked for last: most of the parameters leave them where they are
+  const auto residuals = [&](const Values& p) {
+    const Values edges(p.begin(), p.begin() + ground);
+    if (edges != at) rows = model.light(edges);
+    at = edges;
+    return model.residuals(rows, p.data() + ground);
+  };
+  Values start{0.5 * (first.rise + first.fall), 0.5 * (first.fall - first.rise) + 1, 1.5};
+  Values step(start.size(), 0.01);
+  start = fit_curve(lit_best(true), start, step, subject).value;
+  start = fit_curve(lit_best(false), start, step, subject).value;
+  const Values parts = model.best_parts(model.light(start), false);
+  start.insert(start.end(), parts.begin(), parts.end());
   const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
-  const double height = *high - *low;
-  std::vector<double> start(count);
-  start[centre] = 0.5 * (first.rise + first.fall);
-  start[edge] = 0.5 * (first.fall - first.rise) + 1;
-  start[blur] = 1.5;
-  start[ground] = *low;
-  start[low_share] = start[high_share] = height;
-  std::vector<double> step(count, 1e-3 * height);
-  step[centre] = step[edge] = step[blur] = 0.01;
-  const auto fit =
-      fit_curve([&](const std::vector<double>& p) { return model.residuals(p); }, start, step, "sweep: vial edges");
+  step.resize(count, 1e-3 * (*high - *low));
+  const auto fit = fit_curve(residuals, start, step, subject);
   BandEdges out{fit.measured(centre), fit.measured(edge), fit.measured(blur)};
   out.blur.value = std::abs(out.blur.value);
   return out;
@@ -230,28 +283,32 @@ std::vector<double> band_means(const Image& frame, int bands) {
 }
 
 VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
-  const double pixel_mm = printer.projector.pixel_mm;
-  const optics::View view = optics::projector_view(printer);
-  const EdgeShape shape(printer, column_of_impact_mm(view, grazing_mm(view)));
-  VialEdges out;
-  std::vector<Measured> edges;
-  std::vector<Measured> blurs;
   std::vector<std::size_t> seen;
-  for (std::size_t b = 0; b < scan.signal.size(); ++b) {
-    out.centre_column.emplace_back();
-    if (scan.column.size() < 2 * count) continue;
-    const Steepest first = steepest(scan.column, scan.signal[b]);
-    if (!first.clear) continue;
-    const BandEdges band = fit_band(scan, scan.signal[b], shape, first);
-    out.centre_column.back() = band.centre;
-    edges.push_back(band.edge);
-    blurs.push_back(band.blur);
+  std::vector<Steepest> first;
+  for (std::size_t b = 0; b < scan.signal.size() && scan.column.size() >= 2 * count; ++b) {
+    const Steepest edges = steepest(scan.column, scan.signal[b]);
+    if (!edges.clear) continue;
+    first.push_back(edges);
     seen.push_back(b);
   }
   if (seen.empty()) {
     throw Error{Fault::data, "sweep: no height shows light between two dark sides in " +
                                  std::to_string(scan.column.size()) +
                                  " frames; sweep beyond both edges of the vial, with the camera exposed"};
+  }
+  // How the camera sees an edge depends a little on the radius: the one that the steepest changes give will do.
+  model::Printer about = printer;
+  about.vial.radius_mm = radius_mm(printer, 0.5 * (first.front().fall - first.front().rise));
+  const EdgeShapes shapes = edge_shapes(about);
+  VialEdges out;
+  out.centre_column.resize(scan.signal.size());
+  std::vector<Measured> edges;
+  std::vector<Measured> blurs;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const BandEdges band = fit_band(scan, scan.signal[seen[i]], shapes, first[i]);
+    out.centre_column[seen[i]] = band.centre;
+    edges.push_back(band.edge);
+    blurs.push_back(band.blur);
   }
   out.edge_px = weighted_mean(edges);
   out.blur_px = weighted_mean(blurs);
@@ -264,17 +321,13 @@ VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
     }
     const WeightedLine axis = weighted_line(heights, centres);
     out.axis_column = axis.at_zero;
-    out.tilt_deg = lean_deg(axis.slope, pixel_mm);
+    out.tilt_deg = lean_deg(axis.slope, printer.projector.pixel_mm);
   } else {
     out.axis_column = out.centre_column[seen.front()];
   }
-  // Slip 1 is in impact_mm(); where the resin, not the glass, ends the light, the glass is a wall further out.
-  const double impact = optics::impact_mm(view, out.edge_px.value * pixel_mm);
-  const double next = optics::impact_mm(view, (out.edge_px.value + 1) * pixel_mm);
-  const bool at_glass = grazing_mm(view) >= view.shells.front().radius_mm * (1 - 1e-12);
-  const double scale = at_glass ? 1 : optics::resin_radius_mm(view) / grazing_mm(view);
-  out.radius_mm = {impact * scale + (at_glass ? 0 : printer.vial.wall_mm), (next - impact) * scale * out.edge_px.sigma,
-                   out.edge_px.n};
+  const double edge_px = out.edge_px.value;
+  const double slope = radius_mm(printer, edge_px + 1) - radius_mm(printer, edge_px);
+  out.radius_mm = {radius_mm(printer, edge_px), slope * out.edge_px.sigma, out.edge_px.n};
   return out;
 }
 

@@ -32,10 +32,10 @@ struct VialEdges {
   std::vector<Measured> centre_column;  // of each band; n = 0: no edges seen
 };
 
-/// Fits both edges of every band with the fluorescence that the optics lets expect near grazing incidence
-/// (transmittance times path in resin), blurred by the line's width and a Gaussian, and at either edge a share of it
-/// that reaches the camera. `printer` gives projector, wall, indices and absorption; its vial radius and axis_column
-/// are not used. Throws Fault::data: no band shows two edges, or the line's columns do not reach beyond both.
+/// Fits both edges of every band with what the optics lets a camera at its place see of a sheet of light near grazing
+/// incidence (SideView), blurred by the line's width and a Gaussian, times a share at either edge. `printer` gives
+/// projector, wall, indices, absorption and the camera's distance and azimuth; its vial radius and axis_column are not
+/// used. Throws Fault::data: no band shows two edges, or the line's columns do not reach beyond both.
 [[nodiscard]] VialEdges find_edges(const SweepScan& scan, const model::Printer& printer);
 
 }  // namespace vam::metrology

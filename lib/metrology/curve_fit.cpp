@@ -120,6 +120,14 @@ Vector hc3(const Vector& j, std::size_t n, const Vector& residual, const Cholesk
 
 }  // namespace
 
+Vector linear_fit(const Vector& rows, std::size_t n, const Vector& values) {
+  Vector matrix = normal_matrix(rows, n, Vector(values.size(), 1.0));
+  for (std::size_t a = 0; a < n; ++a) matrix[a * n + a] *= 1 + 1e-10;  // two columns may be the same
+  Vector parts = Cholesky(matrix, n).solve(gradient(rows, n, values));
+  for (double& part : parts) part = -part;
+  return parts;
+}
+
 double few_readings_factor(int freedom) { return resin::student_quantile(0.05, std::max(freedom, 1)) / 1.959964; }
 
 Measured weighted_mean(const std::vector<Measured>& parts) {

@@ -1,6 +1,7 @@
 // Least squares for measurements: the parameters of a curve, and how well they are known.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -36,6 +37,10 @@ using Residuals = std::function<std::vector<double>(const std::vector<double>& p
 /// or the parameters cannot be told apart.
 [[nodiscard]] CurveFit fit_curve(const Residuals& residuals, std::vector<double> start, const std::vector<double>& step,
                                  const std::string& subject);
+
+/// The parts of the columns whose sum comes nearest to `values`. rows: row-major, a row for each value, n columns.
+[[nodiscard]] std::vector<double> linear_fit(const std::vector<double>& rows, std::size_t n,
+                                             const std::vector<double>& values);
 
 /// Mean by weight 1/sigma^2; its sigma grows when the parts scatter more than they say.
 [[nodiscard]] Measured weighted_mean(const std::vector<Measured>& parts);

@@ -9,7 +9,9 @@ namespace vam::oracle {
 
 namespace {
 
-constexpr double step_px = 0.05;
+constexpr double pi = 3.14159265358979323846;
+constexpr int nodes = 300;  // from either edge to the axis
+constexpr int views = 600;  // lines of sight of the camera
 
 double noisy(double value, double read_noise, Random& random) {
   std::normal_distribution<double> unit;
@@ -17,38 +19,98 @@ double noisy(double value, double read_noise, Random& random) {
   return value + std::sqrt(read_noise * read_noise + std::max(value, 0.0) / electrons) * unit(random);
 }
 
+struct Plane {
+  double x = 0, y = 0;
+};
+double dot(Plane a, Plane b) { return a.x * b.x + a.y * b.y; }
+double cross(Plane a, Plane b) { return a.x * b.y - a.y * b.x; }
+
+// A ray in the resin, from where it enters it.
+struct Path {
+  Plane from, direction;
+  double length = 0, light = 0;
+};
+
+Path path_of(const Ray& ray, double turn_rad) {
+  const double c = std::cos(turn_rad);
+  const double s = std::sin(turn_rad);
+  const auto turned = [&](const Vec& v) {
+    const auto x = static_cast<double>(v[0]);
+    const auto y = static_cast<double>(v[1]);
+    return Plane{c * x - s * y, s * x + c * y};
+  };
+  Path path{turned(ray.point), turned(ray.direction), 0, static_cast<double>(ray.transmittance)};
+  path.length = -2 * dot(path.from, path.direction);
+  return path;
+}
+
+double outermost_mm(const Bench& bench, double radius_mm) {
+  double low = 0;
+  double high = 2 * radius_mm;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (trace(bench, middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+std::vector<Path> sights_of(const Bench& bench, double edge_mm, double turn_rad) {
+  std::vector<Path> paths;
+  for (int i = 0; i < views; ++i) {
+    const double angle = pi * (i + 0.5) / views;
+    paths.push_back(path_of(*trace(bench, -edge_mm * std::cos(angle)), turn_rad));
+    paths.back().light *= edge_mm * std::sin(angle) * pi / views;
+  }
+  return paths;
+}
+
+// Of a sheet of light, on all lines of sight: each sees it where they cross, if that is in the resin.
+double seen(const Path& sheet, const std::vector<Path>& sights) {
+  double sum = 0;
+  for (const Path& sight : sights) {
+    const Plane between{sight.from.x - sheet.from.x, sight.from.y - sheet.from.y};
+    const double slant = cross(sheet.direction, sight.direction);
+    const double along = cross(between, sight.direction) / slant;
+    const double deep = cross(between, sheet.direction) / slant;
+    if (along > 0 && along < sheet.length && deep > 0 && deep < sight.length) sum += sight.light / std::abs(slant);
+  }
+  return sheet.light * sum;
+}
+
 }  // namespace
 
 SweepBench::SweepBench(const SweepTruth& truth) : truth_(truth) {
   Bench bench;
-  bench.lens_distance = truth.lens_mm;
   if (truth.wall_mm > 0) bench.cylinders.push_back({truth.radius_mm, truth.glass_index});
   const double inner_mm = truth.radius_mm - truth.wall_mm;
   bench.cylinders.push_back({inner_mm, truth.resin_index});
-  const int nodes = static_cast<int>(1.2 * truth.radius_mm / truth.pixel_mm / step_px);
-  for (int i = 0; i < nodes; ++i) {
-    const auto ray = trace(bench, i * step_px * truth.pixel_mm);
-    if (!ray) {
-      table_.push_back(0);
-      continue;
+  bench.lens_distance = truth.camera_mm;
+  const auto sights = sights_of(bench, outermost_mm(bench, truth.radius_mm), truth.camera_rad);
+  bench.lens_distance.reset();
+  if (truth.lens_mm) bench.lens_distance = *truth.lens_mm;
+  edge_mm_ = outermost_mm(bench, truth.radius_mm);
+  for (int i = 0; i <= nodes; ++i) {
+    const double root = static_cast<double>(i) / nodes;
+    for (const int side : {0, 1}) {
+      const double x_mm = (side == 0 ? -1 : 1) * edge_mm_ * (1 - root * root);
+      table_[side].push_back(seen(path_of(*trace(bench, x_mm), 0), sights) / (2 * inner_mm));
     }
-    // The way from the entry to the resin out of it again: twice the distance to the point nearest to the axis.
-    const Real along = ray->point[0] * ray->direction[0] + ray->point[1] * ray->direction[1];
-    table_.push_back(static_cast<double>(-2 * along * ray->transmittance) / (2 * inner_mm));
   }
 }
 
 double SweepBench::fluorescence(double x_px) const {
-  const double place = std::abs(x_px) / step_px;
-  const auto i = static_cast<std::size_t>(place);
-  if (i + 1 >= table_.size()) return 0;
-  const double part = place - std::floor(place);
-  // The camera gets more of a sheet that turns towards it: the turn is asin(b / R) - asin(b / n R), b the distance
-  // of the ray from the axis.
   const double x_mm = x_px * truth_.pixel_mm;
-  const double b = std::clamp(x_mm / std::hypot(1, x_mm / truth_.lens_mm) / truth_.radius_mm, -1.0, 1.0);
+  if (std::abs(x_mm) >= edge_mm_) return 0;
+  const double place = std::sqrt(1 - std::abs(x_mm) / edge_mm_) * nodes;
+  const auto i = std::min(static_cast<std::size_t>(place), static_cast<std::size_t>(nodes - 1));
+  const double part = place - static_cast<double>(i);
+  // Whatever else changes with the turn of a sheet: asin(b / R) - asin(b / n R), b the distance of its ray from the
+  // axis.
+  const double tangent = truth_.lens_mm ? x_mm / *truth_.lens_mm : 0;
+  const double b = std::clamp(x_mm / std::hypot(1, tangent) / truth_.radius_mm, -1.0, 1.0);
   const double gain = 1 + truth_.slope * (std::asin(b) - std::asin(b / truth_.resin_index));
-  return gain * ((1 - part) * table_[i] + part * table_[i + 1]);
+  const auto& table = table_[x_mm > 0 ? 1 : 0];
+  return gain * ((1 - part) * table[i] + part * table[i + 1]);
 }
 
 Image SweepBench::frame(double line_column, double width_px, const std::vector<double>& height_mm, int columns,

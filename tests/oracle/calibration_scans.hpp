@@ -2,7 +2,9 @@
 // Shares nothing with lib/optics or lib/metrology.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -15,16 +17,18 @@ using Random = std::mt19937_64;
 /// A vial in the field of a projector, and a camera at its side.
 struct SweepTruth {
   double pixel_mm = 0.065;
-  double lens_mm = 119.8;
+  std::optional<double> lens_mm = 119.8;  // none: telecentric
   double radius_mm = 12.7;
   double wall_mm = 0;
   double glass_index = 1.53;
   double resin_index = 1.53;
-  double axis_column = 511.5;  // at height 0
-  double tilt_rad = 0;         // upper end towards higher columns
-  double blur_px = 1.5;        // Gaussian sigma of the line
-  double slope = 0;            // of the camera's share, per radian that the light turns in the vial
-  double noise = 2;            // of a pixel; the brightest are about 100, with shot noise on top
+  double axis_column = 511.5;              // at height 0
+  double tilt_rad = 0;                     // upper end towards higher columns
+  double blur_px = 1.5;                    // Gaussian sigma of the line
+  double camera_mm = 200;                  // of its lens from the axis
+  double camera_rad = 1.5707963267948966;  // counter-clockwise from the projector, seen from above
+  double slope = 0;                        // of the camera's gain, per radian that the light turns in the vial
+  double noise = 2;                        // of a pixel; the brightest are about 100, with shot noise on top
 };
 
 /// What the camera sees of a lit line of width_px columns; rows have their middles at height_mm, top first.
@@ -37,7 +41,8 @@ class SweepBench {
  private:
   [[nodiscard]] double fluorescence(double x_px) const;
   SweepTruth truth_;
-  std::vector<double> table_;  // by distance from the axis in steps of step_px
+  double edge_mm_ = 0;                        // the outermost column that lights resin
+  std::array<std::vector<double>, 2> table_;  // at the low and the high edge, by the root of the depth
 };
 
 /// A picture with a bright vertical band: a flat top between two Gaussian-blurred edges.

@@ -24,30 +24,69 @@ def write_png(path, rows):
                    chunk(b"IDAT", zlib.compress(raw, 1)) + chunk(b"IEND", b""))
 
 
-def glow(x_px, job):
-    """Transmittance times chord of one ray into a vial of n = 1.53 in air, both polarisations, angles by Snell."""
-    x, lens, n, radius = x_px * 0.065, 1.8 * job["columns"] * 0.065, 1.53, job["radius"]
-    b = abs(x) * math.cos(math.atan(x / lens))
-    if b >= radius:
-        return 0
-    outside, inside = math.asin(b / radius), math.asin(b / radius / n)
-    if outside < 1e-9:
-        return 1 - ((n - 1) / (n + 1)) ** 2
-    s = (math.sin(outside - inside) / math.sin(outside + inside)) ** 2
-    p = (math.tan(outside - inside) / math.tan(outside + inside)) ** 2
-    return (1 - (s + p) / 2) * math.cos(inside)
+def enter(x, lens, radius, turn, n=1.53):
+    """A chief ray in a vial in air: where it enters it, its direction there, how much of it goes in; by vectors."""
+    along = math.hypot(x, lens)
+    dx, dy = x / along, lens / along
+    b = -lens * dy
+    s = -b - math.sqrt(b * b - lens * lens + radius * radius)
+    px, py = dx * s, dy * s - lens
+    nx, ny = px / radius, py / radius
+    before = -(dx * nx + dy * ny)
+    after = math.sqrt(1 - (1 - before * before) / (n * n))
+    k = before / n - after
+    dx, dy = dx / n + k * nx, dy / n + k * ny
+    across = (before - n * after) / (before + n * after)
+    level = (n * before - after) / (n * before + after)
+    c, s = math.cos(turn), math.sin(turn)
+    return c * px - s * py, s * px + c * py, c * dx - s * dy, s * dx + c * dy, 1 - (across ** 2 + level ** 2) / 2
+
+
+def seen(sheet, sights):
+    """What all lines of sight of a camera get of a sheet of light, each where the two cross, if that is in the vial."""
+    px, py, dx, dy, passed = sheet
+    length = -2 * (px * dx + py * dy)
+    light = 0
+    for qx, qy, ex, ey, weight in sights:
+        slant = dx * ey - dy * ex
+        u = ((qx - px) * ey - (qy - py) * ex) / slant
+        v = ((qx - px) * dy - (qy - py) * dx) / slant
+        if 0 < u < length and 0 < v < -2 * (qx * ex + qy * ey):
+            light += weight / abs(slant)
+    return passed * light
+
+
+def glow(job, nodes=150, views=600):
+    """A function of the column, from the axis: the picture's light, from a camera at 90 degrees, 200 mm away."""
+    radius, lens, camera = job["radius"], 1.8 * job["columns"] * 0.065, 200
+    tangent = lambda distance: radius / math.sqrt(1 - (radius / distance) ** 2) * (1 - 1e-9)
+    sights = []
+    for i in range(views):
+        angle = math.pi * (i + 0.5) / views
+        *ray, passed = enter(-tangent(camera) * math.cos(angle), camera, radius, math.pi / 2)
+        sights.append((*ray, passed * math.sin(angle) * math.pi / views / 2))
+    edge = tangent(lens)
+    table = {side: [seen(enter(side * edge * (1 - (i / nodes) ** 2), lens, radius, 0), sights)
+                    for i in range(nodes + 1)] for side in (-1, 1)}
+
+    def at(x_px):
+        depth = 1 - abs(x_px) * 0.065 / edge
+        if depth <= 0:
+            return 0
+        side, place = (1 if x_px > 0 else -1), min(math.sqrt(depth) * nodes, nodes - 1e-9)
+        i = int(place)
+        return (i + 1 - place) * table[side][i] + (place - i) * table[side][i + 1]
+    return at
 
 
 def sweep(job):
-    table = [glow(0.1 * i, job) for i in range(int(14 * job["radius"] / 0.065))]
+    at = glow(job)
     for n in range(0, (job["columns"] + job["pitch"] - 1) // job["pitch"]):
         light = 0
         for k in range(40):
             for z in (-2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2):
-                x = abs(n * job["pitch"] - 0.5 + job["width"] * (k + 0.5) / 40 + 1.2 * z - job["axis"])
-                i = int(10 * x)
-                if i + 1 < len(table):
-                    light += math.exp(-z * z / 2) * ((i + 1 - 10 * x) * table[i] + (10 * x - i) * table[i + 1])
+                light += math.exp(-z * z / 2) * at(n * job["pitch"] - 0.5 + job["width"] * (k + 0.5) / 40 + 1.2 * z -
+                                                   job["axis"])
         yield [[3000 + 60 * light + random.gauss(0, 300) for _ in range(40)] for _ in range(20)]
 
 

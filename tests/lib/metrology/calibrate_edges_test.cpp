@@ -16,7 +16,10 @@ namespace {
 model::Printer printer_of(const oracle::SweepTruth& truth) {
   model::Printer printer;
   printer.projector.pixel_mm = truth.pixel_mm;
+  printer.projector.telecentric = !truth.lens_mm;
   printer.projector.lens_distance_mm = truth.lens_mm;
+  printer.camera.distance_mm = truth.camera_mm;
+  printer.camera.azimuth_deg = truth.camera_rad * 180 / 3.14159265358979;
   printer.vial = {12.7, truth.wall_mm, truth.glass_index};  // the radius is to be found
   printer.resin.index = truth.resin_index;
   return printer;
@@ -54,6 +57,8 @@ TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, ra
       truth.wall_mm = 1;
       truth.glass_index = 1.47;
     }
+    if (run % 2 == 1) truth.lens_mm.reset();  // telecentric
+    if (run % 8 > 5) truth.camera_rad *= -1;
     truth.axis_column = 490 + 40 * part(random);
     truth.tilt_rad = (part(random) - 0.5) * 0.03;
     truth.blur_px = 0.5 + 2 * part(random);
@@ -78,7 +83,7 @@ TEST_CASE("Vial edges: slip 1, the tangent column is further out than the vial")
   truth.noise = 0.5;
   const VialEdges found = find_edges(swept(truth, 1, 250, 770, random), printer_of(truth));
   const double tangent_px =
-      truth.radius_mm / truth.pixel_mm / std::sqrt(1 - std::pow(truth.radius_mm / truth.lens_mm, 2));
+      truth.radius_mm / truth.pixel_mm / std::sqrt(1 - std::pow(truth.radius_mm / *truth.lens_mm, 2));
   CHECK(found.edge_px.value == doctest::Approx(tangent_px).epsilon(3e-4));
   CHECK(found.radius_mm.value == doctest::Approx(truth.radius_mm).epsilon(3e-4));
   CHECK(found.blur_px.value == doctest::Approx(truth.blur_px).epsilon(0.2));

@@ -1,0 +1,32 @@
+// What a camera beside the vial gets of the light of a thin sheet in the resin.
+#pragma once
+
+#include <vector>
+
+#include "model/printer.hpp"
+#include "optics/vial.hpp"
+
+namespace vam::metrology {
+
+/// All chief rays of the camera through the resin. Near grazing they cross each other, and so many of them that pass
+/// one place make it bright: what the camera gets of a sheet has a kink where the sheet leaves such a place.
+class SideView {
+ public:
+  /// Throws Fault::data where lens, window and vial cannot stand like that.
+  explicit SideView(const model::Printer& printer);
+  /// Sum over the picture's columns of what shines on their line of sight from the sheet that the projector's `ray`
+  /// stands for; a ray that goes along the sheet of a whole diameter would give 1. The resin's absorption weakens the
+  /// sheet on its way. 0 for a ray that passes beside the resin.
+  [[nodiscard]] double seen(const optics::ChiefRay& ray) const;
+
+ private:
+  struct Sight {
+    double offset_mm = 0, cosine = 1, sine = 0;  // of the line of sight, as optics::ChiefRay has them
+    double weight = 0;                           // transmittance x part of the picture, up to the next one
+  };
+  double radius_mm_;  // of the resin
+  double absorption_per_mm_;
+  std::vector<Sight> sights_;
+};
+
+}  // namespace vam::metrology
