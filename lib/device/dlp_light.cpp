@@ -1,14 +1,14 @@
-// TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) over USB HID.
+// TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) as light engines.
 // Source: TI DLPU010 and DLPU018, "Programmer's Guide".
 #include <algorithm>
-#include <array>
-#include <cstdio>
+#include <functional>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "device/address.hpp"
 #include "device/clock.hpp"
+#include "device/dlp_link.hpp"
 #include "device/guardian_actions.hpp"
 #include "device/light_engine.hpp"
 #include "device/sim_dlp.hpp"
@@ -17,51 +17,45 @@ namespace vam::device {
 
 namespace {
 
-// Commands as CMD2, CMD3.
-enum Command : unsigned {
-  power = 0x0200,
-  firmware = 0x0205,
-  led_current = 0x0B01,
-  input_source = 0x1A00,
-  led_enable = 0x1A07,
-  hardware_status = 0x1A0A,
-  system_status = 0x1A0B,
-  main_status = 0x1A0C,
-  gamma = 0x1A0E,
-  display_mode = 0x1A1B,
-  pattern_start_stop = 0x1A24,
-};
-constexpr unsigned char write_and_acknowledge = 0x40;
-constexpr unsigned char read_request = 0xC0;
-constexpr unsigned char not_acknowledged = 0x20;
-constexpr std::size_t header_bytes = 4;
-constexpr double wake_s = 10;
+using enum DlpCommand;
 
-// flags, sequence, length (little endian, of command and data), CMD3, CMD2, data
-std::string report(unsigned char flags, unsigned char sequence, Command command, const std::string& data) {
-  std::string bytes;
-  bytes += static_cast<char>(flags);
-  bytes += static_cast<char>(sequence);
-  bytes += static_cast<char>(2 + data.size());
-  bytes += '\0';
-  bytes += static_cast<char>(command & 0xFFU);
-  bytes += static_cast<char>(command >> 8U);
-  return bytes + data;
+constexpr int dlpc350_product = 0x6401;
+constexpr int dlpc900_product = 0xC900;
+constexpr double patience_s = 15;  // to wake, to find the picture
+constexpr double mode_s = 2;       // to take up a mode: some tenths of a second
+constexpr int asleep = 1;
+constexpr int from_video_port = 0;
+constexpr int from_hdmi = 1;
+constexpr int video_mode = 0;
+constexpr int video_pattern_mode = 2;
+constexpr int stop = 0;
+constexpr int start = 2;
+constexpr int sequencer_runs = 1 << 1;  // of the main status
+constexpr int picture_found = 1 << 3;   // of the main status, DLPC900
+// Three of them and the 105 us of black before the next frame fit in a frame of 60 Hz.
+constexpr int pattern_us = 5500;
+
+void unless_refused(const std::function<void()>& words) {
+  try {
+    words();
+  } catch (const Error& error) {
+    if (error.fault != Fault::protocol) throw;
+  }
 }
 
 class DlpLight final : public LightEngine {
  public:
-  DlpLight(std::unique_ptr<UsbLink> link, const LightSettings& settings, Guardian* guardian)
-      : link_(std::move(link)), settings_(settings), guardian_(guardian) {
+  DlpLight(std::unique_ptr<UsbLink> usb, const LightSettings& settings, Clock& clock, Guardian* guardian)
+      : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
     if (settings.current.value_or(0) > settings.max_current) {
-      throw Error{Fault::usage, link_->name() + ": current " + std::to_string(*settings.current) +
+      throw Error{Fault::usage, link_.name() + ": current " + std::to_string(*settings.current) +
                                     " is above the cap of " + std::to_string(settings.max_current) +
                                     "; raise projector.max_led_current only within what the LEDs bear"};
     }
     for (const char led : settings.leds) {
       const std::size_t bit = std::string("rgb").find(led);
       if (bit == std::string::npos)
-        throw Error{Fault::usage, link_->name() + ": leds=" + settings.leds + " is not made of r, g and b"};
+        throw Error{Fault::usage, link_.name() + ": leds=" + settings.leds + " is not made of r, g and b"};
       led_bits_ |= 1 << bit;
     }
   }
@@ -76,117 +70,98 @@ class DlpLight final : public LightEngine {
   }
 
   Json identify() override {
-    Json about = link_->about();
-    const std::string version = ask(firmware, 4);
-    about["firmware"] = std::to_string(byte(version, 3)) + "." + std::to_string(byte(version, 2)) + "." +
-                        std::to_string(byte(version, 0) + 256 * byte(version, 1));
-    about["hardware_status"] = byte(ask(hardware_status, 1), 0);
-    about["system_status"] = byte(ask(system_status, 1), 0);
-    about["main_status"] = byte(ask(main_status, 1), 0);
+    Json about = link_.about();
+    const DlpBytes version = link_.ask(firmware, 4);
+    about["firmware"] = std::to_string(version[3]) + "." + std::to_string(version[2]) + "." +
+                        std::to_string(version[0] + 256 * version[1]);
+    about["hardware_status"] = link_.ask(hardware_status);
+    about["system_status"] = link_.ask(system_status);
+    about["main_status"] = link_.ask(main_status);
     return about;
   }
 
   void prepare() override {
     wake();
-    set(led_enable, std::string(1, '\0'), "LED enable");
-    set(display_mode, std::string(1, '\0'), "video mode");
-    const std::string source = ask(input_source, 1);
-    set(input_source, std::string(1, static_cast<char>(byte(source, 0) & ~7)), "input from the video port");
-    // Grey must be linear: the host's own table makes the intensity, so the engine's gamma is off, whatever its number.
-    const std::string table = ask(gamma, 1);
-    set(gamma, std::string(1, static_cast<char>(byte(table, 0) & 0x7F)), "gamma off");
-    if (settings_.current) {
-      set(led_current, std::string(3, static_cast<char>(*settings_.current)), "LED current");
+    link_.set(led_enable, {0}, "LED enable");
+    stop_patterns();
+    link_.set(display_mode, {video_mode}, "video mode", mode_s);
+    link_.set(input_source, {(link_.ask(input_source) & ~7) | from_video_port}, "input from the video port");
+    // Grey must be linear: the host's own table makes the intensity.
+    if (link_.about()["usb_id"] == "0451:c900") {
+      show_patterns();
     } else {
-      require_capped(ask(led_current, 3));
+      link_.set(gamma, {link_.ask(gamma) & 0x7F}, "gamma off");  // whatever its number
     }
-    if ((byte(ask(hardware_status, 1), 0) & 1) == 0) {
-      throw Error{Fault::protocol, link_->name() + ": its own start-up check failed; switch it off and on again"};
+    if (settings_.current) {
+      link_.set(led_current, DlpBytes(3, *settings_.current), "LED current");
+    } else {
+      require_capped(link_.ask(led_current, 3));
+    }
+    if ((link_.ask(hardware_status) & 1) == 0) {
+      throw Error{Fault::protocol, link_.name() + ": its own start-up check failed; switch it off and on again"};
     }
   }
 
   void on() override {
     watch();
-    set(led_enable, std::string(1, static_cast<char>(led_bits_)), "LED enable");
+    link_.set(led_enable, {led_bits_}, "LED enable");
   }
 
   void dark() override {
-    set(led_enable, std::string(1, '\0'), "LED enable");
+    link_.set(led_enable, {0}, "LED enable");
     if (action_) guardian_->forget(*action_);
     action_.reset();
   }
 
   void standby() override {
     dark();
-    try {
-      tell(pattern_start_stop, std::string(1, '\0'));
-    } catch (const Error& error) {
-      if (error.fault != Fault::protocol) throw;  // refused: there is no pattern to stop in video mode
-    }
-    tell(power, std::string(1, '\1'));
+    stop_patterns();
+    link_.tell(power, {asleep});
     awake_ = false;
   }
 
  private:
-  static int byte(const std::string& bytes, std::size_t i) { return static_cast<unsigned char>(bytes.at(i)); }
-
-  std::string exchange(unsigned char flags, Command command, const std::string& data) {
-    link_->write_report(report(flags, ++sequence_, command, data));
-    // An answer to an older question may still be under way; its sequence number tells.
-    for (int attempt = 0; attempt < 4; ++attempt) {
-      const std::string answer = link_->read_report();
-      if (answer.size() < header_bytes) break;
-      if (static_cast<unsigned char>(answer[1]) != sequence_) continue;
-      if ((static_cast<unsigned char>(answer[0]) & not_acknowledged) != 0) throw wrong(command, "refused");
-      const auto length = static_cast<std::size_t>(byte(answer, 2)) + 256 * static_cast<std::size_t>(byte(answer, 3));
-      if (header_bytes + length > answer.size())
-        throw wrong(command, "answered with a length of " + std::to_string(length));
-      if (guardian_ != nullptr) guardian_->beat();
-      return answer.substr(header_bytes, length);
-    }
-    throw wrong(command, "not answered, but something else was");
-  }
-
-  Error wrong(Command command, const std::string& what) const {
-    std::array<char, 24> name{};
-    std::snprintf(name.data(), name.size(), "command %02X %02X", command >> 8U, command & 0xFFU);
-    return {Fault::protocol, link_->name() + ": " + name.data() + " was " + what};
-  }
-
   // The engine answers while it wakes, but is not awake at once.
   void wake() {
     awake_ = true;
-    tell(power, std::string(1, '\0'));
-    const double limit_s = real_clock().now_s() + wake_s;
-    while (byte(ask(power, 1), 0) != 0) {
-      if (real_clock().now_s() > limit_s) {
-        throw Error{Fault::busy, link_->name() + ": does not wake within " + format_number(wake_s) + " s"};
-      }
-      real_clock().sleep_until(real_clock().now_s() + 0.02);
+    link_.tell(power, {0});
+    require_soon([&] { return link_.ask(power) == 0; }, "does not wake", "switch it off and on again");
+  }
+
+  void stop_patterns() {
+    unless_refused([&] { link_.tell(pattern_start_stop, {stop}); });  // when there are none
+  }
+
+  // A DLPC900 cannot be told to leave its gamma. Its grey is linear where it takes a frame for three patterns of 8
+  // bits, its colours one after the other, which it does only with a picture that it has found.
+  void show_patterns() {
+    unless_refused([&] {  // by a board without a receiver
+      if (link_.ask(video_receiver) == 0) link_.tell(video_receiver, {from_hdmi});
+    });
+    require_soon([&] { return (link_.ask(main_status) & picture_found) != 0; }, "finds no picture at its input",
+                 "check the video cable and the screen's mode");
+    link_.set(display_mode, {video_pattern_mode}, "video pattern mode", mode_s);
+    for (int colour = 0; colour < 3; ++colour) {
+      const int begins_with_frame = colour == 0 ? 0x80 : 0;
+      const int first_bit = 8 * colour;
+      link_.tell(pattern, {colour, 0, pattern_us & 0xFF, pattern_us >> 8, 0,
+                           begins_with_frame | led_bits_ << 4 | (8 - 1) << 1, 0, 0, 0, 0, 0, first_bit << 3});
     }
+    link_.tell(pattern_table, {3, 0, 0, 0, 0, 0});  // all three, for ever
+    link_.tell(pattern_start_stop, {start});
+    require_soon([&] { return (link_.ask(main_status) & sequencer_runs) != 0; }, "does not start its patterns",
+                 "check the screen's mode: at most 60 Hz");
   }
 
-  void tell(Command command, const std::string& data) { (void)exchange(write_and_acknowledge, command, data); }
-
-  std::string ask(Command command, std::size_t bytes) {
-    const std::string data = exchange(read_request, command, "");
-    if (data.size() < bytes) throw wrong(command, "answered with " + std::to_string(data.size()) + " bytes");
-    return data.substr(0, bytes);
+  void require_soon(const std::function<bool()>& done, const std::string& problem, const std::string& remedy) {
+    if (link_.within(patience_s, done)) return;
+    throw Error{Fault::busy, link_.name() + ": " + problem + " within " + format_number(patience_s) + " s; " + remedy};
   }
 
-  // Writes a setting and reads it back: what shines must be what was asked for.
-  void set(Command command, const std::string& data, const std::string& what) {
-    tell(command, data);
-    const std::string back = ask(command, data.size());
-    if (back == data) return;
-    throw Error{Fault::protocol,
-                link_->name() + ": " + what + " was set to " + to_hex(data) + " but reads back as " + to_hex(back)};
-  }
-
-  void require_capped(const std::string& currents) const {
+  void require_capped(const DlpBytes& currents) const {
     for (std::size_t led = 0; led < 3; ++led) {
-      if ((led_bits_ >> led & 1) == 0 || byte(currents, led) <= settings_.max_current) continue;
-      throw Error{Fault::protocol, link_->name() + ": its current is " + std::to_string(byte(currents, led)) +
+      if ((led_bits_ >> led & 1) == 0 || currents[led] <= settings_.max_current) continue;
+      throw Error{Fault::protocol, link_.name() + ": its current is " + std::to_string(currents[led]) +
                                        ", above the cap of " + std::to_string(settings_.max_current) +
                                        "; give current=N"};
     }
@@ -194,11 +169,11 @@ class DlpLight final : public LightEngine {
 
   void watch() {
     if (guardian_ == nullptr || action_) return;
-    const Json about = link_->about();
+    const Json about = link_.about();
     // Flags 0: no acknowledgement, since nobody is left to read it.
-    Json reports = Json::array({to_hex(report(0, 0, led_enable, std::string(1, '\0')))});
-    reports.push_back(to_hex(report(0, 1, pattern_start_stop, std::string(1, '\0'))));
-    reports.push_back(to_hex(report(0, 2, power, std::string(1, '\1'))));
+    const Json reports =
+        Json::array({to_hex(dlp_report(0, 0, led_enable, {0})), to_hex(dlp_report(0, 1, pattern_start_stop, {stop})),
+                     to_hex(dlp_report(0, 2, power, {asleep}))});
     action_ = guardian_->add({{"do", "usb"},
                               {"order", 0},
                               {"name", "light"},
@@ -208,20 +183,19 @@ class DlpLight final : public LightEngine {
                               {"reports", reports}});
   }
 
-  std::unique_ptr<UsbLink> link_;
+  DlpLink link_;
   LightSettings settings_;
   Guardian* guardian_;
   int led_bits_ = 0;
   bool awake_ = false;
-  unsigned char sequence_ = 0;
   std::optional<int> action_;
 };
 
 }  // namespace
 
-std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
+std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings, Clock& clock,
                                             Guardian* guardian) {
-  return std::make_unique<DlpLight>(std::move(link), settings, guardian);
+  return std::make_unique<DlpLight>(std::move(link), settings, clock, guardian);
 }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian) {
@@ -232,13 +206,14 @@ std::unique_ptr<LightEngine> open_light(const std::string& device, int max_curre
   settings.leds = address.word("leds", settings.leds);
   if (address.scheme == "sim") {
     address.allow({"current", "max_current", "leds", "log"});
-    return make_dlp_light(make_sim_dlp({}, file_sim_log(address.word("log", ""))), settings, nullptr);
+    return make_dlp_light(make_sim_dlp({}, file_sim_log(address.word("log", ""))), settings, real_clock(), nullptr);
   }
   address.allow({"current", "max_current", "leds"});
-  auto link = open_usb({0x0451, {address.scheme == "dlpc900" ? 0xC900 : 0x6401}, address.place}, 0);
+  const int product = address.scheme == "dlpc900" ? dlpc900_product : dlpc350_product;
+  auto link = open_usb({0x0451, {product}, address.place}, 0);
   auto lock = std::make_unique<DeviceLock>(link->name());
   if (guardian != nullptr) guardian->keep(lock->handle());
-  auto light = make_dlp_light(std::move(link), settings, guardian);
+  auto light = make_dlp_light(std::move(link), settings, real_clock(), guardian);
   light->hold(std::move(lock));
   return light;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "device/clock.hpp"
 #include "device/guardian.hpp"
 #include "device/lock.hpp"
 #include "device/usb_link.hpp"
@@ -26,7 +27,8 @@ class LightEngine {
   virtual ~LightEngine() = default;
   /// Model, firmware, status bits.
   virtual Json identify() = 0;
-  /// Awake, video input, gamma off (linear grey) and current set, each read back. LEDs stay off.
+  /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs a picture at its
+  /// input) and current set, each read back. LEDs stay off.
   virtual void prepare() = 0;
   virtual void on() = 0;
   /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.
@@ -44,8 +46,8 @@ class LightEngine {
 /// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
 [[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian);
 
-/// The two controllers differ in their USB product only.
+/// Which of the two controllers it is the link's usb_id tells.
 [[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
-                                                          Guardian* guardian);
+                                                          Clock& clock, Guardian* guardian);
 
 }  // namespace vam::device

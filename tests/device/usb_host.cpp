@@ -1,5 +1,6 @@
 // Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
-// and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host tic|dlpc350 LOG PROGRAM ARGS...
+// and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host DEVICE LOG PROGRAM ARGS...
+// DEVICE: tic:, dlpc350: or dlpc900:, the last two with what is wrong with them (sim_dlp.hpp): dlpc900:?fault=silent.
 // Exit status: the program's. The device lives on for 120 ms after the program: its guardian is late after 100.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "device/address.hpp"
 #include "device/guardian_actions.hpp"
 #include "device/sim_dlp.hpp"
 #include "device/sim_tic.hpp"
@@ -28,13 +30,13 @@ using vam::device::UsbLink;
 
 constexpr std::uint8_t end_in = 0x80;
 
-// Transfers carried out and not yet fetched, by the open file they were asked through: what a killed process left
-// unfetched goes with it, as in the kernel.
-using Done = std::map<UMockdevIoctlClient*, std::deque<UMockdevIoctlData*>>;
+// By the open file they were asked through: what a killed process left behind goes with it, as in the kernel.
+using Transfers = std::map<UMockdevIoctlClient*, std::deque<UMockdevIoctlData*>>;
 
 struct Host {
   std::unique_ptr<UsbLink> link;
-  Done done;
+  Transfers done;        // and not yet fetched
+  Transfers unanswered;  // until libusb's patience is over
   std::string descriptors;
   GMainLoop* loop = nullptr;
   int status = 70;
@@ -85,6 +87,13 @@ int interrupt(Host& host, const usbdevfs_urb& urb, std::uint8_t* buffer) {
   return static_cast<int>(report.size());
 }
 
+void finish(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* data, int moved) {
+  auto* urb = reinterpret_cast<usbdevfs_urb*>(data->data);
+  urb->status = std::min(moved, 0);
+  urb->actual_length = std::max(moved, 0);
+  host.done[client].push_back(data);
+}
+
 void submit(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
   UMockdevIoctlData* data = umockdev_ioctl_data_resolve(arg, 0, sizeof(usbdevfs_urb), nullptr);
   if (data == nullptr) return umockdev_ioctl_client_abort(client);  // killed while it asked
@@ -92,15 +101,28 @@ void submit(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
   UMockdevIoctlData* buffer = umockdev_ioctl_data_resolve(data, offsetof(usbdevfs_urb, buffer),
                                                           static_cast<gsize>(urb->buffer_length), nullptr);
   if (buffer == nullptr) return umockdev_ioctl_client_abort(client);
-  int moved = 0;
   try {
-    moved = urb->type == USBDEVFS_URB_TYPE_CONTROL ? control(host, buffer->data) : interrupt(host, *urb, buffer->data);
+    finish(host, client, data,
+           urb->type == USBDEVFS_URB_TYPE_CONTROL ? control(host, buffer->data) : interrupt(host, *urb, buffer->data));
   } catch (const vam::Error& error) {
-    moved = error.fault == vam::Fault::busy ? -ETIMEDOUT : -EPIPE;
+    if (error.fault == vam::Fault::busy) {
+      host.unanswered[client].push_back(data);
+    } else {
+      finish(host, client, data, error.fault == vam::Fault::absent ? -ENODEV : -EPIPE);
+    }
   }
-  urb->status = std::min(moved, 0);
-  urb->actual_length = std::max(moved, 0);
-  host.done[client].push_back(data);
+  umockdev_ioctl_client_complete(client, 0, 0);
+}
+
+void discard(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
+  gulong wanted = 0;
+  std::memcpy(&wanted, arg->data, sizeof wanted);
+  auto& waiting = host.unanswered[client];
+  const auto found =
+      std::find_if(waiting.begin(), waiting.end(), [&](auto* urb) { return urb->client_addr == wanted; });
+  if (found == waiting.end()) return umockdev_ioctl_client_complete(client, -1, EINVAL);
+  finish(host, client, *found, -ENOENT);
+  waiting.erase(found);
   umockdev_ioctl_client_complete(client, 0, 0);
 }
 
@@ -118,6 +140,7 @@ void reap(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
 // umockdev says nothing of clients that have gone, and may put a new one where an old one was.
 void connected(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
   static_cast<Host*>(user)->done.erase(client);
+  static_cast<Host*>(user)->unanswered.erase(client);
 }
 
 gboolean handle(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
@@ -142,7 +165,7 @@ gboolean handle(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) 
       umockdev_ioctl_client_complete(client, -1, ENODATA);
       return TRUE;
     case USBDEVFS_DISCARDURB:
-      umockdev_ioctl_client_complete(client, -1, EINVAL);
+      discard(host, client, arg);
       return TRUE;
     case USBDEVFS_CLAIMINTERFACE:
     case USBDEVFS_RELEASEINTERFACE:
@@ -162,11 +185,25 @@ std::string bytes_of(std::initializer_list<int> values) {
 }
 
 // Device, configuration, one interface of class 3 (HID) or 255, two interrupt endpoints of 64 bytes.
-std::string descriptors(int vendor, int product, int interface_class) {
+std::string descriptors(const std::string& ids, int interface_class) {
+  const int vendor = std::stoi(ids.substr(0, 4), nullptr, 16);
+  const int product = std::stoi(ids.substr(5), nullptr, 16);
   return bytes_of(
              {18, 1, 0, 2, 0, 0, 0, 64, vendor & 255, vendor >> 8, product & 255, product >> 8, 0, 1, 1, 2, 3, 1}) +
          bytes_of({9, 2, 32, 0, 1, 1, 0, 0x80, 50}) + bytes_of({9, 4, 0, 0, 2, interface_class, 0, 0, 0}) +
          bytes_of({7, 5, 0x81, 3, 64, 0, 1}) + bytes_of({7, 5, 0x01, 3, 64, 0, 1});
+}
+
+std::unique_ptr<UsbLink> simulate(const vam::device::Address& address, const vam::device::SimLog& log) {
+  if (address.scheme == "tic") return vam::device::make_sim_tic({}, vam::device::real_clock(), log);
+  vam::device::SimDlpSettings settings;
+  settings.dlpc900 = address.scheme == "dlpc900";
+  settings.current = address.integer("current", 0, 255).value_or(settings.current);
+  settings.stuck_grey = address.word("stuck_grey", "") == "yes";
+  settings.slow_reads = address.integer("slow_reads", 0, 1000).value_or(0);
+  settings.fault = address.word("fault", "");
+  settings.fault_after = address.integer("fault_after", 0, 1000).value_or(0);
+  return vam::device::make_sim_dlp(settings, log);
 }
 
 void ended(GPid, gint status, gpointer user) {
@@ -185,21 +222,14 @@ void ended(GPid, gint status, gpointer user) {
 
 int main(int argc, char** argv) {
   if (argc < 4) return 64;
-  const bool tic = std::string(argv[1]) == "tic";
+  const auto address = vam::device::parse_address(argv[1], {"tic", "dlpc350", "dlpc900"});
+  address.allow({"current", "stuck_grey", "slow_reads", "fault", "fault_after"});
   Host host;
-  const auto log = vam::device::file_sim_log(argv[2]);
-  if (tic) {
-    host.link = vam::device::make_sim_tic({}, vam::device::real_clock(), log);
-  } else {
-    host.link = vam::device::make_sim_dlp({}, log);
-  }
-  const int vendor = tic ? 0x1FFB : 0x0451;
-  const int product = tic ? 0x00B3 : 0x6401;
-  host.descriptors = descriptors(vendor, product, tic ? 255 : 3);
+  host.link = simulate(address, vam::device::file_sim_log(argv[2]));
+  const std::string ids = host.link->about()["usb_id"];
+  host.descriptors = descriptors(ids, address.scheme == "tic" ? 255 : 3);
 
   UMockdevTestbed* testbed = umockdev_testbed_new();
-  const vam::Json about = host.link->about();
-  const std::string ids = about["usb_id"];
   const std::string tree =
       "P: /devices/usb1/1-1\nN: bus/usb/001/002\nE: DEVNAME=/dev/bus/usb/001/002\nE: DEVTYPE=usb_device\n"
       "E: SUBSYSTEM=usb\nE: BUSNUM=001\nE: DEVNUM=002\nE: MAJOR=189\nE: MINOR=1\nA: busnum=1\\n\n"

@@ -18,10 +18,10 @@ await test -s number; await test -s path1; await test -s path2
 use() {  # use DEVICE LOG
   case $1 in
     gcs | grbl) exec env LD_PRELOAD="$shim" vam-stage follow --device "$1:$PWD/$1" --log "$2" ;;
-    tic) on tic truth vam-stage follow --device 'tic:?steps_per_deg=100' --log "$2" ;;
+    tic) on tic: truth vam-stage follow --device 'tic:?steps_per_deg=100' --log "$2" ;;
     drm) exec env LD_PRELOAD="$VAM_BUILD/lib/vam-test/drm_card.so" vam-project --pattern grey -o drm:HDMI-A-1 --hold 60 --log "$2" ;;
     sdl) exec env DISPLAY=":$(cat number)" SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software vam-project --pattern grey -o sdl:0 --hold 60 --log "$2" ;;
-    dlpc350) on dlpc350 truth vam-project --pattern grey -o null: --light dlpc350: --hold 60 --log "$2" ;;
+    dlpc350) on dlpc350: truth vam-project --pattern grey -o null: --light dlpc350: --hold 60 --log "$2" ;;
   esac
 }
 begun() { grep -Eq '"event":"(begin|flip)"' "$1" 2>/dev/null; }

@@ -36,6 +36,6 @@ aborted() {  # aborted STATUS OUTCOME REGEX: that print
   [ $run = unplugged ] || { await stood; ok "$run: the table stands" stood; }  # a pulled cable leaves it to its last order
   is "$run: black" "$($screen now)" black
   # The simulated light engine is a part of vam-project and dies with it; usb-safety.t kills it beside a real one.
-  [ $run = projector-killed ] || is "$run: the light is off" "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
+  [ $run = projector-killed ] || is "$run: the light is off" "$(grep -o '"bits":[0-9]*' leds | tail -n 1)" '"bits":0'
   stage_down
 }

@@ -11,7 +11,7 @@ end_by() {  # end_by SIGNAL: of the print
   kill -"$1" $printing
 }
 in_time() {  # by the logs of light engine and table, which itself takes 20 ms to brake
-  dark=$(tail -n 1 leds | json /dev/stdin t_monotonic_s)
+  dark=$(grep bits leds | tail -n 1 | json /dev/stdin t_monotonic_s)
   still=$(grep '"standing"' truth | tail -n 1 | json /dev/stdin t_monotonic_s)
   holds "$run: dark and still within 100 ms" "$dark - $ended_s < 0.1 && $still - $ended_s > 0 && $still - $ended_s < 0.1"
 }

@@ -126,7 +126,7 @@ is 'with its condition' "$(json live/summary.json stop_event.condition)" 'missin
 holds 'after one turn of three' "$(json live/summary.json stop_event.turns) < 1.5"
 await stood; ok 'the table stands' stood
 is 'black' "$($screen now)" black
-is 'and dark' "$(tail -n 1 leds | grep -o '"bits":[0-9]*')" '"bits":0'
+is 'and dark' "$(grep -o '"bits":[0-9]*' leds | tail -n 1)" '"bits":0'
 stage_down
 screen_down
 done_testing

@@ -59,7 +59,7 @@ is 'every frame is the one nearest to the angle' "$(cat angles)" True
 wait $early
 is 'a stage that ends is an error' $? 75
 ok 'which is named' grep -q 'ended after line 550' errors2
-is 'and the light is off' "$(tail -n 1 leds2 | grep -o '"bits":[0-9]*')" '"bits":0'
+is 'and the light is off' "$(grep -o '"bits":[0-9]*' leds2 | tail -n 1)" '"bits":0'
 wait $fast
 is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % off, allowed 1 %' errors3)" '75 1'
 is 'the light never came on, and all was black' "$(grep -c '"bits":[1-9]' leds3) $(grep -c '"frame":[0-9]' flips3)" '0 0'

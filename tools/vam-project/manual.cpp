@@ -69,10 +69,13 @@ cli::Manual manual() {
        "before everything else that the machine computes.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
        "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; b unless given). "
-       "The engine is woken, set to video with its gamma off, and every setting is read back before light. In the end "
+       "The engine is woken, set to video with linear grey, and every setting is read back before light. In the end "
        "its LEDs are switched off, then patterns are stopped, then it is put to sleep.",
-       "Linear grey: besides the engine's gamma the table of the graphics card must be straight. drm: makes it so and "
-       "reads it back; sdl: takes that of the desktop (xrandr --gamma 1:1:1 straightens it).",
+       "Linear grey: a DLPC350's gamma is switched off. A DLPC900's cannot be: it is set to its video pattern mode, in "
+       "which each frame is three patterns of 8 bits without gamma, one colour after the other. For that it must see "
+       "its "
+       "picture, so its screen must be on, at 60 Hz at most. Besides, the table of the graphics card must be straight. "
+       "drm: makes it so and reads it back; sdl: takes that of the desktop (xrandr --gamma 1:1:1 straightens it).",
        "Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
        "x 200 slices x 400 lit columns: 115 MB), and a few frames. A sinogram cannot be turned into frames slice by "
        "slice.",

@@ -19,27 +19,42 @@ namespace {
 
 struct LightLab {
   explicit LightLab(const SimDlpSettings& sim = {}, const LightSettings& settings = {})
-      : light(make_dlp_light(make_sim_dlp(sim, [this](const Json& line) { log.push_back(line); }), settings, nullptr)) {
-  }
+      : light(make_dlp_light(make_sim_dlp(sim, [this](const Json& line) { take(line); }), settings, clock, nullptr)) {}
+  void take(const Json& line) { (line["event"] == "leds" ? leds : sleep).push_back(line); }
   // The LEDs that truly shine, by the engine's own log.
-  [[nodiscard]] int shining() const { return log.empty() ? 8 : log.back()["bits"].get<int>(); }
-  std::vector<Json> log;
+  [[nodiscard]] int shining() const { return leds.empty() ? 8 : leds.back()["bits"].get<int>(); }
+  std::vector<Json> leds, sleep;
+  VirtualClock clock;
   std::unique_ptr<LightEngine> light;
 };
 
 }  // namespace
 
-TEST_CASE("The light engine wakes dark, shines when told, and is dark again") {
-  LightLab lab;
-  CHECK(lab.light->identify()["firmware"] == "4.0.1");
-  lab.light->prepare();
-  CHECK(lab.shining() == 0);
-  lab.light->on();
-  CHECK(lab.shining() == 4);
-  lab.light->dark();
-  CHECK(lab.shining() == 0);
-  lab.light->on();
-  lab.light->standby();
+TEST_CASE("The light engine wakes dark, shines when told, with linear grey, and is dark again") {
+  for (const bool dlpc900 : {false, true}) {
+    CAPTURE(dlpc900);
+    LightLab lab({.dlpc900 = dlpc900, .slow_reads = 3});
+    CHECK(lab.light->identify()["firmware"] == "4.0.1");
+    lab.light->prepare();
+    CHECK(lab.shining() == 0);
+    lab.light->on();
+    CHECK(lab.shining() == 4);
+    CHECK(lab.leds.back()["linear"] == true);
+    lab.light->dark();
+    CHECK(lab.shining() == 0);
+    lab.light->on();
+    lab.light->standby();
+    CHECK(lab.shining() == 0);
+    CHECK(lab.sleep.size() == 1);
+  }
+}
+
+TEST_CASE("A DLPC900 without a picture at its input is waited for, for 15 s; no light comes") {
+  LightLab lab({.dlpc900 = true, .no_picture = true});
+  const double start_s = lab.clock.now_s();
+  const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
+  CHECK(message.find("finds no picture at its input within 15 s") != std::string::npos);
+  CHECK(lab.clock.now_s() - start_s == doctest::Approx(15).epsilon(0.01));
   CHECK(lab.shining() == 0);
 }
 
@@ -64,60 +79,91 @@ class Heard final : public UsbLink {
   std::vector<std::string>& reports_;
 };
 
+// What a print sends to an engine, with a current of 0x55 and the blue LED.
+std::vector<std::string> heard_by(const SimDlpSettings& sim) {
+  std::vector<std::string> reports;
+  VirtualClock clock;
+  LightSettings settings;
+  settings.current = 0x55;
+  const auto light = make_dlp_light(std::make_unique<Heard>(make_sim_dlp(sim, {}), reports), settings, clock, nullptr);
+  light->prepare();
+  light->on();
+  light->standby();
+  return reports;
+}
+
 }  // namespace
 
 // By hand from TI DLPU010 and DLPU018: flags (40 write, C0 read), sequence, length of what follows, CMD3, CMD2, data.
 TEST_CASE(
-    "Every byte to the engine: woken, dark, video, gamma off, current; on; LEDs off, then no pattern, then asleep") {
-  for (const bool dlpc900 : {false, true}) {
-    CAPTURE(dlpc900);
-    std::vector<std::string> reports;
-    {
-      LightSettings settings;
-      settings.current = 0x55;
-      const auto light =
-          make_dlp_light(std::make_unique<Heard>(make_sim_dlp({.dlpc900 = dlpc900}, {}), reports), settings, nullptr);
-      light->prepare();
-      light->on();
-    }
-    const std::vector<std::string> wanted{"40010300000200",     "c00202000002",  // power 0: awake
-                                          "40030300071a00",     "c0040200071a",  // LED enable 0
-                                          "400503001b1a00",     "c00602001b1a",  // video mode
-                                          "c0070200001a",                        // input source: what it is,
-                                          "40080300001a08",     "c0090200001a",  //   then its port bits 0
-                                          "c00a02000e1a",                        // gamma: what it is,
-                                          "400b03000e1a00",     "c00c02000e1a",  //   then off
-                                          "400d0500010b555555", "c00e0200010b",  // LED current
-                                          "c00f02000a1a",                        // hardware status
-                                          "40100300071a04",     "c0110200071a",  // LED enable: blue
-                                          "40120300071a00",     "c0130200071a",  // LED enable 0
-                                          "40140300241a00",                      // pattern stop
-                                          "40150300000201"};                     // power 1: asleep
-    CHECK(reports == wanted);
-  }
+    "Every byte to a DLPC350: woken, dark, video, gamma off, current; on; LEDs off, then no pattern, then asleep") {
+  const std::vector<std::string> wanted{"40010300000200",     "c00202000002",  // power 0: awake
+                                        "40030300071a00",     "c0040200071a",  // LED enable 0
+                                        "40050300241a00",                      // pattern stop
+                                        "400603001b1a00",     "c00702001b1a",  // video mode
+                                        "c0080200001a",                        // input source: what it is,
+                                        "40090300001a08",     "c00a0200001a",  //   then its port bits 0
+                                        "c00b02000e1a",                        // gamma: what it is,
+                                        "400c03000e1a00",     "c00d02000e1a",  //   then off
+                                        "400e0500010b555555", "c00f0200010b",  // LED current
+                                        "c01002000a1a",                        // hardware status
+                                        "40110300071a04",     "c0120200071a",  // LED enable: blue
+                                        "40130300071a00",     "c0140200071a",  // LED enable 0
+                                        "40150300241a00",                      // pattern stop
+                                        "40160300000201"};                     // power 1: asleep
+  CHECK(heard_by({}) == wanted);
 }
 
-TEST_CASE("An engine that wakes slowly is waited for; one that refuses to stop a pattern still goes to sleep") {
-  LightLab slow({.wake_reads = 2});
-  slow.light->prepare();
-  CHECK(slow.shining() == 0);
-  std::vector<std::string> reports;
-  const auto light =
-      make_dlp_light(std::make_unique<Heard>(make_sim_dlp({.refuse = 0x1A24}, {}), reports), {}, nullptr);
-  light->prepare();
-  light->standby();
-  CHECK(reports.back().substr(4) == "0300000201");
+TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bits of each frame") {
+  const std::vector<std::string> wanted{"40010300000200",
+                                        "c00202000002",  // power 0: awake
+                                        "40030300071a00",
+                                        "c0040200071a",    // LED enable 0
+                                        "40050300241a00",  // pattern stop
+                                        "400603001b1a00",
+                                        "c00702001b1a",  // video mode
+                                        "c0080200001a",  // input source: what it is,
+                                        "40090300001a08",
+                                        "c00a0200001a",    //   then its port bits 0
+                                        "c00b0200011a",    // video receiver: off,
+                                        "400c0300011a01",  //   then HDMI
+                                        "c00d02000c1a",    // main status: a picture
+                                        "400e03001b1a02",
+                                        "c00f02001b1a",  // video pattern mode
+                                        // Pattern, 5500 us, 8 bits and blue (the first: with the frame), dark 0 us,
+                                        // trigger out, image 0 and its first bit 0, 8, 16
+                                        "40100e00341a00007c1500ce000000000000", "40110e00341a01007c15004e000000000040",
+                                        "40120e00341a02007c15004e000000000080",
+                                        "40130800311a030000000000",  // three patterns, for ever
+                                        "40140300241a02",            // pattern start
+                                        "c01502000c1a",              // main status: they run
+                                        "40160500010b555555",
+                                        "c0170200010b",  // LED current
+                                        "c01802000a1a",  // hardware status
+                                        "40190300071a04",
+                                        "c01a0200071a",  // LED enable: blue
+                                        "401b0300071a00",
+                                        "c01c0200071a",     // LED enable 0
+                                        "401d0300241a00",   // pattern stop
+                                        "401e0300000201"};  // power 1: asleep
+  CHECK(heard_by({.dlpc900 = true}) == wanted);
+  // A board without a receiver of that kind refuses to tell of it.
+  CHECK(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy).find("no picture") !=
+        std::string::npos);
+}
+
+TEST_CASE("An engine that refuses to stop a pattern still goes to sleep") {
+  CHECK(heard_by({.refuse = 0x1A24}).back().substr(4) == "0300000201");
 }
 
 TEST_CASE("Leaving without a word is dark, too") {
-  std::vector<Json> log;
-  {
-    const auto light = make_dlp_light(make_sim_dlp({}, [&](const Json& line) { log.push_back(line); }), {}, nullptr);
-    light->prepare();
-    light->on();
-    CHECK(log.back()["bits"] == 4);
-  }
-  CHECK(log.back()["bits"] == 0);
+  LightLab lab;
+  lab.light->prepare();
+  lab.light->on();
+  CHECK(lab.shining() == 4);
+  lab.light.reset();
+  CHECK(lab.shining() == 0);
+  CHECK(lab.sleep.size() == 1);
 }
 
 TEST_CASE("The current is capped, as given and as found") {
@@ -137,13 +183,16 @@ TEST_CASE("The current is capped, as given and as found") {
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);
 }
 
-TEST_CASE("A gamma that stays on is found by reading back") {
-  SimDlpSettings sim;
-  sim.stuck_gamma = true;
-  LightLab lab(sim);
-  CHECK(message_of([&] { lab.light->prepare(); }).find("gamma off was set to 00 but reads back as 80") !=
-        std::string::npos);
-  CHECK(lab.shining() == 0);
+TEST_CASE("Grey that does not get linear is found by reading back") {
+  LightLab gamma({.stuck_grey = true});
+  CHECK(
+      error_of([&] { gamma.light->prepare(); }, Fault::protocol).find("gamma off was set to 00 but reads back as 80") !=
+      std::string::npos);
+  CHECK(gamma.shining() == 0);
+  LightLab mode({.dlpc900 = true, .stuck_grey = true});
+  CHECK(error_of([&] { mode.light->prepare(); }, Fault::protocol)
+            .find("video pattern mode was set to 02 but reads back as 00") != std::string::npos);
+  CHECK(mode.shining() == 0);
 }
 
 TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and never light") {
@@ -159,7 +208,7 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
       CAPTURE(after);
       LightLab lab({.dlpc900 = dlpc900, .fault = kind, .fault_after = after / 2});
       CHECK(fault_of([&] { lab.light->prepare(); }) == fault);
-      CHECK((lab.log.empty() || lab.shining() == 0));
+      CHECK((lab.leds.empty() || lab.shining() == 0));
     }
     // In the middle of a print: the first answer that is wrong ends it, and the order to darken is given all the same.
     LightLab lit({.fault = kind, .fault_after = 40});
@@ -171,10 +220,11 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
     CHECK(fault_of([&] { lit.light->dark(); }).has_value());
     if (kind != std::string("unplug") && kind != std::string("error")) CHECK(lit.shining() == 0);  // it heard the order
   }
-  for (const int command : {0x0200, 0x1A07, 0x1A1B, 0x1A00, 0x1A0E, 0x1A0A, 0x0B01}) {
-    SimDlpSettings sim;
-    sim.refuse = command;
-    LightLab lab(sim);
+  for (const int command : {0x0200, 0x1A07, 0x1A1B, 0x1A00, 0x1A0E, 0x1A0A, 0x0B01, 0x1A0C, 0x1A34, 0x1A31}) {
+    CAPTURE(command);
+    const bool dlpc900 = command == 0x1A0C || command == 0x1A34 || command == 0x1A31;
+    LightLab lab({.dlpc900 = dlpc900, .refuse = command});
     CHECK(message_of([&] { lab.light->prepare(); }).find("refused") != std::string::npos);
+    CHECK((lab.leds.empty() || lab.shining() == 0));
   }
 }

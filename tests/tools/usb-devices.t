@@ -1,0 +1,76 @@
+#!/bin/sh
+# USB devices through the real libusb, on simulated buses: the Tic stage, and the DLPC350 and DLPC900 light engines,
+# with what may be wrong with them in turn. All run beside each other: most of it is waiting.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+touch second
+tiny_print part.exr
+on() { umockdev-wrapper "$VAM_BUILD/usb_host" "$@"; }  # on DEVICE LOG PROGRAM...
+begin() {  # begin NAME DEVICE PROGRAM...: on a bus and with a lock of its own
+  name=$1; device=$2; shift 2; mkdir "$name"
+  (VAM_LOCK_DIR=$PWD/$name; on "$device" "$name/truth" "$@" >"$name/out" 2>"$name/err"; echo $? >"$name/status") &
+}
+ended() {  # ended NAME STATUS REGEX: with that status, and such a line on stderr, or none
+  is "$1: status" "$(cat "$1/status")" "$2"
+  if [ -n "$3" ]; then ok "$1: says '$3'" grep -Eq -- "$3" "$1/err"; else is "$1: silent" "$(cat "$1/err")" ''; fi
+}
+bits() { grep -o '"bits":[0-9]*' "$1/truth" | tr '\n' ' '; }
+asleep() { tail -n 1 "$1/truth" | grep -c '"event":"asleep"'; }
+grey='vam-project --pattern grey -o null: --hold'
+
+begin found tic: vam-stage identify --device 'tic:?steps_per_deg=100'
+begin moved tic: vam-stage move --device 'tic:00312345?steps_per_deg=100' --home --to 20 --speed 90
+begin foreign tic: vam-stage identify --device 'tic:999?steps_per_deg=100'
+begin missing dlpc350: $grey 0.05 --light dlpc900:
+for engine in dlpc350 dlpc900; do
+  begin $engine "$engine:?slow_reads=3" \
+    vam-project part.exr -o null: --light "$engine:?current=85" --speed 360 --missed 1
+done
+begin asked-too-much dlpc900: $grey 0.05 --light dlpc900:?current=60 --set projector.max_led_current=50
+begin found-too-bright dlpc900:?current=120 $grey 0.05 --light dlpc900:
+begin stuck-grey dlpc900:?stuck_grey=yes $grey 0.05 --light dlpc900:
+prepared=27  # reports
+for fault in error unplug; do begin $fault "dlpc900:?fault=$fault&fault_after=9" $grey 0.05 --light dlpc900:; done
+for fault in silent late garbage truncated wrong-sender; do  # when it is told to come on
+  begin $fault "dlpc900:?fault=$fault&fault_after=$prepared" $grey 0.05 --light dlpc900:
+done
+
+# One user at a time, told by whom; a killed one leaves the engine dark and asleep.
+mkdir killed; : >killed/truth
+on dlpc900: killed/truth $grey 60 --light dlpc900: 2>killed/err & first=$!
+await grep -q '"bits":4' killed/truth
+holder=$(cat "$VAM_LOCK_DIR"/*)
+fails 75 "in use by process $holder;" on dlpc900: second $grey 0.05 --light dlpc900:
+kill -9 "$holder"; wait $first 2>/dev/null
+is 'a killed user leaves it dark' "$(bits killed)" '"bits":0 "bits":4 "bits":0 '
+is 'and asleep' "$(asleep killed)" 1
+
+wait
+ended found 0 ''
+is 'a Tic is found' "$(json found/out model) $(json found/out serial)" 'Tic T825 00312345'
+ended moved 0 ''
+holds 'to where it was sent' "$(tail -n 1 moved/truth | json /dev/stdin angle_deg) == 20"
+ended foreign 69 'no such device'
+ended missing 69 'no such device'
+for engine in dlpc350 dlpc900; do
+  ended $engine 0 ''
+  is "$engine: off, on, off" "$(bits $engine)" '"bits":0 "bits":4 "bits":0 '
+  is "$engine: with linear grey and the current asked for" \
+    "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current":\[85,85,85\]')" 1
+  is "$engine: and asleep at the end" "$(asleep $engine)" 1
+done
+ended asked-too-much 64 'above the cap of 50'
+ended found-too-bright 76 'its current is 120, above the cap of 100'
+ended stuck-grey 76 'video pattern mode was set to 02 but reads back as 00'
+ended error 76 'was refused'
+ended unplug 69 'NO_DEVICE'
+for name in asked-too-much found-too-bright stuck-grey error unplug; do
+  is "$name: no light" "$(grep -c '"bits":[1-9]' $name/truth)" 0
+done
+ended silent 75 'sent no report .LIBUSB_ERROR_TIMEOUT'
+ended late 75 'sent no report .LIBUSB_ERROR_TIMEOUT'
+for name in garbage truncated wrong-sender; do ended $name 76 'something else was'; done
+for name in silent late garbage truncated wrong-sender; do
+  is "$name: dark again" "$(bits $name)" '"bits":0 "bits":4 "bits":0 '
+  is "$name: and asleep" "$(asleep $name)" 1
+done
+done_testing
