@@ -63,6 +63,22 @@ stage status >state
 is 'and the table stands' "$(json state moving)" false
 stage_down
 
+# The simulated line is anybody's, one user after the other. Nothing is refused to root, who becomes nobody for this.
+anybody() { if [ "$(id -u)" -eq 0 ]; then setpriv --reuid=65534 --regid=65534 --clear-groups "$@"; else "$@"; fi; }
+mkdir plain; chmod 777 plain; chmod 755 .
+cat >twice.sh <<'SH'
+cd plain; VAM_LOCK_DIR=$PWD; export VAM_LOCK_DIR
+vam-sim-stage --link line --die-with-parent >path &
+until [ -s path ]; do sleep 0.01; done
+for user in first second; do LD_PRELOAD=$1 vam-stage status --device "gcs:$PWD/line" >$user || exit; done
+kill $!
+SH
+if anybody vam-stage --version >/dev/null 2>&1; then
+  quiet 'no user keeps the simulated line to himself' anybody sh twice.sh "$shim"
+else
+  echo '# nobody may not run these programs: not tried'
+fi
+
 # Baud rates are found, and a silent line is not waited for.
 stage_up --baud 9600
 stage identify >about
