@@ -73,7 +73,7 @@ int control(Host& host, std::uint8_t* buffer) {
     return (type & end_in) != 0 ? -EPIPE : 0;
   }
   answer.resize(std::min(answer.size(), static_cast<std::size_t>(length)));
-  std::memcpy(buffer + 8, answer.data(), answer.size());
+  std::copy(answer.begin(), answer.end(), buffer + 8);
   return static_cast<int>(answer.size());
 }
 
@@ -83,7 +83,7 @@ int interrupt(Host& host, const usbdevfs_urb& urb, std::uint8_t* buffer) {
     return urb.buffer_length;
   }
   const std::string report = host.link->read_report();
-  std::memcpy(buffer, report.data(), report.size());
+  std::copy(report.begin(), report.end(), buffer);
   return static_cast<int>(report.size());
 }
 

@@ -201,7 +201,9 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
       {"garbage", Fault::protocol},      {"truncated", Fault::protocol},
       {"wrong-sender", Fault::protocol}, {"error", Fault::protocol},
       {"unplug", Fault::absent}};
-  for (const auto& [kind, fault] : cases) {
+  for (const auto& wrong : cases) {
+    const char* kind = wrong.first;
+    const Fault fault = wrong.second;
     for (int after = 0; after < 24; ++after) {
       const bool dlpc900 = after % 2 == 1;
       CAPTURE(kind);

@@ -232,7 +232,9 @@ TEST_CASE("A light engine that goes wrong in a print: the right fault, the scree
       {"wrong-sender", Fault::protocol}, {"error", Fault::protocol},
       {"unplug", Fault::absent}};
   for (const bool dlpc900 : {false, true}) {
-    for (const auto& [kind, fault] : cases) {
+    for (const auto& wrong : cases) {
+      const char* kind = wrong.first;
+      const Fault fault = wrong.second;
       for (const int after : {0, 1, 2, 3}) {  // writing and reading back: on, then off
         CAPTURE(dlpc900);
         CAPTURE(kind);
