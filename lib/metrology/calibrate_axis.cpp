@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "metrology/curve_fit.hpp"
 #include "metrology/half_maximum.hpp"
 
 namespace vam::metrology {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 
 namespace vam::metrology {
 

@@ -7,6 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "metrology/curve_fit.hpp"
 #include "metrology/half_maximum.hpp"
 #include "metrology/ost.hpp"
 #include "optics/vial.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "metrology/curve_fit.hpp"
 #include "metrology/side_view.hpp"
 #include "optics/vial.hpp"
 

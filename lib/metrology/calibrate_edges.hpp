@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 #include "model/printer.hpp"
 
 namespace vam::metrology {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/image.hpp"
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 
 namespace vam::metrology {
 

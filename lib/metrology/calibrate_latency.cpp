@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "metrology/curve_fit.hpp"
 
 namespace vam::metrology {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 
 namespace vam::metrology {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 #include "model/response_table.hpp"
 
 namespace vam::metrology {

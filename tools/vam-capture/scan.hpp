@@ -8,7 +8,7 @@
 #include "base/image.hpp"
 #include "base/json.hpp"
 #include "cli/common.hpp"
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 #include "model/printer.hpp"
 
 namespace vam::capture_tool {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "metrology/curve_fit.hpp"
+#include "metrology/measured.hpp"
 
 namespace vam::test {
 
