@@ -55,12 +55,12 @@ def ended_by(cause, process):
     return cause not in SIGNALS or status == -cause
 
 
-def report(cause, times):
-    """Prints a line of the table; returns how many trials took too long."""
+def report(cause, times, what=""):
+    """Prints a line of the table, which begins with what; returns how many trials took too long."""
     name = cause.name if isinstance(cause, signal.Signals) else cause
     limit = LIMIT_S + (STALL_S if cause == "hang" else 0)
     late = sum(1 for t in times if not t <= limit)
     times = sorted(times)
-    print(f"# {name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, worst {1e3 * times[-1]:.1f} ms, "
+    print(f"# {what}{name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, worst {1e3 * times[-1]:.1f} ms, "
           f"{late} past {1e3 * limit:.0f} ms", flush=True)
     return late

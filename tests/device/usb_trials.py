@@ -83,8 +83,7 @@ def main():
     failed = 0
     for cause in SIGNALS + ["hang"]:
         for kind, times in trials(cause, int(sys.argv[1])).items():
-            print(f"# {kind}, ", end="")
-            failed += report(cause, times)
+            failed += report(cause, times, f"{kind}, ")
     sys.exit(failed > 0)
 
 

@@ -1,213 +1,21 @@
 #include "vam-capture/scan.hpp"
 
-#include <cmath>
-#include <filesystem>
 #include <functional>
 #include <map>
 
 #include "base/error.hpp"
-#include "base/text.hpp"
 #include "io/calibration_record.hpp"
 #include "io/printer_file.hpp"
-#include "io/stream.hpp"
-#include "io/view_source.hpp"
-#include "metrology/calibrate_axis.hpp"
-#include "metrology/calibrate_edges.hpp"
-#include "metrology/calibrate_latency.hpp"
-#include "metrology/calibrate_response.hpp"
-#include "optics/patterns.hpp"
 
 namespace vam::capture_tool {
 
 namespace {
 
-constexpr double wanted_axis_sigma_px = 0.1;
-constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is told from noise
-constexpr double allowed_shift_px = 1;
-constexpr double allowed_radius_change = 0.005;
-constexpr int settling_frames = 10;  // until the way of the time stamps from camera to machine is known
-
-// Every frame must be there before it is known how the pattern went.
-std::vector<double> mean_levels(const Image& image) {
-  double sum = 0;
-  for (const float value : image.values) sum += value;
-  return {sum / static_cast<double>(image.size())};
-}
-
-// What differs from the record before, where both speak of the same vial.
-void compare_edges(const ScanOptions& options, const model::Calibration& calibration, const metrology::VialEdges& edges,
-                   Finding& finding) {
-  const auto before = io::current_record(calibration, "edges");
-  if (!before || before->json.value("vial", "") != calibration.vial) return;
-  const double shift_px = edges.axis_column.value - before->value("axis_column");
-  const double change = edges.radius_mm.value / before->value("radius") - 1;
-  const double sigma_px = std::hypot(edges.axis_column.sigma, before->sigma("axis_column"));
-  const auto tell = [&](const std::string& reason) {
-    options.accept ? finding.warn_because(reason) : finding.fail_because(reason + " (--accept)");
-  };
-  if (std::abs(change) > allowed_radius_change) {
-    tell("the radius changed by " + format_number(100 * change, 3) + " % against " + before->path +
-         "; another vial has another calibration.vial");
-  }
-  if (std::abs(shift_px) > allowed_shift_px) {
-    tell("the vial's middle moved by " + format_number(shift_px, 3) + " px against " + before->path);
-  } else if (std::abs(shift_px) > 3 * sigma_px) {
-    finding.warn_because("the vial's middle moved by " + format_number(shift_px, 3) + " px, " +
-                         format_number(std::abs(shift_px) / sigma_px, 3) + " sigma");
-  }
-}
-
-Finding edges(const ScanOptions& options, const model::Printer& printer) {
-  std::map<int, std::pair<int, std::vector<double>>> sums;  // by the pattern's frame
-  int rows = 0;
-  double row_mm = 0;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    const auto means = metrology::band_means(frame.image, options.bands);
-    auto& [count, sum] = sums[frame.shown];
-    sum.resize(means.size());
-    for (std::size_t b = 0; b < means.size(); ++b) sum[b] += means[b];
-    ++count;
-    rows = frame.image.height;
-    row_mm = frame.pixel_mm;
-  });
-  metrology::SweepScan scan;
-  scan.width_px = options.width_px;
-  scan.signal.resize(static_cast<std::size_t>(options.bands));
-  for (const auto& [shown, sum] : sums) {
-    scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
-    for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
-  }
-  const int band_rows = rows / options.bands;  // as band_means() cuts them
-  for (int b = 0; b < options.bands; ++b) {
-    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * row_mm);
-  }
-  const auto found = metrology::find_edges(scan, printer);
-  Finding finding;
-  const char* method = "edge fit of fluorescence";
-  finding.value("axis_column", found.axis_column, "px", method);
-  finding.value("edge", found.edge_px, "px", method);
-  finding.value("radius", found.radius_mm, "mm", "tangent column to radius");
-  finding.value("tilt", found.tilt_deg, "deg", "line through the middles by height");
-  finding.value("line_blur", found.blur_px, "px", method);
-  finding.facts["settings"] = {
-      {"pitch_px", options.pitch_px},           {"width_px", options.width_px},
-      {"positions", scan.column.size()},        {"heights", options.bands},
-      {"pixel_mm", printer.projector.pixel_mm}, {"throw_mm", model::lens_distance_mm(printer.projector).value_or(0)}};
-  if (found.axis_column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the middle is known to " + format_number(found.axis_column.sigma, 3) + " px only, not " +
-                         format_number(wanted_axis_sigma_px));
-  }
-  if (found.radius_mm.sigma > wanted_radius_sigma * found.radius_mm.value) {
-    finding.fail_because("the radius is known to " +
-                         format_number(100 * found.radius_mm.sigma / found.radius_mm.value, 3) + " % only, not " +
-                         format_number(100 * wanted_radius_sigma));
-  }
-  compare_edges(options, printer.calibration, found, finding);
-  return finding;
-}
-
-Finding response(const ScanOptions& options, const model::Printer& printer) {
-  double dark = 0;
-  if (!options.dark.empty()) dark = mean_levels(io::read_field(options.dark)).front();
-  std::map<int, std::vector<double>> readings;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    // Without flips the frames of a level follow one another.
-    readings[frame.shown].push_back(mean_levels(frame.image).front() - dark);
-  });
-  std::map<int, std::vector<double>> by_level;
-  if (options.flips.empty()) {
-    if (readings.size() % static_cast<std::size_t>(options.steps) != 0) {
-      throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames are not " +
-                                   std::to_string(options.steps) + " levels of equally many; see --steps"};
-    }
-    const int each = static_cast<int>(readings.size()) / options.steps;
-    for (const auto& [n, light] : readings) by_level[n / each].push_back(light.front());
-  } else {
-    by_level = readings;
-  }
-  metrology::ResponseScan scan;
-  const int full = (1 << printer.projector.bits) - 1;
-  for (const auto& [level, light] : by_level) {
-    scan.grey.push_back(std::round(static_cast<double>(level) / (options.steps - 1) * full));
-    scan.light.push_back(light);
-  }
-  const auto curve = metrology::measure_response(scan);
-  Finding finding;
-  finding.value("contrast",
-                {1 / std::max(curve.intensity.front().value, 1e-9),
-                 curve.intensity.front().sigma / std::pow(std::max(curve.intensity.front().value, 1e-9), 2),
-                 curve.intensity.front().n},
-                "1", "full grey over black");
-  std::string csv = "# of " + printer.calibration.instrument + ", by vam-capture response\ngrey,intensity\n";
-  Json levels = Json::array();
-  for (std::size_t i = 0; i < curve.grey.size(); ++i) {
-    csv += format_number(curve.grey[i]) + "," + format_number(curve.intensity[i].value, 9) + "\n";
-    levels.push_back({{"grey", curve.grey[i]},
-                      {"value", curve.intensity[i].value},
-                      {"unit", "of full"},
-                      {"sigma", curve.intensity[i].sigma},
-                      {"n", curve.intensity[i].n},
-                      {"method", "camera mean, monotone"}});
-  }
-  finding.facts["response"] = levels;
-  finding.products.push_back({"response", ".csv", [csv](const std::string& path) { io::write_text(path, csv); }});
-  return finding;
-}
-
-Finding axis(const ScanOptions& options, const model::Printer& printer) {
-  metrology::TurnScan scan;
-  double pixel_mm = 0;
-  scan.middle.resize(static_cast<std::size_t>(options.bands));
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    const auto middles = metrology::bright_middles(frame.image, options.bands);
-    for (std::size_t b = 0; b < middles.size(); ++b) scan.middle[b].push_back(middles[b]);
-    scan.angle_deg.push_back(frame.angle_deg);
-    scan.rows = frame.image.height;
-    pixel_mm = frame.pixel_mm;
-  });
-  const auto found = metrology::find_camera_axis(scan);
-  Finding finding;
-  const char* method = "first harmonic over the turn";
-  finding.value("axis_column", found.column, "px", method);
-  finding.value("tilt", found.tilt_deg, "deg", "line through the axes by row");
-  finding.value("wobble", found.wobble_px, "px", method);
-  finding.value("wobble_phase", found.phase_deg, "deg", method);
-  finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},
-                "mm", method);
-  if (found.column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the axis is known to " + format_number(found.column.sigma, 3) + " px only, not " +
-                         format_number(wanted_axis_sigma_px));
-  }
-  return finding;
-}
-
-Finding latency(const ScanOptions& options, const model::Printer& printer) {
-  if (options.flips.empty()) throw Error{Fault::usage, "latency: needs --flips, the log of the blinking vam-project"};
-  metrology::BlinkScan scan;
-  const auto flips = read_flips(options.flips);
-  for (std::size_t i = 0; i + 1 < flips.size(); ++i) {
-    if (flips[i].frame > 0) scan.lit_s.emplace_back(flips[i].t_s, flips[i + 1].t_s);
-  }
-  scan.exposure_s = 1e-6 * printer.camera.exposure_us;
-  int number = 0;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    if (number++ < settling_frames) return;
-    if (frame.time_s < flips.front().t_s || frame.time_s > flips.back().t_s) return;
-    scan.begin_s.push_back(frame.time_s - 0.5 * scan.exposure_s);
-    scan.light.push_back(mean_levels(frame.image).front());
-  });
-  const auto found = metrology::measure_latency(scan);
-  Finding finding;
-  finding.value("latency", found.ms, "ms", "blinking screen");
-  finding.facts["contrast"] = found.contrast;
-  if (found.ms.sigma > 1) finding.fail_because("known to " + format_number(found.ms.sigma, 3) + " ms only, not 1");
-  return finding;
-}
-
 using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
 const std::map<std::string, Scan>& scans() {
-  static const std::map<std::string, Scan> all{{"edges", edges},    {"response", response}, {"flat", scan_flat},
-                                               {"beam", scan_beam}, {"axis", axis},         {"latency", latency}};
+  static const std::map<std::string, Scan> all{{"edges", scan_edges}, {"response", scan_response},
+                                               {"flat", scan_flat},   {"beam", scan_beam},
+                                               {"axis", scan_axis},   {"latency", scan_latency}};
   return all;
 }
 

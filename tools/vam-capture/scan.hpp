@@ -59,10 +59,18 @@ struct Showing {
 /// The changes of picture in a log of vam-project. Throws Error: no_input, data.
 [[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
 
-// ---- scan_beam.cpp, scan_flat.cpp: scans with files of their own
+/// Mean over the picture: a frame is kept as one number until it is known how the pattern went.
+[[nodiscard]] double mean_level(const Image& image);
+
+// ---- scan_edges.cpp and its neighbours: from frames to what they tell
 class Finding;
+[[nodiscard]] Finding scan_edges(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_response(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_axis(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_latency(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);
+inline constexpr double wanted_axis_sigma_px = 0.1;  // of an axis, be it the vial's or the camera's
 
 // ---- record.cpp: what becomes of the result
 

@@ -1,0 +1,35 @@
+// vam-capture axis: the rotation axis in the camera's frames, over a turn.
+#include "base/text.hpp"
+#include "metrology/calibrate_axis.hpp"
+#include "vam-capture/scan.hpp"
+
+namespace vam::capture_tool {
+
+Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
+  metrology::TurnScan scan;
+  double pixel_mm = 0;
+  scan.middle.resize(static_cast<std::size_t>(options.bands));
+  each_frame(options, printer, [&](const ScanFrame& frame) {
+    const auto middles = metrology::bright_middles(frame.image, options.bands);
+    for (std::size_t b = 0; b < middles.size(); ++b) scan.middle[b].push_back(middles[b]);
+    scan.angle_deg.push_back(frame.angle_deg);
+    scan.rows = frame.image.height;
+    pixel_mm = frame.pixel_mm;
+  });
+  const auto found = metrology::find_camera_axis(scan);
+  Finding finding;
+  const char* method = "first harmonic over the turn";
+  finding.value("axis_column", found.column, "px", method);
+  finding.value("tilt", found.tilt_deg, "deg", "line through the axes by row");
+  finding.value("wobble", found.wobble_px, "px", method);
+  finding.value("wobble_phase", found.phase_deg, "deg", method);
+  finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},
+                "mm", method);
+  if (found.column.sigma > wanted_axis_sigma_px) {
+    finding.fail_because("the axis is known to " + format_number(found.column.sigma, 3) + " px only, not " +
+                         format_number(wanted_axis_sigma_px));
+  }
+  return finding;
+}
+
+}  // namespace vam::capture_tool
