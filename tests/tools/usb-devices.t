@@ -2,6 +2,7 @@
 # USB devices through the real libusb, on simulated buses: the Tic stage, and the DLPC350 and DLPC900 light engines,
 # with what may be wrong with them in turn. All run beside each other: most of it is waiting.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
+ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes
 touch second
 tiny_print part.exr
 on() { umockdev-wrapper "$VAM_BUILD/usb_host" "$@"; }  # on DEVICE LOG PROGRAM...
