@@ -12,6 +12,8 @@ ASAN_OPTIONS=verify_asan_link_order=0; export ASAN_OPTIONS  # what is preloaded 
 number=0
 failures=0
 
+sanitized() { ldd "$(command -v vam-slice)" | grep -q libasan; }  # by AddressSanitizer, which changes calls and memory
+
 report() {  # report STATUS NAME: one TAP line
   number=$((number + 1))
   if [ "$1" -eq 0 ]; then echo "ok $number - $2"; else echo "not ok $number - $2"; failures=$((failures + 1)); fi

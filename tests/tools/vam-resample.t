@@ -67,7 +67,9 @@ vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5 <in.exr | t
 is "5,000 slices pass" "$(cut -d' ' -f1-3 sum)" "5000 64 16"
 is "tee leaves a whole stack" "$($exr sum teed.exr)" "$(cat sum)"
 echo "# peak memory: $few kB for 50 slices, $many kB for 5,000"
-holds "in constant memory, but for the parts' headers (4 kB each)" "$many - $few < 20000 + 4 * 5000"
+if sanitized; then echo '# AddressSanitizer keeps what is freed: not judged'; else
+  holds "in constant memory, but for the parts' headers (4 kB each)" "$many - $few < 20000 + 4 * 5000"
+fi
 
 # Wrong inputs
 head -c 20000 virtual.exr >cut.exr
