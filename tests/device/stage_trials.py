@@ -84,7 +84,7 @@ def trials_of_device_errors(count, folder, environment):
 
 def trials(cause, count, shim):
     with tempfile.TemporaryDirectory() as folder:
-        environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder, ASAN_OPTIONS="verify_asan_link_order=0")
+        environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder)
         if cause == "device error":
             return trials_of_device_errors(count, folder, environment)
         return trials_on_one_stage(cause, count, folder, environment)

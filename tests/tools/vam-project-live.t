@@ -3,7 +3,6 @@
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # SDL unloads drivers that have not freed all
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 screen="python3 $VAM_SOURCE/tests/device/screen.py screen/Xvfb_screen0"
 
