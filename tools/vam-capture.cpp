@@ -38,7 +38,8 @@ cli::Manual manual() {
        "The scans edges, response, flat, beam, axis and latency read frames that were captured while vam-project "
        "showed a test pattern, and what its --log says was on when (--flips), and write a calibration record; check "
        "says which records are in force. vam-calibrate(1) runs them all. For edges the whole vial must be in the "
-       "picture, of a camera where camera.distance_mm and camera.azimuth_deg say. The beam is seen on a bare sensor "
+       "picture, of a camera where camera.distance_mm and camera.azimuth_deg say, 60 to 91 degrees from the projector. "
+       "The beam is seen on a bare sensor "
        "that is moved along the light, one frame a plane, or, with --side, by the camera beside the vial while one row "
        "is lit: each column of its picture is another plane of the resin.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "

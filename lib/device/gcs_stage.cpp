@@ -184,7 +184,7 @@ void require_axis(GcsLink& link, const std::string& axis) {
   try {
     for (const auto& line : link.ask("SAI?").lines) axes.push_back(trimmed(line));
   } catch (const Error& error) {
-    if (error.fault == Fault::busy) return;
+    if (error.fault == Fault::busy) return;  // it does not know the question
     throw;
   }
   if (std::find(axes.begin(), axes.end(), axis) != axes.end()) return;

@@ -54,8 +54,9 @@ void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> s
             const std::function<void(const AngleSample&)>& report) {
   const double start_s = clock.now_s();
   AngleFit fit;
-  for (double next_s = start_s; !seconds || next_s < start_s + *seconds; next_s += period_s) {
-    clock.sleep_until(next_s);
+  const double samples = seconds ? std::ceil(*seconds / period_s - 1e-6) : 0;  // one at the start, none at the end
+  for (long n = 0; !seconds || static_cast<double>(n) < samples; ++n) {
+    clock.sleep_until(start_s + static_cast<double>(n) * period_s);
     const AngleSample now = to_angle_sample(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
     fit.add(now);
     report(now);

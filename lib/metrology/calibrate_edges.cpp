@@ -5,16 +5,19 @@
 #include <cmath>
 #include <string>
 
+#include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "metrology/curve_fit.hpp"
-#include "metrology/side_view.hpp"
+#include "metrology/sight_lines.hpp"
 #include "optics/vial.hpp"
 
 namespace vam::metrology {
 
 namespace {
 
-constexpr double window = 0.25;  // of R_e, to either side of an edge
+constexpr double window = 0.25;                        // of R_e, to either side of an edge
+constexpr double nearest_deg = 60, furthest_deg = 91;  // of the camera from the projector: beyond, an edge may be lost
 
 // Impact parameter of the outermost ray that meets resin: n_0 b may not exceed n R on either side of any interface.
 double grazing_mm(const optics::View& view) {
@@ -39,10 +42,10 @@ double column_of_impact_mm(const optics::View& view, double impact) {
   return 0.5 * (low + high);
 }
 
-// What SideView gets of a sheet is what a perfect camera would. What else there is, of lens and place, changes with how
-// the sheet lies, that is with the turn delta of its ray, which near grazing goes with the root of the depth below the
-// edge, and with where it lies. So its share is a polynomial in t, the turn that is missing to that at the edge plus
-// the depth as a part of R_e.
+// What SightLines gets of a sheet is what a perfect camera would. What else there is, of lens and place, changes with
+// how the sheet lies, that is with the turn delta of its ray, which near grazing goes with the root of the depth below
+// the edge, and with where it lies. So its share is a polynomial in t, the turn that is missing to that at the edge
+// plus the depth as a part of R_e.
 constexpr std::size_t powers = 3;
 using Terms = std::array<double, powers>;
 
@@ -51,7 +54,7 @@ using Terms = std::array<double, powers>;
 class EdgeShape {
  public:
   // sign: -1 at the low edge.
-  EdgeShape(const model::Printer& printer, const SideView& side, double edge_mm, double sign) : integral_{Terms{}} {
+  EdgeShape(const model::Printer& printer, const SightLines& side, double edge_mm, double sign) : integral_{Terms{}} {
     const optics::View view = optics::projector_view(printer);
     const double most_rad = std::abs(optics::chief_ray(view, edge_mm * (1 - 1e-9)).delta_rad);
     for (std::size_t i = 1; i <= cells; ++i) {
@@ -84,7 +87,7 @@ class EdgeShape {
     const double r = 1 - static_cast<double>(i) / static_cast<double>(cells);
     return 1 - r * r * (1 - low);
   }
-  static constexpr std::size_t cells = 300;
+  static constexpr std::size_t cells = 900;
   static constexpr double low = 1 - 2 * window;
   std::vector<Terms> integral_;
 };
@@ -95,7 +98,7 @@ struct EdgeShapes {
 
 EdgeShapes edge_shapes(const model::Printer& printer) {
   const optics::View view = optics::projector_view(printer);
-  const SideView side(printer);
+  const SightLines side(printer);
   const double edge_mm = column_of_impact_mm(view, grazing_mm(view));
   return {{printer, side, edge_mm, -1}, {printer, side, edge_mm, 1}};
 }
@@ -284,6 +287,12 @@ std::vector<double> band_means(const Image& frame, int bands) {
 }
 
 VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
+  const double from_light_deg = std::acos(std::cos(printer.camera.azimuth_deg * rad_per_deg)) * deg_per_rad;
+  if (from_light_deg < nearest_deg - 1e-9 || from_light_deg > furthest_deg + 1e-9) {
+    throw Error{Fault::data, "sweep: the camera looks at " + format_number(printer.camera.azimuth_deg) +
+                                 " degrees to the light; edges are told from " + format_number(nearest_deg) + " to " +
+                                 format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
+  }
   std::vector<std::size_t> seen;
   std::vector<Steepest> first;
   for (std::size_t b = 0; b < scan.signal.size() && scan.column.size() >= 2 * count; ++b) {

@@ -33,9 +33,10 @@ struct VialEdges {
 };
 
 /// Fits both edges of every band with what the optics lets a camera at its place see of a sheet of light near grazing
-/// incidence (SideView), blurred by the line's width and a Gaussian, times a share at either edge. `printer` gives
+/// incidence (SightLines), blurred by the line's width and a Gaussian, times a share at either edge. `printer` gives
 /// projector, wall, indices, absorption and the camera's distance and azimuth; its vial radius and axis_column are not
-/// used. Throws Fault::data: no band shows two edges, or the line's columns do not reach beyond both.
+/// used. Throws Fault::data: a camera not 60 to 91 degrees from the projector, no band shows two edges, or the line's
+/// columns do not reach beyond both.
 [[nodiscard]] VialEdges find_edges(const SweepScan& scan, const model::Printer& printer);
 
 }  // namespace vam::metrology

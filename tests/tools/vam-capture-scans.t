@@ -25,6 +25,9 @@ fails 65 'at least 32 are needed' vam-capture beam --from ramp --side
 fails 65 'looks at 45 degrees to the light' vam-capture beam --from beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-capture check
 fails 65 'are not 16 levels' vam-capture response --from ramp --steps 16
+for azimuth in 0 -45 100 180; do
+  fails 65 "looks at $azimuth degrees to the light" vam-capture edges --from sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
+done
 fails 65 'no height shows light' vam-capture edges --from flat --pitch 4 --width 2
 fails 65 '8 rows; at least 16' vam-capture beam --from ramp --pixel 0.0035 --step 1.27
 

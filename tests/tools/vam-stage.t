@@ -69,7 +69,7 @@ mkdir plain; chmod 777 plain; chmod 755 .
 cat >twice.sh <<'SH'
 cd plain; VAM_LOCK_DIR=$PWD; export VAM_LOCK_DIR
 vam-sim-stage --link line --die-with-parent >path &
-until [ -s path ]; do sleep 0.01; done
+for try in 1 2 3 4 5 6 7 8 9; do [ -s path ] || sleep 1; done
 for user in first second; do LD_PRELOAD=$1 vam-stage status --device "gcs:$PWD/line" >$user || exit; done
 kill $!
 SH

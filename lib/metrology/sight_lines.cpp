@@ -1,4 +1,4 @@
-#include "metrology/side_view.hpp"
+#include "metrology/sight_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 namespace vam::metrology {
 
 namespace {
-constexpr int columns = 300;
+constexpr int columns = 1200;
 }
 
-SideView::SideView(const model::Printer& printer) : absorption_per_mm_(printer.resin.absorption_per_mm) {
+SightLines::SightLines(const model::Printer& printer) : absorption_per_mm_(printer.resin.absorption_per_mm) {
   const optics::View view = optics::camera_view(printer);
   radius_mm_ = optics::resin_radius_mm(view);
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
@@ -28,7 +28,7 @@ SideView::SideView(const model::Printer& printer) : absorption_per_mm_(printer.r
   }
 }
 
-double SideView::seen(const optics::ChiefRay& ray) const {
+double SightLines::seen(const optics::ChiefRay& ray) const {
   if (!ray.hits) return 0;
   const double half_mm = std::sqrt(radius_mm_ * radius_mm_ - ray.x_v_mm * ray.x_v_mm);
   const double cosine = std::cos(ray.delta_rad);

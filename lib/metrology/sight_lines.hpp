@@ -10,10 +10,10 @@ namespace vam::metrology {
 
 /// All chief rays of the camera through the resin. Near grazing they cross each other, and so many of them that pass
 /// one place make it bright: what the camera gets of a sheet has a kink where the sheet leaves such a place.
-class SideView {
+class SightLines {
  public:
   /// Throws Fault::data where lens, window and vial cannot stand like that.
-  explicit SideView(const model::Printer& printer);
+  explicit SightLines(const model::Printer& printer);
   /// Sum over the picture's columns of what shines on their line of sight from the sheet that the projector's `ray`
   /// stands for; a ray that goes along the sheet of a whole diameter would give 1. The resin's absorption weakens the
   /// sheet on its way. 0 for a ray that passes beside the resin.
