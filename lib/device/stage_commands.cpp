@@ -1,5 +1,6 @@
 // The short commands: home, move, stop, follow, identify, status.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "base/error.hpp"

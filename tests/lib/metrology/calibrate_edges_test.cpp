@@ -57,7 +57,7 @@ TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, ra
       truth.wall_mm = 1;
       truth.glass_index = 1.47;
     }
-    if (run % 2 == 1) truth.lens_mm.reset();  // telecentric
+    if (run % 2 == 1) truth.lens_mm.reset();        // telecentric
     if (run % 4 == 2) truth.camera_rad *= 5.0 / 6;  // 75 degrees from the projector
     if (run % 8 > 5) truth.camera_rad *= -1;
     truth.axis_column = 490 + 40 * part(random);
