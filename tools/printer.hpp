@@ -4,8 +4,8 @@
 #include <string>
 
 #include "cli/common.hpp"
-#include "io/printer_file.hpp"
-#include "io/stream.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::tool {
 

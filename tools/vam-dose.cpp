@@ -1,8 +1,8 @@
 // vam-dose: the dose that sinograms leave in the resin.
-#include "io/exr_stack.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
-#include "io/vdb.hpp"
+#include "io/exr/stack.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
 #include "printer.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/options.hpp"

@@ -3,10 +3,10 @@
 #include <string>
 
 #include "base/log.hpp"
-#include "device/interrupt.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
-#include "optimize/volume.hpp"
+#include "device/os/interrupt.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
+#include "optimize/run/volume.hpp"
 #include "printer.hpp"
 #include "vam-optimize/checkpoint.hpp"
 #include "vam-optimize/inputs.hpp"

@@ -5,9 +5,9 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "io/exr_stack.hpp"
-#include "io/stack_batches.hpp"
-#include "io/stream.hpp"
+#include "io/exr/stack.hpp"
+#include "io/exr/stack_batches.hpp"
+#include "io/stream/stream.hpp"
 #include "optics/resample_stack.hpp"
 #include "printer.hpp"
 #include "vam-resample/options.hpp"

@@ -6,13 +6,13 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/exr_stack.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
-#include "io/vdb.hpp"
-#include "metrology/score.hpp"
+#include "io/exr/stack.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
 #include "printer.hpp"
+#include "score/score.hpp"
 #include "vam-score/inputs.hpp"
 #include "vam-score/options.hpp"
 #include "vam-score/print.hpp"
@@ -23,10 +23,10 @@ using namespace vam;
 using score_tool::Inputs;
 using score_tool::Options;
 
-metrology::Score score(const Inputs& in, const metrology::ScoreOptions& how) {
+score::Score score(const Inputs& in, const score::ScoreOptions& how) {
   constexpr int slab = 16;
   const model::Grid& grid = in.target().grid();
-  metrology::Score result(how, grid.nx, grid.ny);
+  score::Score result(how, grid.nx, grid.ny);
   std::vector<float> dose(grid.slice_size() * slab);
   std::vector<float> target(grid.slice_size() * slab);
   Progress progress("scoring", grid.nz);
@@ -41,7 +41,7 @@ metrology::Score score(const Inputs& in, const metrology::ScoreOptions& how) {
 }
 
 /// A dose in mJ/cm3 knows the resin's critical dose, and how long the print takes.
-void settle_exposure(metrology::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
+void settle_exposure(score::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
   how.circle = model::writable_circle(in.target().grid(), printer);
   if (in.dose().units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
@@ -49,7 +49,7 @@ void settle_exposure(metrology::ScoreOptions& how, const Inputs& in, const model
   how.exposure = {printer, turns == in.dose().metadata.end() ? 1.0 : std::stod(turns->second)};
 }
 
-void add_light(metrology::Score& result, const std::string& sinogram) {
+void add_light(score::Score& result, const std::string& sinogram) {
   io::StackReader light(sinogram);
   Image image;
   for (model::ImageInfo about; light.next(image, about);) result.add_projection(image.values);
@@ -65,13 +65,13 @@ void refuse_same_files(const Options& options) {
 
 void run(Options& options) {
   std::vector<model::Condition> conditions;
-  if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::Score::names());
+  if (!options.require.empty()) conditions = model::parse_conditions(options.require, score::Score::names());
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
   refuse_same_files(options);
   const Inputs in = read(options);
   settle_exposure(options.how, in, printer);
-  metrology::Score result = score(in, options.how);
+  score::Score result = score(in, options.how);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.print.empty()) {

@@ -7,20 +7,20 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
-#include "device/interrupt.hpp"
-#include "device/lines.hpp"
-#include "device/sim_gv_camera.hpp"
-#include "device/sim_options.hpp"
-#include "io/any_frames.hpp"
+#include "device/os/interrupt.hpp"
+#include "device/port/lines.hpp"
+#include "io/picture/any_frames.hpp"
 #include "optics/patterns.hpp"
 #include "printer.hpp"
+#include "sim/cameras/gv_camera.hpp"
+#include "sim/controllers/options.hpp"
 
 namespace {
 
 using namespace vam;
 
 struct Options {
-  device::SimCameraSettings camera;
+  sim::SimCameraSettings camera;
   std::string address = "127.0.0.1";
   std::string serial = "VAM1";
   std::string part;
@@ -166,17 +166,17 @@ void run(Options& o) {
   if (o.with_parent) device::end_with_parent();
   auto& camera = o.camera;
   camera.bench.printer = tool::load_printer(o.printer);
-  if (!o.part.empty()) camera.bench.bodies = device::parse_bodies(o.part);
+  if (!o.part.empty()) camera.bench.bodies = sim::parse_bodies(o.part);
   camera.sources.pictures = pictures(o, camera.bench.printer.projector);
   camera.sources.draw = [&camera](const Json& event) {
     return pictures(pattern_of(event), camera.bench.printer.projector);
   };
   camera.lag_s = 1e-3 * o.lag_ms;
-  camera.lose = device::parse_frames(o.lose);
-  camera.cut = device::parse_frames(o.cut);
+  camera.lose = sim::parse_frames(o.lose);
+  camera.cut = sim::parse_frames(o.cut);
   camera.vanish = o.vanish.value_or(-1);
   camera.shrink = o.shrink.value_or(-1);
-  const device::SimGvCamera server(camera, o.address, o.serial, device::file_sim_log(o.log));
+  const sim::SimGvCamera server(camera, o.address, o.serial, sim::file_sim_log(o.log));
   device::print_line(o.address);
   for (;;) device::real_clock().sleep_until(device::real_clock().now_s() + 3600);
 }

@@ -6,19 +6,19 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
-#include "device/interrupt.hpp"
-#include "device/lines.hpp"
-#include "device/pty_host.hpp"
-#include "device/realtime.hpp"
-#include "device/sim_grbl.hpp"
-#include "device/sim_options.hpp"
+#include "device/os/interrupt.hpp"
+#include "device/os/realtime.hpp"
+#include "device/port/lines.hpp"
+#include "sim/controllers/grbl.hpp"
+#include "sim/controllers/options.hpp"
+#include "sim/controllers/pty_host.hpp"
 
 namespace {
 
 using namespace vam;
 
 struct Options {
-  device::SimGcsSettings stage;
+  sim::SimGcsSettings stage;
   double latency_ms = 0.5;
   double jitter_ms = 0;
   int seed = 1;
@@ -120,14 +120,14 @@ void run(Options& options) {
   options.stage.latency_s = 1e-3 * options.latency_ms;
   options.stage.jitter_s = 1e-3 * options.jitter_ms;
   options.stage.seed = static_cast<std::uint64_t>(options.seed);
-  for (const auto& fault : options.faults) options.stage.faults.push_back(device::parse_sim_fault(fault));
-  const auto make = options.protocol == "grbl" ? device::make_sim_grbl : device::make_sim_gcs;
-  const auto stage = make(options.stage, device::real_clock().now_s(), device::file_sim_log(options.log));
-  device::Pty pty;
+  for (const auto& fault : options.faults) options.stage.faults.push_back(sim::parse_sim_fault(fault));
+  const auto make = options.protocol == "grbl" ? sim::make_sim_grbl : sim::make_sim_gcs;
+  const auto stage = make(options.stage, device::real_clock().now_s(), sim::file_sim_log(options.log));
+  sim::Pty pty;
   const Link link(options.link, pty.path());
   device::print_line(pty.path());
   device::hurry(device::Urgency::driver);  // a controller has nothing else to do
-  device::serve(pty, *stage, options.baud);
+  sim::serve(pty, *stage, options.baud);
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "io/exr_stack.hpp"
-#include "io/stream.hpp"
-#include "io/vdb.hpp"
+#include "io/exr/stack.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
 #include "printer.hpp"
 #include "tomo/fbp.hpp"
 #include "tomo/projections.hpp"
@@ -62,14 +62,14 @@ void run(const cli::App& app, const Options& options) {
 
   float raise = 0;
   if (options.negative == "offset") {
-    for_each_pass(volume, spec, [&](const std::vector<tomo::Slab>& slabs, int) {
-      for (const tomo::Slab& slab : slabs) raise = std::max(raise, -tomo::lowest(slab));
+    for_each_pass(volume, spec, [&](const std::vector<Slab>& slabs, int) {
+      for (const Slab& slab : slabs) raise = std::max(raise, -tomo::lowest(slab));
     });
   }
   std::future<void> writing;
-  for_each_pass(volume, spec, [&](std::vector<tomo::Slab>& slabs, int count) {
+  for_each_pass(volume, spec, [&](std::vector<Slab>& slabs, int count) {
     if (options.negative != "keep") {
-      for (tomo::Slab& slab : slabs) tomo::raise_and_clip(slab, raise, 0);
+      for (Slab& slab : slabs) tomo::raise_and_clip(slab, raise, 0);
     }
     std::vector<Image> images = sinogram_tool::unpacked(slabs, count);
     if (writing.valid()) writing.get();

@@ -6,12 +6,13 @@
 
 #include "base/error.hpp"
 #include "cli/app.hpp"
-#include "device/event_log.hpp"
-#include "device/interrupt.hpp"
-#include "device/lines.hpp"
-#include "device/realtime.hpp"
-#include "device/serial_port.hpp"
-#include "device/spin.hpp"
+#include "device/open/stage.hpp"
+#include "device/os/event_log.hpp"
+#include "device/os/interrupt.hpp"
+#include "device/os/realtime.hpp"
+#include "device/port/lines.hpp"
+#include "device/port/serial_port.hpp"
+#include "device/stage/spin.hpp"
 
 namespace {
 

@@ -2,11 +2,11 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "io/file_type.hpp"
-#include "io/nrrd.hpp"
-#include "io/picture.hpp"
-#include "io/view.hpp"
+#include "io/picture/picture.hpp"
+#include "io/stream/file_type.hpp"
+#include "io/vdb/nrrd.hpp"
 #include "model/circle.hpp"
+#include "plot/view.hpp"
 #include "printer.hpp"
 #include "vam-view/options.hpp"
 
@@ -15,9 +15,9 @@ namespace {
 using namespace vam;
 using view_tool::Options;
 
-void write_figure(const Options& options, const io::ImageFigure& figure, const io::PictureText& text) {
-  if (!options.plain) return io::write_png(options.output, io::draw(figure), text);
-  io::write_png(options.output, io::coloured(figure.panels.front().values, figure.colours, figure.low, figure.high),
+void write_figure(const Options& options, const plot::ImageFigure& figure, const io::PictureText& text) {
+  if (!options.plain) return io::write_png(options.output, plot::draw(figure), text);
+  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.colours, figure.low, figure.high),
                 text);
 }
 
@@ -33,11 +33,11 @@ void show_volume(const Options& options, const io::PictureText& text) {
     const model::Printer printer = tool::load_printer(options.printer);
     const auto circle = model::writable_circle(volume.grid(), printer);
     return io::write_png(options.output,
-                         io::draw(io::dose_histogram(volume, target_for(options), circle, options.view)), text);
+                         plot::draw(plot::dose_histogram(volume, target_for(options), circle, options.view)), text);
   }
-  if (options.target.empty()) return write_figure(options, io::view_volume(volume, nullptr, options.view), text);
+  if (options.target.empty()) return write_figure(options, plot::view_volume(volume, nullptr, options.view), text);
   const io::SparseVolume target = target_for(options);
-  write_figure(options, io::view_volume(volume, &target, options.view), text);
+  write_figure(options, plot::view_volume(volume, &target, options.view), text);
 }
 
 void show_images(const Options& options, io::FileType type, const io::PictureText& text) {
@@ -50,16 +50,16 @@ void show_images(const Options& options, io::FileType type, const io::PictureTex
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
-  write_figure(options, io::view_images(*images, options.view), text);
+  write_figure(options, plot::view_images(*images, options.view), text);
 }
 
 void run(const cli::App& app, Options& options) {
   if (tool::print_printer(options.printer, options.output)) return;
   check(options);
   options.view.name = options.input == "-" ? "stdin" : options.input.substr(options.input.find_last_of('/') + 1);
-  options.view.plane = options.plane == "axial"     ? io::Plane::axial
-                       : options.plane == "coronal" ? io::Plane::coronal
-                                                    : io::Plane::sagittal;
+  options.view.plane = options.plane == "axial"     ? plot::Plane::axial
+                       : options.plane == "coronal" ? plot::Plane::coronal
+                                                    : plot::Plane::sagittal;
   const io::PictureText text{{"Comment", app.history()}};
   const io::FileType type = io::file_type(options.input);
   if (type == io::FileType::volume) return show_volume(options, text);

@@ -14,7 +14,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "cli/declaration.hpp"
-#include "cli/values.hpp"
+#include "cli/private/values.hpp"
 
 namespace vam::cli {
 

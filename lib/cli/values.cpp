@@ -1,4 +1,4 @@
-#include "cli/values.hpp"
+#include "cli/private/values.hpp"
 
 #include <limits>
 #include <optional>

@@ -7,7 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "optics/taps.hpp"
+#include "optics/private/taps.hpp"
 
 namespace vam::optics {
 

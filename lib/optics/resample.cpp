@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
-#include "optics/resample_kernel.hpp"
+#include "optics/private/resample_kernel.hpp"
 
 namespace vam::optics {
 

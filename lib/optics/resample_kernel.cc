@@ -1,8 +1,10 @@
-#include "optics/resample_kernel.hpp"
+#include "optics/private/resample_kernel.hpp"
 
-#include "optics/kernel_vector.hpp"
+#include "base/kernel_vector.hpp"
 
 namespace vam::optics::VAM_SIMD {
+
+using namespace vam::VAM_SIMD;
 
 namespace {
 constexpr int vectors = resample_lanes / vector_floats;

@@ -1,4 +1,4 @@
-#include "optics/taps.hpp"
+#include "optics/private/taps.hpp"
 
 #include <algorithm>
 #include <cmath>

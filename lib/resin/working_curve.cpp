@@ -6,8 +6,8 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/stats/student.hpp"
 #include "base/text.hpp"
-#include "resin/student.hpp"
 
 namespace vam::resin {
 
@@ -90,7 +90,7 @@ void judge_repeats(const Groups& groups, double residual_squares, WorkingCurve& 
   if (pure <= 0) return;
   curve.repeat_sd_um = std::sqrt(squares / pure);
   const double excess = std::fmax(0.0, residual_squares - squares);
-  if (squares > 0) curve.lack_of_fit_p = f_tail(excess / lack / (squares / pure), lack, pure);
+  if (squares > 0) curve.lack_of_fit_p = stats::f_tail(excess / lack / (squares / pure), lack, pure);
 }
 
 void flag_outliers(std::span<const CuredSample> samples, const Line& line, double residual_squares,
@@ -98,7 +98,7 @@ void flag_outliers(std::span<const CuredSample> samples, const Line& line, doubl
   const auto count = static_cast<double>(samples.size());
   curve.outlier.assign(samples.size(), false);
   if (samples.size() < 4 || residual_squares <= 0) return;
-  const double bound = student_quantile(0.05 / count, count - 3);
+  const double bound = stats::student_quantile(0.05 / count, count - 3);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double dx = std::log10(samples[i].exposure_mj_cm2) - line.mean_x;
     const double free = 1 - 1 / count - dx * dx / line.spread;  // 1 - leverage
@@ -130,7 +130,7 @@ WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double conf
     total_squares += (sample.thickness_um - line.mean_y) * (sample.thickness_um - line.mean_y);
   }
   line.variance = residual_squares / (count - 2);
-  const double t = student_quantile(1 - confidence, count - 2);
+  const double t = stats::student_quantile(1 - confidence, count - 2);
   if (!(line.slope > 0)) {
     throw Error{Fault::data, "working curve: the thickness falls as the exposure rises (" +
                                  format_number(line.slope, 3) + " um per decade); check the order of the columns"};

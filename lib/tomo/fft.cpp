@@ -1,4 +1,4 @@
-#include "tomo/fft.hpp"
+#include "tomo/private/fft.hpp"
 
 #include <fftw3.h>
 
@@ -6,7 +6,7 @@
 #include <new>
 
 #include "base/error.hpp"
-#include "tomo/slab.hpp"
+#include "base/slab.hpp"
 
 namespace vam::tomo {
 

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "tomo/fft.hpp"
+#include "tomo/private/fft.hpp"
 
 namespace vam::tomo {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tomo/slab.hpp"
+#include "base/slab.hpp"
 
 namespace vam::tomo {
 

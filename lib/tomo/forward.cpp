@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "tomo/radon_plan.hpp"
+#include "tomo/private/radon_plan.hpp"
 
 namespace vam::tomo {
 

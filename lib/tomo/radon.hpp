@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/simd.hpp"
-#include "tomo/slab.hpp"
+#include "base/slab.hpp"
 
 namespace vam::tomo {
 

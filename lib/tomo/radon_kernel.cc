@@ -1,6 +1,6 @@
 // Compiled once per instruction set (base/simd.hpp). A call builds a table of weights for two outputs and eight rows in
 // one vector, then applies it to up to four slabs: no branch, no gather, no index arithmetic in the inner loop.
-#include "tomo/radon_kernel.hpp"
+#include "tomo/private/radon_kernel.hpp"
 
 namespace vam::tomo::VAM_SIMD {
 

@@ -1,4 +1,4 @@
-#include "tomo/radon_plan.hpp"
+#include "tomo/private/radon_plan.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "resin/slice_correction.hpp"
+#include "resin/curethrough/slice_correction.hpp"
 
 namespace {
 

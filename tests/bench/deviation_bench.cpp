@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "lib/meshes.hpp"
-#include "metrology/deviation.hpp"
-#include "solid/align.hpp"
+#include "metrology/compare/deviation.hpp"
+#include "solid/mesh/align.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_stack.hpp"
-#include "io/vdb.hpp"
+#include "io/exr/stack.hpp"
+#include "io/vdb/vdb.hpp"
 
 namespace {
 

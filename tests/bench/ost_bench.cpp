@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "metrology/ost.hpp"
+#include "metrology/ost/ost.hpp"
 
 namespace {
 

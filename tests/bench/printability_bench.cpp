@@ -44,7 +44,7 @@ void print(const std::string& problem, const Budget& budget, const model::DoseMe
 
 void target(const std::string& method) {
   const int size = 512;
-  const auto slice = oracle::resolution_target(size);
+  const auto slice = vam::oracle::resolution_target(size);
   for (const auto& budget : budgets()) {
     if (!method.empty() && method != budget.method) continue;
     model::DoseMetrics m;
@@ -73,7 +73,7 @@ std::vector<float> target_in_place(const std::vector<float>& target, int size, i
 /// 64 different slices of one pass.
 void stack() {
   const int size = 512;
-  const auto target = oracle::resolution_target(size);
+  const auto target = vam::oracle::resolution_target(size);
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 64; ++k) slices.push_back(target_in_place(target, size, k));
   std::vector<model::DoseMetrics> m;
@@ -87,12 +87,12 @@ void stack() {
 void osmo() {
   const int size = 315;
   double time = 0;
-  for (int first = 0; first < size; first += optimize::slices_per_pass) {
+  for (int first = 0; first < size; first += slices_per_pass) {
     std::vector<std::vector<float>> slices;
-    for (int k = first; k < std::min(size, first + optimize::slices_per_pass); ++k) {
-      slices.push_back(oracle::gyroid(size, 3, 0.02 * k, 0.4));
+    for (int k = first; k < std::min(size, first + slices_per_pass); ++k) {
+      slices.push_back(vam::oracle::gyroid(size, 3, 0.02 * k, 0.4));
     }
-    const optimize::ParallelOperator light(parts::turn(size, 360));
+    const light::ParallelOperator light(parts::turn(size, 360));
     const auto all = parts::stacked(slices);
     const auto problem =
         optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, parts::circle(size), {});

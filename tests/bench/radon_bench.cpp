@@ -11,6 +11,7 @@
 
 #include "tomo/radon.hpp"
 
+using namespace vam;
 using namespace vam::tomo;
 
 namespace {

@@ -5,14 +5,15 @@
 #include <numbers>
 
 #include "base/parallel.hpp"
+#include "light/trace.hpp"
 #include "model/printer.hpp"
-#include "optics/trace.hpp"
 
 namespace {
 
 void trace_slices(benchmark::State& state) {
   using namespace vam;
   using namespace vam::optics;
+  using namespace vam::light;
   set_threads(static_cast<int>(state.range(0)));
   const int slices = static_cast<int>(state.range(1));
   const model::Printer printer;
@@ -36,6 +37,7 @@ BENCHMARK(trace_slices)->ArgsProduct({{1, 2}, {16, 32, 64}})->Unit(benchmark::kM
 void trace_table(benchmark::State& state) {
   using namespace vam;
   using namespace vam::optics;
+  using namespace vam::light;
   const model::Printer printer;
   TraceSetup setup;
   setup.view = projector_view(printer);

@@ -3,9 +3,9 @@
 
 #include "oracle/meshes.hpp"
 #include "oracle/polygon_soup.hpp"
-#include "solid/placement.hpp"
-#include "solid/repair.hpp"
-#include "solid/voxelize.hpp"
+#include "solid/mesh/repair.hpp"
+#include "solid/voxel/placement.hpp"
+#include "solid/voxel/voxelize.hpp"
 
 using namespace vam;
 
@@ -15,7 +15,7 @@ constexpr int bands = 501;  // 4 * 501 * 500 = 1,002,000 triangles
 const model::Grid grid = model::centred_grid(512, 512, 512, 1, -255.5);
 
 const model::TriangleSoup& stl() {
-  static const model::TriangleSoup mesh = oracle::unwelded(oracle::lumpy_sphere(225, bands, 0.08));
+  static const model::TriangleSoup mesh = vam::oracle::unwelded(vam::oracle::lumpy_sphere(225, bands, 0.08));
   return mesh;
 }
 
@@ -40,7 +40,7 @@ BENCHMARK(repair)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // What the library would take for a part of the work.
 void cgal_polygon_soup(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(oracle::oriented_by_cgal(stl()));
+  for (auto _ : state) benchmark::DoNotOptimize(vam::oracle::oriented_by_cgal(stl()));
 }
 BENCHMARK(cgal_polygon_soup)->Unit(benchmark::kMillisecond)->UseRealTime();
 

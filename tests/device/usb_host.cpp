@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "device/address.hpp"
-#include "device/guardian_actions.hpp"
-#include "device/sim_dlp.hpp"
-#include "device/sim_tic.hpp"
+#include "device/os/address.hpp"
+#include "device/safety/guardian_actions.hpp"
+#include "sim/controllers/dlp.hpp"
+#include "sim/controllers/private/tic.hpp"
 
 namespace {
 
@@ -194,16 +194,16 @@ std::string descriptors(const std::string& ids, int interface_class) {
          bytes_of({7, 5, 0x81, 3, 64, 0, 1}) + bytes_of({7, 5, 0x01, 3, 64, 0, 1});
 }
 
-std::unique_ptr<UsbLink> simulate(const vam::device::Address& address, const vam::device::SimLog& log) {
-  if (address.scheme == "tic") return vam::device::make_sim_tic({}, vam::device::real_clock(), log);
-  vam::device::SimDlpSettings settings;
+std::unique_ptr<UsbLink> simulate(const vam::device::Address& address, const vam::sim::SimLog& log) {
+  if (address.scheme == "tic") return vam::sim::make_sim_tic({}, vam::device::real_clock(), log);
+  vam::sim::SimDlpSettings settings;
   settings.dlpc900 = address.scheme == "dlpc900";
   settings.current = address.integer("current", 0, 255).value_or(settings.current);
   settings.stuck_grey = address.word("stuck_grey", "") == "yes";
   settings.slow_reads = address.integer("slow_reads", 0, 1000).value_or(0);
   settings.fault = address.word("fault", "");
   settings.fault_after = address.integer("fault_after", 0, 1000).value_or(0);
-  return vam::device::make_sim_dlp(settings, log);
+  return vam::sim::make_sim_dlp(settings, log);
 }
 
 void ended(GPid, gint status, gpointer user) {
@@ -225,7 +225,7 @@ int main(int argc, char** argv) {
   const auto address = vam::device::parse_address(argv[1], {"tic", "dlpc350", "dlpc900"});
   address.allow({"current", "stuck_grey", "slow_reads", "fault", "fault_after"});
   Host host;
-  host.link = simulate(address, vam::device::file_sim_log(argv[2]));
+  host.link = simulate(address, vam::sim::file_sim_log(argv[2]));
   const std::string ids = host.link->about()["usb_id"];
   host.descriptors = descriptors(ids, address.scheme == "tic" ? 255 : 3);
 

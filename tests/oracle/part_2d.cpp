@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace oracle {
+namespace vam::oracle {
 
 namespace {
 constexpr int samples = 8;
@@ -123,4 +123,4 @@ std::vector<float> resolution_target(int size) {
   return image;
 }
 
-}  // namespace oracle
+}  // namespace vam::oracle

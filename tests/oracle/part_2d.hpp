@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-namespace oracle {
+namespace vam::oracle {
 
 /// size x size coverage 0...1, row-major, of what inside(x, y) says, x and y in pixels from the centre; 8 x 8 samples a
 /// pixel. Nothing is left outside a circle of radius 0.48 size.
@@ -22,4 +22,4 @@ std::vector<float> wheel(int size);
 /// Bars and gaps of 3...40 px (for size 512, smaller in proportion, never below 2), rings and strokes; binary.
 std::vector<float> resolution_target(int size);
 
-}  // namespace oracle
+}  // namespace vam::oracle

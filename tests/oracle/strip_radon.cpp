@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace oracle {
+namespace vam::oracle {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::vector<double> StripRadon::adjoint(const std::vector<double>& sinogram) con
   return image;
 }
 
-}  // namespace oracle
+}  // namespace vam::oracle

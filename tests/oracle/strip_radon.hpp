@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace oracle {
+namespace vam::oracle {
 
 /// Area of the unit square centred on (x, y) that lies in |X cos + Y sin - t| <= 1/2.
 double strip_area(double x, double y, double theta_rad, double t);
@@ -20,4 +20,4 @@ struct StripRadon {
   [[nodiscard]] std::vector<double> adjoint(const std::vector<double>& sinogram) const;
 };
 
-}  // namespace oracle
+}  // namespace vam::oracle

@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "lib/metrology/synthetic_views.hpp"
 
 int main(int argc, char** argv) try {

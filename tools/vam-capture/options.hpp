@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/common.hpp"
-#include "device/camera.hpp"
-#include "io/exr_stack.hpp"
+#include "device/camera/camera.hpp"
+#include "io/exr/stack.hpp"
 
 namespace vam::capture_tool {
 

@@ -6,8 +6,8 @@
 #include "base/log.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
-#include "io/calibration_record.hpp"
-#include "io/stream.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "io/stream/stream.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {
@@ -74,7 +74,7 @@ std::string stranger(const Json& record, const Json& devices) {
 
 }  // namespace
 
-void Finding::value(const std::string& name, const metrology::Measured& measured, const std::string& unit,
+void Finding::value(const std::string& name, const stats::Measured& measured, const std::string& unit,
                     const std::string& method) {
   if (measured.n == 0) return;
   values_[name] = {

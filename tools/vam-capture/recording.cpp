@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "base/error.hpp"
-#include "io/capture_folder.hpp"
-#include "io/exr_stack.hpp"
-#include "io/picture.hpp"
+#include "io/exr/stack.hpp"
+#include "io/picture/capture_folder.hpp"
+#include "io/picture/picture.hpp"
 
 namespace vam::capture_tool {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "device/camera.hpp"
+#include "device/camera/camera.hpp"
 
 namespace vam::capture_tool {
 

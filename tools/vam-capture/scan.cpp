@@ -4,8 +4,8 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "io/calibration_record.hpp"
-#include "io/printer_file.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "io/settings/printer_file.hpp"
 
 namespace vam::capture_tool {
 

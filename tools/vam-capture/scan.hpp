@@ -7,8 +7,8 @@
 
 #include "base/image.hpp"
 #include "base/json.hpp"
+#include "base/stats/measured.hpp"
 #include "cli/common.hpp"
-#include "metrology/measured.hpp"
 #include "model/printer.hpp"
 
 namespace vam::capture_tool {
@@ -77,7 +77,7 @@ inline constexpr double wanted_axis_sigma_px = 0.1;  // of an axis, be it the vi
 /// What a scan found.
 class Finding {
  public:
-  void value(const std::string& name, const metrology::Measured& measured, const std::string& unit,
+  void value(const std::string& name, const stats::Measured& measured, const std::string& unit,
              const std::string& method);
   /// The result is used, and the reason told.
   void warn_because(const std::string& reason);

@@ -1,6 +1,6 @@
 // vam-capture axis: the rotation axis in the camera's frames, over a turn.
 #include "base/text.hpp"
-#include "metrology/calibrate_axis.hpp"
+#include "metrology/calibrate/axis.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

@@ -1,9 +1,9 @@
 // vam-capture beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/view_source.hpp"
-#include "metrology/calibrate_beam.hpp"
-#include "metrology/calibrate_flat.hpp"
+#include "io/picture/view_source.hpp"
+#include "metrology/calibrate/beam.hpp"
+#include "metrology/calibrate/flat.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

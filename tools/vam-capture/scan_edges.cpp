@@ -3,8 +3,8 @@
 #include <map>
 
 #include "base/text.hpp"
-#include "io/calibration_record.hpp"
-#include "metrology/calibrate_edges.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "metrology/calibrate/edges.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

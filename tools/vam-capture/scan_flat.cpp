@@ -1,9 +1,9 @@
 // vam-capture flat: frames of an even scene become the camera's flat field.
 #include <cmath>
 
-#include "io/exr_stack.hpp"
-#include "io/view_source.hpp"
-#include "metrology/calibrate_flat.hpp"
+#include "io/exr/stack.hpp"
+#include "io/picture/view_source.hpp"
+#include "metrology/calibrate/flat.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

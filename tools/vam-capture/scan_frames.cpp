@@ -3,8 +3,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/stream.hpp"
-#include "io/view_source.hpp"
+#include "io/picture/view_source.hpp"
+#include "io/stream/stream.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

@@ -1,7 +1,7 @@
 // vam-capture latency: from a flip to its light, from a blinking screen.
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "metrology/calibrate_latency.hpp"
+#include "metrology/calibrate/latency.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

@@ -5,9 +5,9 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/stream.hpp"
-#include "io/view_source.hpp"
-#include "metrology/calibrate_response.hpp"
+#include "io/picture/view_source.hpp"
+#include "io/stream/stream.hpp"
+#include "metrology/calibrate/response.hpp"
 #include "vam-capture/scan.hpp"
 
 namespace vam::capture_tool {

@@ -6,9 +6,10 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "device/event_log.hpp"
-#include "device/lines.hpp"
-#include "io/report.hpp"
+#include "device/open/camera.hpp"
+#include "device/os/event_log.hpp"
+#include "device/port/lines.hpp"
+#include "io/settings/report.hpp"
 #include "printer.hpp"
 #include "vam-capture/recording.hpp"
 #include "vam-capture/sinks.hpp"

@@ -1,7 +1,7 @@
 #include "vam-capture/sinks.hpp"
 
-#include "device/sim_camera.hpp"
-#include "io/capture_folder.hpp"
+#include "io/picture/capture_folder.hpp"
+#include "sim/cameras/camera.hpp"
 
 namespace vam::capture_tool {
 
@@ -83,7 +83,7 @@ class FolderStore final : public FrameStore {
       record.sigma_deg = shot.angle->sigma_deg;
     }
     record.complete = shot.frame.complete;
-    record.levels = device::fingerprint(shot.frame.levels);
+    record.levels = sim::fingerprint(shot.frame.levels);
     folder_.keep(record, shot.frame.levels);
   }
   void dropped(long first, long last) override { folder_.dropped(first, last); }

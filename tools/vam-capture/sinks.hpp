@@ -5,8 +5,8 @@
 #include <string>
 
 #include "base/json.hpp"
-#include "device/capture.hpp"
-#include "io/exr_stack.hpp"
+#include "device/camera/capture.hpp"
+#include "io/exr/stack.hpp"
 
 namespace vam::capture_tool {
 

@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "base/text.hpp"
-#include "io/csv_table.hpp"
-#include "io/stream.hpp"
-#include "resin/gaps.hpp"
+#include "io/settings/csv_table.hpp"
+#include "io/stream/stream.hpp"
+#include "resin/curethrough/gaps.hpp"
 
 namespace vam::curethrough {
 

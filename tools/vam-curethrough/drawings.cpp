@@ -3,18 +3,18 @@
 #include <array>
 #include <cmath>
 
+#include "base/stats/student.hpp"
 #include "base/text.hpp"
-#include "io/canvas.hpp"
-#include "io/picture.hpp"
-#include "io/plot.hpp"
-#include "resin/student.hpp"
+#include "io/picture/picture.hpp"
+#include "plot/canvas.hpp"
+#include "plot/plot.hpp"
 #include "vam-curethrough/figures.hpp"
 
 namespace vam::curethrough {
 
 namespace {
 
-namespace paint = io::paint;
+namespace paint = plot::paint;
 
 constexpr Rgb cured{150, 150, 150};
 constexpr Rgb red{214, 39, 40};
@@ -55,22 +55,22 @@ RgbImage enlarged(const RgbImage& from, int width, int height) {
   return to;
 }
 
-void draw_picture(io::Canvas& canvas, const io::Frame& frame, const RgbImage& picture, const std::string& title) {
+void draw_picture(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& picture, const std::string& title) {
   const int left = static_cast<int>(frame.left);
   const int top = static_cast<int>(frame.top);
   canvas.paste(enlarged(picture, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left,
                top);
-  io::draw_axes(canvas, frame, false);
-  canvas.text({frame.left, frame.top - 14}, title, io::label_size);
+  plot::draw_axes(canvas, frame, false);
+  canvas.text({frame.left, frame.top - 14}, title, plot::label_size);
 }
 
 // Grey and dose along the column over a shade where the part is, slice number down.
-void draw_column(io::Canvas& canvas, io::Frame frame, const Plane& plane, const Print& print) {
+void draw_column(plot::Canvas& canvas, plot::Frame frame, const Plane& plane, const Print& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
   frame.x = {"dose / critical dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
-  std::vector<io::Spot> dose;
-  std::vector<io::Spot> stairs;
+  std::vector<plot::Spot> dose;
+  std::vector<plot::Spot> stairs;
   for (int n = 0; n < slices; ++n) {
     if (plane.solid(plane.column, n) > 0) {
       canvas.fill(frame.spot(0, n), frame.spot(frame.x.high, n + 1.0), shade);
@@ -81,13 +81,13 @@ void draw_column(io::Canvas& canvas, io::Frame frame, const Plane& plane, const 
     stairs.push_back({at, frame.spot_y(n)});
     stairs.push_back({at, frame.spot_y(n + 1.0)});
   }
-  io::draw_axes(canvas, frame, false);
+  plot::draw_axes(canvas, frame, false);
   canvas.dashed(frame.spot(1, 0), frame.spot(1, slices), paint::grey);
   canvas.polyline(stairs, paint::blue, 1.5);
   canvas.polyline(dose, red, 2);
-  canvas.text({frame.left, frame.top - 14}, "column " + std::to_string(plane.column), io::label_size);
-  canvas.text({frame.right - 85, frame.top - 14}, "dose", io::label_size, red, io::Align::end);
-  canvas.text({frame.right, frame.top - 14}, "grey 0..1", io::label_size, paint::blue, io::Align::end);
+  canvas.text({frame.left, frame.top - 14}, "column " + std::to_string(plane.column), plot::label_size);
+  canvas.text({frame.right - 85, frame.top - 14}, "dose", plot::label_size, red, plot::Align::end);
+  canvas.text({frame.right, frame.top - 14}, "grey 0..1", plot::label_size, paint::blue, plot::Align::end);
 }
 
 }  // namespace
@@ -99,12 +99,12 @@ void draw_plane(const std::string& path, const Plane& plane, const Print& print)
   constexpr int left = 80;
   constexpr int top = 40;
   constexpr int curve = 300;
-  io::Canvas canvas(3 * left + 2 * width + curve + 20, top + height + 90);
-  const io::Axis x{"x / pixels", 0, static_cast<double>(plane.light.width)};
-  const io::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
-  const auto frame = [&](int number, int across, const io::Axis& up) {
+  plot::Canvas canvas(3 * left + 2 * width + curve + 20, top + height + 90);
+  const plot::Axis x{"x / pixels", 0, static_cast<double>(plane.light.width)};
+  const plot::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
+  const auto frame = [&](int number, int across, const plot::Axis& up) {
     const double start = left + number * (width + left);
-    return io::Frame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
+    return plot::Frame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
   };
   draw_picture(canvas, frame(0, width, y), slices_picture(plane, print.response),
                "slices, row " + std::to_string(plane.row));
@@ -113,8 +113,8 @@ void draw_plane(const std::string& path, const Plane& plane, const Print& print)
   double at = 2.0 * left + width;
   for (const auto& [words, colour] :
        {std::pair{"correct", paint::grey}, {"cure-through", red}, {"undercured", paint::blue}}) {
-    canvas.text({at, top + height + 74.0}, words, io::label_size, colour);
-    at += io::Canvas::text_width(words, io::label_size) + 20;
+    canvas.text({at, top + height + 74.0}, words, plot::label_size, colour);
+    at += plot::Canvas::text_width(words, plot::label_size) + 20;
   }
   io::write_png(path, canvas.picture());
 }
@@ -136,7 +136,7 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
   double spread = 0;
   for (const auto& sample : samples) spread += std::pow(std::log10(sample.exposure_mj_cm2) - mean, 2);
   const double count = curve.samples;
-  const double t = resin::student_quantile(1 - curve.confidence, count - 2);
+  const double t = stats::student_quantile(1 - curve.confidence, count - 2);
   std::vector<double> at;
   std::vector<double> line;
   std::vector<double> low;
@@ -149,18 +149,18 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
     low.push_back(value - error);
     high.push_back(value + error);
   }
-  io::Plot plot;
+  plot::Plot plot;
   plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
                " um per decade (log10), D_gel = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
   plot.x = {"exposure E / mJ cm-2", at.front(), at.back(), true};
   plot.y = {"cured thickness / um", 0, 1.12 * highest};
   plot.series = {
-      {"least squares", at, line, paint::blue, io::SeriesStyle::line},
-      {format_number(100 * curve.confidence) + " % of the line", at, low, paint::grey, io::SeriesStyle::line},
-      {"", at, high, paint::grey, io::SeriesStyle::line},
-      {"samples", x[0], y[0], paint::black, io::SeriesStyle::points}};
-  if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, io::SeriesStyle::points});
-  io::write_png(path, io::draw(plot));
+      {"least squares", at, line, paint::blue, plot::SeriesStyle::line},
+      {format_number(100 * curve.confidence) + " % of the line", at, low, paint::grey, plot::SeriesStyle::line},
+      {"", at, high, paint::grey, plot::SeriesStyle::line},
+      {"samples", x[0], y[0], paint::black, plot::SeriesStyle::points}};
+  if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, plot::SeriesStyle::points});
+  io::write_png(path, plot::draw(plot));
 }
 
 void draw_response(const std::string& path, const model::ResponseTable& table) {
@@ -170,13 +170,13 @@ void draw_response(const std::string& path, const model::ResponseTable& table) {
   const std::vector<double> at = sequence(0, full, 300);
   std::vector<double> curve;
   for (const double g : at) curve.push_back(response.intensity(g / full) * light);
-  io::Plot plot;
+  plot::Plot plot;
   plot.title = "grey response";
   plot.x = {"grey", 0, full};
   plot.y = {"intensity", 0, 1.05 * light};
-  plot.series = {{"monotone cubic", at, curve, paint::blue, io::SeriesStyle::line},
-                 {"mean readings", table.grey, table.intensity, paint::black, io::SeriesStyle::points}};
-  io::write_png(path, io::draw(plot));
+  plot.series = {{"monotone cubic", at, curve, paint::blue, plot::SeriesStyle::line},
+                 {"mean readings", table.grey, table.intensity, paint::black, plot::SeriesStyle::points}};
+  io::write_png(path, plot::draw(plot));
 }
 
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um) {
@@ -201,16 +201,16 @@ void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& p
   }
   if (factors.empty()) factors = {0, 1};
   const double margin = std::max(0.5, 0.05 * (factors.back() - factors.front()));
-  io::Plot plot;
+  plot::Plot plot;
   plot.title = "omega_max = " + format_number(first);
   plot.x = {"assumed critical dose / gelation dose", factors.front() - margin, factors.back() + margin};
   plot.y = {"height error, corrected / uncorrected", 0, 1.1 * most};
   for (std::size_t s = 0; s < ratios.size(); ++s) {
     const Rgb colour = colours[s % colours.size()];
     plot.series.push_back({format_number(heights[s] * slice_um) + " um", factors, ratios[s], colour, {}});
-    plot.series.push_back({"", factors, ratios[s], colour, io::SeriesStyle::points});
+    plot.series.push_back({"", factors, ratios[s], colour, plot::SeriesStyle::points});
   }
-  io::write_png(path, io::draw(plot));
+  io::write_png(path, plot::draw(plot));
 }
 
 }  // namespace vam::curethrough

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "resin/cure_map.hpp"
-#include "resin/sweep.hpp"
+#include "resin/curethrough/cure_map.hpp"
+#include "resin/curethrough/sweep.hpp"
 #include "resin/working_curve.hpp"
 #include "vam-curethrough/print.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/app.hpp"
-#include "io/vdb.hpp"
-#include "resin/part_columns.hpp"
+#include "io/vdb/vdb.hpp"
+#include "resin/curethrough/part_columns.hpp"
 
 namespace vam::curethrough {
 

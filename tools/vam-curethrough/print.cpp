@@ -4,7 +4,7 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/response_file.hpp"
+#include "io/settings/response_file.hpp"
 #include "printer.hpp"
 
 namespace vam::curethrough {

@@ -9,7 +9,7 @@
 #include "base/json.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "resin/curethrough.hpp"
+#include "resin/curethrough/curethrough.hpp"
 #include "resin/response.hpp"
 
 namespace vam::curethrough {

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "base/text.hpp"
-#include "io/csv_table.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
+#include "io/settings/csv_table.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
 #include "resin/response_fit.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"

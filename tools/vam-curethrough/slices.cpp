@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "io/exr_stack.hpp"
-#include "io/picture.hpp"
+#include "io/exr/stack.hpp"
+#include "io/picture/picture.hpp"
 
 namespace vam::curethrough {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "io/exr_stack.hpp"
-#include "resin/target_dose.hpp"
+#include "io/exr/stack.hpp"
+#include "resin/curethrough/target_dose.hpp"
 #include "vam-curethrough/part.hpp"
 #include "vam-curethrough/print.hpp"
 

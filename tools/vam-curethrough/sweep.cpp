@@ -1,13 +1,13 @@
 // Parameter study on a ladder of features.
-#include "resin/sweep.hpp"
+#include "resin/curethrough/sweep.hpp"
 
 #include <cmath>
 #include <limits>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"
 

@@ -2,9 +2,9 @@
 #include "resin/working_curve.hpp"
 
 #include "base/text.hpp"
-#include "io/csv_table.hpp"
-#include "io/report.hpp"
-#include "io/stream.hpp"
+#include "io/settings/csv_table.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
 #include "vam-curethrough/figures.hpp"
 #include "vam-curethrough/subcommands.hpp"
 

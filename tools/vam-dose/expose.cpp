@@ -5,8 +5,8 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/stack_batches.hpp"
-#include "optics/blur.hpp"
+#include "io/exr/stack_batches.hpp"
+#include "light/blur.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -16,22 +16,21 @@ namespace {
 
 constexpr int batch = 64;  // slices a pass; the fastest for the tracer
 
-void warn_about(const Options& options, const metrology::LightSeen& seen, bool projector) {
+void warn_about(const Options& options, const light::LightSeen& seen, bool projector) {
   if (!projector || seen.negative == 0) return;
   warn(options.input + ": " + format_number(100 * seen.negative / seen.values, 3) +
        " % of the light is negative, the least " + format_number(seen.least, 3) + " of " + format_number(seen.peak, 3) +
        (options.keep_negative ? "; kept, though no projector can show it" : "; taken as 0"));
 }
 
-metrology::LightSeen shine_through(io::StackReader& in, const metrology::Simulation& simulation,
-                                   const metrology::Light& light, double blur_px, int first, Insert& insert,
-                                   Sink& sink) {
-  metrology::LightSeen seen;
-  optics::VolumeBlur blur(blur_px, [&](Image dose) { sink.add(dose); });
+light::LightSeen shine_through(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
+                               double blur_px, int first, Insert& insert, Sink& sink) {
+  light::LightSeen seen;
+  light::VolumeBlur blur(blur_px, [&](Image dose) { sink.add(dose); });
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
-    metrology::shine(light, slices, seen);
+    light::shine(light, slices, seen);
     std::vector<Image> doses(slices.size());
     const std::vector<Image> inserts = insert.slices(first, static_cast<int>(slices.size()));
     simulation.dose(slices, doses, inserts);
@@ -56,17 +55,17 @@ metrology::LightSeen shine_through(io::StackReader& in, const metrology::Simulat
 double blur_mm(const Options& options, const model::Printer& printer) {
   if (options.no_blur) return 0;
   const double seconds = options.seconds.value_or(printer.stage.turns * 360 / printer.stage.speed_deg_s);
-  return optics::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
+  return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
 }
 
 Exposed expose(io::StackReader& in, const Options& options, const model::Printer& printer, const Place& place,
                io::SparseVolume& volume) {
   const model::StackInfo& info = in.info();
   const bool projector = info.space == model::Space::projector;
-  const int first = metrology::first_slice(place.grid, info);
-  const metrology::Simulation simulation(printer, options.alignment, info, place.grid);
-  const metrology::Light light{projector && !options.keep_negative, options.full_scale,
-                               printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  const int first = light::first_slice(place.grid, info);
+  const light::Simulation simulation(printer, options.alignment, info, place.grid);
+  const light::Light light{projector && !options.keep_negative, options.full_scale,
+                           printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
   if (options.exposure_plan) judged = model::writable_circle(place.grid, printer);
   Insert insert(place.insert, place.target, place.grid, info);

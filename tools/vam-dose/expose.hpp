@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <optional>
 
-#include "io/exr_stack.hpp"
-#include "io/vdb.hpp"
-#include "metrology/exposure.hpp"
-#include "metrology/simulation.hpp"
+#include "io/exr/stack.hpp"
+#include "io/vdb/vdb.hpp"
+#include "light/simulation.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/printer.hpp"
+#include "score/exposure.hpp"
 #include "vam-dose/options.hpp"
 #include "vam-dose/place.hpp"
 
@@ -17,8 +17,8 @@ namespace vam::dose_tool {
 
 /// What there was to see.
 struct Exposed {
-  metrology::LightSeen light;
-  metrology::DoseRange doses;
+  light::LightSeen light;
+  score::DoseRange doses;
   model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
 };

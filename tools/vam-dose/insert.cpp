@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "light/insert_shadow.hpp"
 #include "model/dose_metrics.hpp"
-#include "optics/insert_shadow.hpp"
 
 namespace vam::dose_tool {
 
@@ -36,13 +36,13 @@ std::vector<Image> Insert::slices(int first, int count) const {
   bool opaque = false;
   for (int k = first; k < first + count; ++k) {
     slices.push_back(read_slice(*insert_, k, nx_, ny_));
-    opaque = opaque || std::ranges::any_of(slices.back().values, optics::opaque);
+    opaque = opaque || std::ranges::any_of(slices.back().values, light::opaque);
   }
   if (!opaque) slices.clear();
   return slices;
 }
 
-void Insert::look_for_dark(const metrology::Simulation& simulation, int first, std::span<const Image> inserts) {
+void Insert::look_for_dark(const light::Simulation& simulation, int first, std::span<const Image> inserts) {
   if (target_ == nullptr || inserts.empty()) return;
   std::vector<Image> distinct;  // a shaft is the same in many slices
   std::vector<std::size_t> which;

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "io/vdb.hpp"
-#include "metrology/simulation.hpp"
+#include "io/vdb/vdb.hpp"
+#include "light/simulation.hpp"
 #include "model/stack.hpp"
 
 namespace vam::dose_tool {
@@ -25,7 +25,7 @@ class Insert {
   [[nodiscard]] std::vector<Image> slices(int first, int count) const;
 
   /// Counts the voxels of the part that even light leaves dark in the slices from `first` on with these inserts.
-  void look_for_dark(const metrology::Simulation& simulation, int first, std::span<const Image> inserts);
+  void look_for_dark(const light::Simulation& simulation, int first, std::span<const Image> inserts);
   [[nodiscard]] std::int64_t dark_part_voxels() const { return dark_; }
 
  private:

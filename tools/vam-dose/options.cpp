@@ -2,7 +2,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "metrology/exposure.hpp"
+#include "score/exposure.hpp"
 
 namespace vam::dose_tool {
 
@@ -44,7 +44,7 @@ void settle(Options& options, const model::Printer& printer) {
   if (options.exposure_plan && options.like.empty()) {
     throw Error{Fault::usage, "--exposure-plan: needs to know the part; name its volume with --like"};
   }
-  if (options.exposure_plan && !metrology::dose_per_radian_mj_cm3(printer)) {
+  if (options.exposure_plan && !score::dose_per_radian_mj_cm3(printer)) {
     throw Error{Fault::usage,
                 "--exposure-plan: needs resin.critical_dose_mj_cm3 and resin.absorption_per_mm, without which doses "
                 "have no unit"};

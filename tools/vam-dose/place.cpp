@@ -1,15 +1,15 @@
 #include "vam-dose/place.hpp"
 
 #include "base/error.hpp"
-#include "io/printer_file.hpp"
-#include "metrology/simulation.hpp"
+#include "io/settings/printer_file.hpp"
+#include "light/simulation.hpp"
 
 namespace vam::dose_tool {
 
 Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
   Place place;
   if (options.like.empty()) {
-    place.grid = metrology::dose_grid(printer, info, options.size_mm);
+    place.grid = light::dose_grid(printer, info, options.size_mm);
     return place;
   }
   place.like = io::read_volumes(options.like);

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "io/vdb.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"

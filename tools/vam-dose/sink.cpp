@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "optics/insert_shadow.hpp"
+#include "light/insert_shadow.hpp"
 
 namespace vam::dose_tool {
 
@@ -12,7 +12,7 @@ Sink::Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, i
 
 void Sink::add(Image& dose) {
   const std::vector<Image> inserts = insert_.slices(next_ + pending_, 1);
-  if (!inserts.empty()) optics::darken(inserts, {&dose, 1});  // also of what blur has brought in
+  if (!inserts.empty()) light::darken(inserts, {&dose, 1});  // also of what blur has brought in
   Image part;
   if (target_ != nullptr) {
     part = Image(dose.width, dose.height);

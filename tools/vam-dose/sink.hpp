@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "io/vdb.hpp"
-#include "metrology/exposure.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
+#include "score/exposure.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/place.hpp"
 
@@ -23,7 +23,7 @@ class Sink {
   /// The insert's voxels become dark.
   void add(Image& dose);
   void flush();
-  [[nodiscard]] const metrology::DoseRange& range() const { return range_; }
+  [[nodiscard]] const score::DoseRange& range() const { return range_; }
   [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
 
  private:
@@ -35,7 +35,7 @@ class Sink {
   int next_;
   int pending_ = 0;
   std::vector<float> buffer_;
-  metrology::DoseRange range_;
+  score::DoseRange range_;
   std::optional<model::Circle> judged_;
   model::DoseStatistics statistics_;
 };

@@ -5,15 +5,15 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "metrology/exposure.hpp"
+#include "score/exposure.hpp"
 #include "vam-dose/sink.hpp"
 
 namespace vam::dose_tool {
 
 namespace {
 
-metrology::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
-                                const Options& options) {
+score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
+                            const Options& options) {
   if (doses.part == 0 || doses.void_ == 0) {
     throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " voxels of part and " +
                                  std::to_string(doses.void_) + " of void; --exposure-plan needs both"};
@@ -22,13 +22,13 @@ metrology::ExposurePlan planned(const model::DoseMetrics& doses, double scale, c
     warn("exposure: void takes up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 a turn, part from " +
          format_number(scale * doses.min_part, 4) + "; there is no process window, the best threshold is planned for");
   }
-  return metrology::plan_exposure(scale * metrology::window_middle(doses), printer);
+  return score::plan_exposure(scale * score::window_middle(doses), printer);
 }
 
 }  // namespace
 
 Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer) {
-  const auto per_radian = metrology::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
   Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, {}};
   if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, options);
@@ -46,14 +46,14 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
              model::Space light) {
-  const metrology::LightSeen& seen = exposed.light;
+  const light::LightSeen& seen = exposed.light;
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
   report["model"] = light == model::Space::projector ? "chief rays" : "parallel";
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["light_efficiency"] = seen.efficiency.value();
   report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
   if (unit.plan) {
-    metrology::add_to(report, *unit.plan);
+    score::add_to(report, *unit.plan);
     report["peak_value"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;

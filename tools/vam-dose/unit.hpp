@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "base/json.hpp"
-#include "io/vdb.hpp"
-#include "metrology/exposure_plan.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
+#include "score/exposure_plan.hpp"
 #include "vam-dose/expose.hpp"
 #include "vam-dose/options.hpp"
 
@@ -14,8 +14,8 @@ namespace vam::dose_tool {
 
 struct Unit {
   bool absolute = false;
-  double turn = 1;                              // multiplies the dose of one turn
-  std::optional<metrology::ExposurePlan> plan;  // of the print
+  double turn = 1;                          // multiplies the dose of one turn
+  std::optional<score::ExposurePlan> plan;  // of the print
 };
 
 /// Absolute when the resin says what it takes. Throws Fault::data when an exposure is to be planned for a target

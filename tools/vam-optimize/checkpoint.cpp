@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "device/interrupt.hpp"
+#include "device/os/interrupt.hpp"
 
 namespace vam::optimize_tool {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "io/stream.hpp"
-#include "optimize/volume.hpp"
+#include "io/stream/stream.hpp"
+#include "optimize/run/volume.hpp"
 
 namespace vam::optimize_tool {
 

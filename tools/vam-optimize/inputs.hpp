@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "io/exr_stack.hpp"
-#include "io/vdb.hpp"
+#include "io/exr/stack.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/stack.hpp"
 #include "vam-optimize/options.hpp"
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-#include "optics/blur.hpp"
-#include "optimize/attenuated_operator.hpp"
-#include "optimize/parallel_operator.hpp"
-#include "optimize/shadowed_operator.hpp"
-#include "optimize/vial_operator.hpp"
-#include "optimize/volume.hpp"
+#include "light/attenuated.hpp"
+#include "light/blur.hpp"
+#include "light/parallel.hpp"
+#include "light/shadowed.hpp"
+#include "light/vial_operator.hpp"
+#include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
 
 namespace vam::optimize_tool {
@@ -20,9 +20,9 @@ double mu_per_px(const Scene& scene, const Options& options) {
 
 double radius_px(const Scene& scene) { return model::resin_radius_mm(scene.printer.vial) / scene.grid.voxel_mm; }
 
-optimize::VialSetup vial_setup(const Scene& scene, const Options& options) {
+light::VialSetup vial_setup(const Scene& scene, const Options& options) {
   const double radius_mm = scene.circle.radius * scene.grid.voxel_mm;
-  optimize::VialSetup setup = optimize::vial_setup(scene.printer, scene.grid, scene.turn.angles, radius_mm);
+  light::VialSetup setup = light::vial_setup(scene.printer, scene.grid, scene.turn.angles, radius_mm);
   if (options.absorption == "none") setup.absorption_per_mm = 0;
   return setup;
 }
@@ -43,21 +43,20 @@ double blur_px(const Scene& scene, const Options& options) {
   const model::Stage& stage = scene.printer.stage;
   const double seconds = options.seconds.value_or(stage.turns * 360 / stage.speed_deg_s);
   const model::Resin& resin = scene.printer.resin;
-  return optics::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
+  return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
 }
 
-std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options) {
-  if (options.geometry == "vial") return std::make_unique<optimize::VialOperator>(vial_setup(scene, options));
+std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options) {
+  if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options));
   const double mu = mu_per_px(scene, options);
-  if (mu == 0) return std::make_unique<optimize::ParallelOperator>(scene.turn);
-  const auto correction = options.absorption == "disc" ? optimize::Correction::disc : optimize::Correction::exact;
-  return std::make_unique<optimize::AttenuatedOperator>(scene.turn, mu, radius_px(scene), correction);
+  if (mu == 0) return std::make_unique<light::ParallelOperator>(scene.turn);
+  const auto correction = options.absorption == "disc" ? light::Correction::disc : light::Correction::exact;
+  return std::make_unique<light::AttenuatedOperator>(scene.turn, mu, radius_px(scene), correction);
 }
 
-std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options,
-                                               std::span<const optimize::Slab> inserts) {
-  if (options.geometry == "vial") return std::make_unique<optimize::VialOperator>(vial_setup(scene, options), inserts);
-  return std::make_unique<optimize::ShadowedOperator>(scene.turn, mu_per_px(scene, options), radius_px(scene), inserts);
+std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
+  if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options), inserts);
+  return std::make_unique<light::ShadowedOperator>(scene.turn, mu_per_px(scene, options), radius_px(scene), inserts);
 }
 
 }  // namespace vam::optimize_tool

@@ -4,10 +4,10 @@
 #include <memory>
 #include <span>
 
+#include "light/operator.hpp"
 #include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
-#include "optimize/operator.hpp"
 #include "tomo/radon.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -27,9 +27,9 @@ struct Scene {
 [[nodiscard]] double blur_px(const Scene& scene, const Options& options);
 
 /// Parallel light, or the projector's own rays; the resin's absorption is in it unless it is to be left out.
-[[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options);
+[[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options);
 /// The same around opaque inserts, a slab for every slab of the pass.
-[[nodiscard]] std::unique_ptr<optimize::Operator> make_light(const Scene& scene, const Options& options,
-                                                             std::span<const optimize::Slab> inserts);
+[[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options,
+                                                          std::span<const Slab> inserts);
 
 }  // namespace vam::optimize_tool

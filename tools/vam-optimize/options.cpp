@@ -6,9 +6,9 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/csv_table.hpp"
-#include "optimize/automatic.hpp"
-#include "optimize/slice_figures.hpp"
+#include "io/settings/csv_table.hpp"
+#include "optimize/methods/automatic.hpp"
+#include "optimize/run/slice_figures.hpp"
 
 namespace vam::optimize_tool {
 

@@ -6,8 +6,8 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "io/exr_stack.hpp"
-#include "optimize/iterate.hpp"
+#include "io/exr/stack.hpp"
+#include "optimize/run/iterate.hpp"
 
 namespace vam::optimize_tool {
 

@@ -1,6 +1,6 @@
 #include "vam-optimize/sink.hpp"
 
-#include "io/response_file.hpp"
+#include "io/settings/response_file.hpp"
 
 namespace vam::optimize_tool {
 

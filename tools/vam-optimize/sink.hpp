@@ -5,9 +5,9 @@
 
 #include "base/image.hpp"
 #include "base/log.hpp"
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "model/printer.hpp"
-#include "optimize/quantise.hpp"
+#include "optimize/run/quantise.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {

@@ -49,7 +49,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
   task.blur_px = blur_px(scene, options);
   task.watch = !options.trace.empty();
   task.make = [&] { return optimize::make_method(options.method, options.how); };
-  task.around = [&](std::span<const optimize::Slab> inserts) { return make_light(scene, options, inserts); };
+  task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
   return task;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/stack.hpp"
-#include "optimize/volume.hpp"
+#include "optimize/run/volume.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"

@@ -4,10 +4,10 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/event_log.hpp"
-#include "io/stream.hpp"
-#include "io/view_queue.hpp"
-#include "metrology/sliding_turn.hpp"
+#include "io/picture/view_queue.hpp"
+#include "io/settings/event_log.hpp"
+#include "io/stream/stream.hpp"
+#include "metrology/ost/sliding_turn.hpp"
 #include "model/conditions.hpp"
 #include "vam-ost/session.hpp"
 

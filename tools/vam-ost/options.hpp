@@ -5,7 +5,7 @@
 #include <string>
 
 #include "cli/common.hpp"
-#include "metrology/ost.hpp"
+#include "metrology/ost/ost.hpp"
 
 namespace vam::ost_tool {
 

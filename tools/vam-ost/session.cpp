@@ -4,13 +4,13 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/image_figure.hpp"
-#include "io/mesh_file.hpp"
-#include "io/picture.hpp"
-#include "io/resin_record.hpp"
-#include "metrology/projection_sheet.hpp"
+#include "io/mesh/file.hpp"
+#include "io/picture/picture.hpp"
+#include "io/settings/resin_record.hpp"
+#include "metrology/ost/projection_sheet.hpp"
+#include "plot/image_figure.hpp"
 #include "printer.hpp"
-#include "solid/isosurface.hpp"
+#include "solid/voxel/isosurface.hpp"
 
 namespace vam::ost_tool {
 
@@ -99,7 +99,7 @@ void Session::write_print(const model::Volume& volume, bool must) const {
   }
   if (options_.projections.empty()) return;
   const auto sheet = metrology::projection_sheet(volume, level_, reference_ ? &*reference_ : nullptr);
-  io::ImageFigure figure;
+  plot::ImageFigure figure;
   figure.title = "Sum projections";
   for (std::size_t i = 0; i < sheet.images.size(); ++i)
     figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
@@ -108,7 +108,7 @@ void Session::write_print(const model::Volume& volume, bool must) const {
   figure.value_label = "relative sum";
   figure.pixel_mm = sheet.pixel_mm;
   figure.columns = 3;
-  io::write_png(options_.projections, io::draw(figure));
+  io::write_png(options_.projections, plot::draw(figure));
 }
 
 Json Session::figures(const model::Volume& volume) const {

@@ -9,10 +9,10 @@
 
 #include "base/json.hpp"
 #include "cli/app.hpp"
-#include "io/vdb.hpp"
-#include "io/view_source.hpp"
-#include "metrology/cured.hpp"
-#include "metrology/ost.hpp"
+#include "io/picture/view_source.hpp"
+#include "io/vdb/vdb.hpp"
+#include "metrology/ost/cured.hpp"
+#include "metrology/ost/ost.hpp"
 #include "model/printer.hpp"
 #include "vam-ost/options.hpp"
 

@@ -1,7 +1,7 @@
-#include "metrology/threshold.hpp"
+#include "metrology/ost/threshold.hpp"
 
 #include "base/error.hpp"
-#include "io/report.hpp"
+#include "io/settings/report.hpp"
 #include "vam-ost/session.hpp"
 
 namespace vam::ost_tool {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cli/app.hpp"
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/slices.hpp"

@@ -1,7 +1,8 @@
 #include "vam-project/live.hpp"
 
-#include "device/interrupt.hpp"
-#include "device/realtime.hpp"
+#include "device/open/light.hpp"
+#include "device/os/interrupt.hpp"
+#include "device/os/realtime.hpp"
 
 namespace vam::project {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "device/event_log.hpp"
-#include "device/player.hpp"
-#include "io/frame_sink.hpp"
+#include "device/os/event_log.hpp"
+#include "device/projector/player.hpp"
+#include "io/picture/frame_sink.hpp"
 #include "vam-project/options.hpp"
 
 namespace vam::project {

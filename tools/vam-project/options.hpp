@@ -6,8 +6,8 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "device/player.hpp"
-#include "io/frame_sink.hpp"
+#include "device/projector/player.hpp"
+#include "io/picture/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "optics/patterns.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "device/interrupt.hpp"
-#include "io/frame_sink.hpp"
+#include "device/os/interrupt.hpp"
+#include "io/picture/frame_sink.hpp"
 #include "optics/frames.hpp"
 #include "optics/patterns.hpp"
 #include "vam-project/live.hpp"

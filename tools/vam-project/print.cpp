@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/report.hpp"
+#include "io/settings/report.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"

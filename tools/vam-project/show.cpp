@@ -6,7 +6,7 @@
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "io/response_file.hpp"
+#include "io/settings/response_file.hpp"
 #include "optics/frames.hpp"
 
 namespace vam::project {

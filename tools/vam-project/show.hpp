@@ -5,7 +5,7 @@
 
 #include "base/image.hpp"
 #include "base/json.hpp"
-#include "io/frame_sink.hpp"
+#include "io/picture/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "resin/response.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/any_frames.hpp"
+#include "io/picture/any_frames.hpp"
 #include "optics/slice_place.hpp"
 
 namespace vam::project {

@@ -8,7 +8,7 @@
 
 #include "base/json.hpp"
 #include "cli/app.hpp"
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/show.hpp"

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 #include "optics/frames.hpp"
 #include "vam-project/options.hpp"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "io/vdb.hpp"
+#include "io/vdb/vdb.hpp"
 #include "vam-score/options.hpp"
 
 namespace vam::score_tool {

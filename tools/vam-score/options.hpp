@@ -6,7 +6,7 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "metrology/score.hpp"
+#include "score/score.hpp"
 
 namespace vam::score_tool {
 
@@ -21,7 +21,7 @@ struct Options {
   std::string print_as = "mesh";
   std::optional<double> print_at;
   bool json = false;
-  metrology::ScoreOptions how;
+  score::ScoreOptions how;
   cli::PrinterOptions printer;
 };
 

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/mesh_file.hpp"
-#include "solid/isosurface.hpp"
+#include "io/mesh/file.hpp"
+#include "solid/voxel/isosurface.hpp"
 
 namespace vam::score_tool {
 

@@ -1,7 +1,7 @@
 // What prints, as a mesh or as points.
 #pragma once
 
-#include "io/vdb.hpp"
+#include "io/vdb/vdb.hpp"
 #include "vam-score/options.hpp"
 
 namespace vam::score_tool {

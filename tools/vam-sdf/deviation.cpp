@@ -1,5 +1,5 @@
 // The plain form of vam-sdf: print against reference.
-#include "metrology/deviation.hpp"
+#include "metrology/compare/deviation.hpp"
 
 #include <algorithm>
 #include <string>
@@ -8,14 +8,14 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/mesh_file.hpp"
-#include "io/picture.hpp"
-#include "io/plot.hpp"
-#include "io/report.hpp"
-#include "io/resin_record.hpp"
-#include "io/stream.hpp"
+#include "io/mesh/file.hpp"
+#include "io/picture/picture.hpp"
+#include "io/settings/report.hpp"
+#include "io/settings/resin_record.hpp"
+#include "io/stream/stream.hpp"
 #include "model/conditions.hpp"
-#include "solid/align.hpp"
+#include "plot/plot.hpp"
+#include "solid/mesh/align.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {
@@ -57,18 +57,18 @@ void write_coloured(const std::string& path, const model::TriangleSoup& print, c
 }
 
 void write_histogram(const Options& options, const metrology::Comparison& found, double limit_mm) {
-  io::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
+  plot::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
   for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
-  const io::Histogram histogram = builder.done();
+  const plot::Histogram histogram = builder.done();
   const std::string& path = options.histogram;
   if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
-    io::Plot plot;
+    plot::Plot plot;
     plot.title = "Deviation of the print, RMS " + format_number(found.print_to_reference.rms_mm, 3) + " mm";
     plot.x = {"distance to the reference / mm (positive: outside)", -limit_mm, limit_mm};
     plot.y.label = "share of the area / %";
-    plot.series.push_back({"", histogram.edges, histogram.percent, io::paint::blue, io::SeriesStyle::bars});
-    plot.markers.push_back({0, "reference", io::paint::grey});
-    return io::write_png(path, io::draw(plot));
+    plot.series.push_back({"", histogram.edges, histogram.percent, plot::paint::blue, plot::SeriesStyle::bars});
+    plot.markers.push_back({0, "reference", plot::paint::grey});
+    return io::write_png(path, plot::draw(plot));
   }
   std::string text = "from_mm,to_mm,area_percent\n";
   for (std::size_t i = 0; i < histogram.percent.size(); ++i) {

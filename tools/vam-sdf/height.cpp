@@ -5,14 +5,14 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/contour.hpp"
-#include "io/image_figure.hpp"
-#include "io/picture.hpp"
-#include "io/plot.hpp"
-#include "io/report.hpp"
-#include "io/view_source.hpp"
-#include "metrology/emboss.hpp"
+#include "io/picture/picture.hpp"
+#include "io/picture/view_source.hpp"
+#include "io/settings/report.hpp"
+#include "metrology/compare/emboss.hpp"
 #include "model/conditions.hpp"
+#include "plot/contour.hpp"
+#include "plot/image_figure.hpp"
+#include "plot/plot.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {
@@ -58,7 +58,7 @@ std::vector<double> line_of(const HeightOptions& options, const Image& image) {
 
 void draw_map(const HeightOptions& options, const metrology::Relief& print, const metrology::Emboss& found,
               const std::vector<double>& line) {
-  io::ImageFigure figure;
+  plot::ImageFigure figure;
   Image um = print.heights_mm;
   for (float& h : um.values) h *= static_cast<float>(um_per_mm);
   figure.title = "Height of the print, design shrunk by " + format_number(100 * (1 - found.placing.scale), 3) + " %";
@@ -69,14 +69,14 @@ void draw_map(const HeightOptions& options, const metrology::Relief& print, cons
   figure.pixel_mm = print.pixel_mm;
   figure.x = {"mm", 0, um.width * print.pixel_mm};
   figure.y = {"mm", 0, um.height * print.pixel_mm};
-  io::Panel panel{um, "", io::contour(found.design, static_cast<float>(0.5 * found.design_height_mm))};
+  plot::Panel panel{um, "", plot::contour(found.design, static_cast<float>(0.5 * found.design_height_mm))};
   if (!options.plot.empty()) panel.outline.push_back({{line[0], line[1]}, {line[2], line[3]}});
   figure.panels.push_back(std::move(panel));
-  io::write_png(options.output, io::draw(figure));
+  io::write_png(options.output, plot::draw(figure));
 }
 
 void draw_section(const std::string& path, const metrology::Section& section) {
-  io::Plot plot;
+  plot::Plot plot;
   plot.title = "Height along the line";
   plot.x = {"mm"};
   plot.y = {"height / um"};
@@ -84,9 +84,9 @@ void draw_section(const std::string& path, const metrology::Section& section) {
     for (double& h : mm) h *= um_per_mm;
     return mm;
   };
-  plot.series.push_back({"design", section.along_mm, um(section.design_mm), io::paint::grey});
-  plot.series.push_back({"print", section.along_mm, um(section.print_mm), io::paint::blue});
-  io::write_png(path, io::draw(plot));
+  plot.series.push_back({"design", section.along_mm, um(section.design_mm), plot::paint::grey});
+  plot.series.push_back({"print", section.along_mm, um(section.print_mm), plot::paint::blue});
+  io::write_png(path, plot::draw(plot));
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/file_type.hpp"
-#include "io/mesh_file.hpp"
-#include "io/vdb.hpp"
-#include "solid/isosurface.hpp"
+#include "io/mesh/file.hpp"
+#include "io/stream/file_type.hpp"
+#include "io/vdb/vdb.hpp"
+#include "solid/voxel/isosurface.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {

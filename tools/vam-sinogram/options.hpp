@@ -6,7 +6,7 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 
 namespace vam::sinogram_tool {
 

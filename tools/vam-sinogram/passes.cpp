@@ -8,10 +8,10 @@
 namespace vam::sinogram_tool {
 
 void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& spec,
-                   const std::function<void(std::vector<tomo::Slab>& sinograms, int count)>& use) {
+                   const std::function<void(std::vector<Slab>& sinograms, int count)>& use) {
   const model::Grid& grid = volume.grid();
   const tomo::Projections projections(spec);
-  const int slices = tomo::slabs_a_pass(spec.geometry) * tomo::lanes;
+  const int slices = tomo::slabs_a_pass(spec.geometry) * lanes;
   const auto read = [&](int first) {
     std::vector<float> dense(static_cast<std::size_t>(std::clamp(grid.nz - first, 0, slices)) * grid.slice_size());
     if (first < grid.nz) volume.read_slices(first, std::min(slices, grid.nz - first), dense.data());
@@ -23,13 +23,12 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
     const std::vector<float> dense = ahead.get();
     ahead = std::async(std::launch::async, read, first + slices);
     const int count = std::min(slices, grid.nz - first);
-    std::vector<tomo::Slab> images;
-    std::vector<tomo::Slab> sinograms;
-    for (int s = 0; s < count; s += tomo::lanes) {
+    std::vector<Slab> images;
+    std::vector<Slab> sinograms;
+    for (int s = 0; s < count; s += lanes) {
       images.emplace_back(grid.nx, grid.ny);
       sinograms.emplace_back(spec.geometry.columns, spec.geometry.angles);
-      tomo::pack(dense.data() + static_cast<std::size_t>(s) * grid.slice_size(), std::min(tomo::lanes, count - s),
-                 images.back());
+      pack(dense.data() + static_cast<std::size_t>(s) * grid.slice_size(), std::min(lanes, count - s), images.back());
     }
     projections.work_out(images, sinograms);
     use(sinograms, count);
@@ -37,14 +36,14 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
   }
 }
 
-std::vector<Image> unpacked(const std::vector<tomo::Slab>& slabs, int count) {
+std::vector<Image> unpacked(const std::vector<Slab>& slabs, int count) {
   std::vector<Image> images;
   std::vector<float> values;
-  for (const tomo::Slab& slab : slabs) {
-    const int used = std::min(tomo::lanes, count - static_cast<int>(images.size()));
-    const std::size_t size = slab.values.size() / tomo::lanes;
+  for (const Slab& slab : slabs) {
+    const int used = std::min(lanes, count - static_cast<int>(images.size()));
+    const std::size_t size = slab.values.size() / lanes;
     values.resize(size * static_cast<std::size_t>(used));
-    tomo::unpack(slab, used, values.data());
+    unpack(slab, used, values.data());
     for (int i = 0; i < used; ++i) {
       Image& image = images.emplace_back(slab.width, slab.height);
       std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(size) * i, size, image.values.begin());

@@ -5,18 +5,18 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "io/vdb.hpp"
+#include "base/slab.hpp"
+#include "io/vdb/vdb.hpp"
 #include "tomo/projections.hpp"
-#include "tomo/slab.hpp"
 
 namespace vam::sinogram_tool {
 
 /// Calls use(slabs, count) for the sinograms of all slices, a pass of up to 64 at a time, the next slices being read
 /// meanwhile.
 void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& spec,
-                   const std::function<void(std::vector<tomo::Slab>& sinograms, int count)>& use);
+                   const std::function<void(std::vector<Slab>& sinograms, int count)>& use);
 
 /// The first `count` slices of the slabs.
-[[nodiscard]] std::vector<Image> unpacked(const std::vector<tomo::Slab>& slabs, int count);
+[[nodiscard]] std::vector<Image> unpacked(const std::vector<Slab>& slabs, int count);
 
 }  // namespace vam::sinogram_tool

@@ -1,4 +1,4 @@
-#include "solid/shapes.hpp"
+#include "solid/shapes/shapes.hpp"
 #include "vam-slice/options.hpp"
 
 namespace vam::slice_tool {

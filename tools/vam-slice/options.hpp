@@ -8,7 +8,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "model/printer.hpp"
-#include "solid/part.hpp"
+#include "solid/voxel/part.hpp"
 
 namespace vam::slice_tool {
 

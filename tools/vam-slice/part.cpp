@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "io/mesh_file.hpp"
-#include "io/picture.hpp"
+#include "io/mesh/file.hpp"
+#include "io/picture/picture.hpp"
 
 namespace vam::slice_tool {
 

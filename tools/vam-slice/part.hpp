@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "solid/part.hpp"
+#include "solid/voxel/part.hpp"
 #include "vam-slice/options.hpp"
 
 namespace vam::slice_tool {

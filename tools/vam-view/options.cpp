@@ -1,7 +1,7 @@
 #include "vam-view/options.hpp"
 
 #include "base/error.hpp"
-#include "io/stream.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::view_tool {
 

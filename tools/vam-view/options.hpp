@@ -6,7 +6,7 @@
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "io/view.hpp"
+#include "plot/view.hpp"
 
 namespace vam::view_tool {
 
@@ -19,7 +19,7 @@ struct Options {
   std::string exported;
   bool histogram = false;
   bool plain = false;
-  io::ViewOptions view;
+  plot::ViewOptions view;
   cli::PrinterOptions printer;
 };
 

@@ -1,4 +1,4 @@
-#include "device/address.hpp"
+#include "device/os/address.hpp"
 
 #include <doctest/doctest.h>
 

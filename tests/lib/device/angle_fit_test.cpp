@@ -1,4 +1,4 @@
-#include "device/angle_fit.hpp"
+#include "device/stage/angle_fit.hpp"
 
 #include <doctest/doctest.h>
 

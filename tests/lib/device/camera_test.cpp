@@ -1,4 +1,4 @@
-#include "device/camera.hpp"
+#include "device/camera/camera.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,13 +8,14 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "device/camera_backends.hpp"
-#include "device/capture.hpp"
-#include "device/frame_count.hpp"
-#include "device/grey_pixels.hpp"
-#include "device/sim_camera.hpp"
+#include "device/camera/camera_backends.hpp"
+#include "device/camera/capture.hpp"
+#include "device/camera/private/frame_count.hpp"
+#include "device/camera/private/grey_pixels.hpp"
+#include "device/open/camera.hpp"
 #include "fake_v4l2.hpp"
 #include "fault_of.hpp"
+#include "sim/cameras/camera.hpp"
 
 using namespace vam;
 using namespace vam::device;

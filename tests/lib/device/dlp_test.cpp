@@ -1,3 +1,5 @@
+#include "sim/controllers/dlp.hpp"
+
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -7,13 +9,13 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "device/guardian_actions.hpp"
-#include "device/light_engine.hpp"
-#include "device/sim_dlp.hpp"
+#include "device/projector/light_engine.hpp"
+#include "device/safety/guardian_actions.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 namespace {
 

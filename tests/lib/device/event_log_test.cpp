@@ -1,4 +1,4 @@
-#include "device/event_log.hpp"
+#include "device/os/event_log.hpp"
 
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "device/clock.hpp"
-#include "device/interrupt.hpp"
+#include "device/os/clock.hpp"
+#include "device/os/interrupt.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;

@@ -11,7 +11,7 @@
 #include <deque>
 #include <vector>
 
-#include "device/v4l2_driver.hpp"
+#include "device/camera/v4l2_driver.hpp"
 
 struct V4l2Script {
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_GREY};

@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "device/spin.hpp"
+#include "device/stage/spin.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 TEST_CASE("A PI controller says who it is and what it can do") {
   VirtualStage lab;

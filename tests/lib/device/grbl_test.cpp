@@ -1,17 +1,19 @@
+#include "sim/controllers/grbl.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <memory>
 
 #include "base/error.hpp"
-#include "device/grbl_stage.hpp"
-#include "device/sim_grbl.hpp"
-#include "device/spin.hpp"
+#include "device/stage/grbl_stage.hpp"
+#include "device/stage/spin.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "device/guardian.hpp"
+#include "device/safety/guardian.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -10,8 +10,8 @@
 #include <csignal>
 #include <functional>
 
-#include "device/clock.hpp"
-#include "device/guardian_actions.hpp"
+#include "device/os/clock.hpp"
+#include "device/safety/guardian_actions.hpp"
 
 using namespace vam;
 using namespace vam::device;

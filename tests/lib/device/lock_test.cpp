@@ -1,4 +1,4 @@
-#include "device/lock.hpp"
+#include "device/os/lock.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include "device/player.hpp"
+#include "device/projector/player.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -11,13 +11,14 @@
 #include <memory>
 
 #include "base/error.hpp"
-#include "device/sim_dlp.hpp"
-#include "device/spin.hpp"
+#include "device/stage/spin.hpp"
 #include "fault_of.hpp"
+#include "sim/controllers/dlp.hpp"
 #include "virtual_stage.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "device/spin.hpp"
+#include "device/stage/spin.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,6 +10,7 @@
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 namespace {
 

@@ -1,3 +1,5 @@
+#include "sim/controllers/private/tic.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -7,13 +9,13 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "device/sim_tic.hpp"
-#include "device/spin.hpp"
-#include "device/tic_stage.hpp"
+#include "device/stage/spin.hpp"
+#include "device/stage/tic_stage.hpp"
 #include "fault_of.hpp"
 
 using namespace vam;
 using namespace vam::device;
+using namespace vam::sim;
 
 namespace {
 

@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "device/gcs_stage.hpp"
-#include "device/sim_gcs.hpp"
+#include "device/stage/gcs_stage.hpp"
+#include "sim/controllers/gcs.hpp"
 
 namespace vam::device {
 
-class SharedDevice final : public SimDevice {
+class SharedDevice final : public sim::SimDevice {
  public:
-  explicit SharedDevice(std::shared_ptr<SimDevice> device) : device_(std::move(device)) {}
+  explicit SharedDevice(std::shared_ptr<sim::SimDevice> device) : device_(std::move(device)) {}
   void receive(std::string_view bytes, double now_s) override { device_->receive(bytes, now_s); }
   void advance(double now_s) override { device_->advance(now_s); }
   std::optional<double> next_due_s() const override { return device_->next_due_s(); }
@@ -19,13 +19,14 @@ class SharedDevice final : public SimDevice {
   bool unplugged() const override { return device_->unplugged(); }
 
  private:
-  std::shared_ptr<SimDevice> device_;
+  std::shared_ptr<sim::SimDevice> device_;
 };
 
 struct VirtualStage {
-  explicit VirtualStage(const SimGcsSettings& sim = {}, const GcsSettings& gcs = {})
-      : device(make_sim_gcs(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })),
-        stage(make_gcs_stage(make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, gcs, "1", nullptr)) {}
+  explicit VirtualStage(const sim::SimGcsSettings& sim = {}, const GcsSettings& gcs = {})
+      : device(sim::make_sim_gcs(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })),
+        stage(make_gcs_stage(sim::make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, gcs, "1",
+                             nullptr)) {}
 
   /// The last of "moving" and "standing" in the simulator's own log.
   [[nodiscard]] bool truly_moves() {
@@ -47,7 +48,7 @@ struct VirtualStage {
 
   VirtualClock clock;
   std::vector<Json> log;
-  std::shared_ptr<SimDevice> device;
+  std::shared_ptr<sim::SimDevice> device;
   std::unique_ptr<Stage> stage;
 };
 

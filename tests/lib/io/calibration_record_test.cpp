@@ -1,4 +1,4 @@
-#include "io/calibration_record.hpp"
+#include "io/settings/calibration_record.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "fault_of.hpp"
-#include "io/printer_file.hpp"
+#include "io/settings/printer_file.hpp"
 #include "scratch.hpp"
 
 using namespace vam;

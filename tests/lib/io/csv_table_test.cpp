@@ -1,4 +1,4 @@
-#include "io/csv_table.hpp"
+#include "io/settings/csv_table.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,3 @@
-#include "io/exr_stack.hpp"
-
 #include <OpenEXR/ImfDoubleAttribute.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfPartType.h>
@@ -11,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "io/exr/stack.hpp"
 #include "lib/io/exr_stacks.hpp"
 
 using namespace vam;

@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "io/exr_stack.hpp"
+#include "io/exr/stack.hpp"
 #include "lib/io/scratch.hpp"
 
 namespace vam::stacks {

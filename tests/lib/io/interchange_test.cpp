@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "io/exr_stack.hpp"
-#include "io/vdb.hpp"
+#include "io/exr/stack.hpp"
+#include "io/vdb/vdb.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam;

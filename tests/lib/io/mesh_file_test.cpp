@@ -1,5 +1,3 @@
-#include "io/mesh_file.hpp"
-
 #include <doctest/doctest.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
+#include "io/mesh/file.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::io::read_mesh;

@@ -1,4 +1,4 @@
-#include "io/printer_file.hpp"
+#include "io/settings/printer_file.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
-#include "io/printer_fields.hpp"
-#include "io/response_file.hpp"
+#include "io/settings/private/printer_fields.hpp"
+#include "io/settings/response_file.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::Error;

@@ -1,4 +1,4 @@
-#include "io/stream.hpp"
+#include "io/stream/stream.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -7,7 +7,7 @@
 #include <csignal>
 #include <thread>
 
-#include "io/output_folder.hpp"
+#include "io/stream/output_folder.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam::io;

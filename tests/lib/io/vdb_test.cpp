@@ -1,4 +1,4 @@
-#include "io/vdb.hpp"
+#include "io/vdb/vdb.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/vdb.hpp"
+#include "io/vdb/vdb.hpp"
 #include "lib/io/scratch.hpp"
 
 namespace vam::volumes {

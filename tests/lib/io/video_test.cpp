@@ -1,4 +1,4 @@
-#include "io/video.hpp"
+#include "io/picture/private/video.hpp"
 
 #include <doctest/doctest.h>
 

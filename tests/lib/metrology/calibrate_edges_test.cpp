@@ -1,11 +1,10 @@
-#include "metrology/calibrate_edges.hpp"
-
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "coverage.hpp"
 #include "fault_of.hpp"
+#include "metrology/calibrate/edges.hpp"
 #include "oracle/calibration_scans.hpp"
 
 using namespace vam;
@@ -13,7 +12,7 @@ using namespace vam::metrology;
 
 namespace {
 
-model::Printer printer_of(const oracle::SweepTruth& truth) {
+model::Printer printer_of(const vam::oracle::SweepTruth& truth) {
   model::Printer printer;
   printer.projector.pixel_mm = truth.pixel_mm;
   printer.projector.telecentric = !truth.lens_mm;
@@ -28,8 +27,9 @@ model::Printer printer_of(const oracle::SweepTruth& truth) {
 constexpr int bands = 3;
 constexpr double band_mm = 6;
 
-SweepScan swept(const oracle::SweepTruth& truth, double pitch_px, double first, double last, oracle::Random& random) {
-  const oracle::SweepBench bench(truth);
+SweepScan swept(const vam::oracle::SweepTruth& truth, double pitch_px, double first, double last,
+                vam::oracle::Random& random) {
+  const vam::oracle::SweepBench bench(truth);
   const std::vector<double> height_mm{7.5, 6, 4.5, 1.5, 0, -1.5, -4.5, -6, -7.5};  // three rows a band
   SweepScan scan;
   scan.width_px = 2;
@@ -47,11 +47,11 @@ SweepScan swept(const oracle::SweepTruth& truth, double pitch_px, double first, 
 }  // namespace
 
 TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, radius within 0.05 %") {
-  oracle::Random random(7);
+  vam::oracle::Random random(7);
   std::uniform_real_distribution<double> part;
   test::Coverage centre("centre"), radius("radius"), tilt("tilt");
   for (int run = 0; run < 200; ++run) {
-    oracle::SweepTruth truth;
+    vam::oracle::SweepTruth truth;
     truth.radius_mm = 10 + 4 * part(random);
     if (run % 4 == 0) {  // a glass wall that is not matched
       truth.wall_mm = 1;
@@ -79,8 +79,8 @@ TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, ra
 }
 
 TEST_CASE("Vial edges: slip 1, the tangent column is further out than the vial") {
-  oracle::Random random(3);
-  oracle::SweepTruth truth;
+  vam::oracle::Random random(3);
+  vam::oracle::SweepTruth truth;
   truth.noise = 0.5;
   const VialEdges found = find_edges(swept(truth, 1, 250, 770, random), printer_of(truth));
   const double tangent_px =
@@ -91,8 +91,8 @@ TEST_CASE("Vial edges: slip 1, the tangent column is further out than the vial")
 }
 
 TEST_CASE("Vial edges: a sweep that misses an edge, a dark one, and a picture without rows are refused") {
-  oracle::Random random(5);
-  oracle::SweepTruth truth;
+  vam::oracle::Random random(5);
+  vam::oracle::SweepTruth truth;
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 500, 800, random), printer_of(truth)); }) == Fault::data);
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 800, 1000, random), printer_of(truth)); }) == Fault::data);
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 100, 0, 1000, random), printer_of(truth)); }) == Fault::data);

@@ -6,16 +6,17 @@
 
 #include "coverage.hpp"
 #include "fault_of.hpp"
-#include "metrology/calibrate_axis.hpp"
-#include "metrology/calibrate_beam.hpp"
-#include "metrology/calibrate_flat.hpp"
-#include "metrology/calibrate_latency.hpp"
-#include "metrology/calibrate_response.hpp"
-#include "metrology/half_maximum.hpp"
+#include "metrology/calibrate/axis.hpp"
+#include "metrology/calibrate/beam.hpp"
+#include "metrology/calibrate/flat.hpp"
+#include "metrology/calibrate/latency.hpp"
+#include "metrology/calibrate/private/half_maximum.hpp"
+#include "metrology/calibrate/response.hpp"
 #include "oracle/calibration_scans.hpp"
 
 using namespace vam;
 using namespace vam::metrology;
+using namespace vam::stats;
 
 namespace {
 
@@ -26,7 +27,7 @@ std::normal_distribution<double> unit;
 // A display's curve: power law over a leak.
 double true_light(double grey, double gamma, double leak) { return leak + (1 - leak) * std::pow(grey / 255, gamma); }
 
-ResponseScan ramp(double gamma, double leak, int readings, double noise, oracle::Random& random) {
+ResponseScan ramp(double gamma, double leak, int readings, double noise, vam::oracle::Random& random) {
   ResponseScan scan;
   for (int level = 0; level <= 16; ++level) {
     scan.grey.push_back(level == 16 ? 255 : 16 * level);
@@ -42,7 +43,7 @@ ResponseScan ramp(double gamma, double leak, int readings, double noise, oracle:
 }  // namespace
 
 TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling") {
-  oracle::Random random(11);
+  vam::oracle::Random random(11);
   test::Coverage levels("levels");
   for (int run = 0; run < runs; ++run) {
     const double gamma = 1 + 1.4 * part(random);
@@ -60,7 +61,7 @@ TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling
 }
 
 TEST_CASE("Response: few levels, single readings, darkness and falling light are refused") {
-  oracle::Random random(12);
+  vam::oracle::Random random(12);
   const auto refused = [](const ResponseScan& scan) { return message_of([&] { (void)measure_response(scan); }); };
   auto few = ramp(1, 0, 5, 0.01, random);
   few.grey.resize(9);
@@ -79,7 +80,7 @@ TEST_CASE("Response: few levels, single readings, darkness and falling light are
 }
 
 TEST_CASE("Flat field: the shape of the light comes out, dead pixels are mended") {
-  oracle::Random random(13);
+  vam::oracle::Random random(13);
   const auto truth = [](int x, int y) { return 1 + 0.2 * std::sin(0.2 * x) * std::cos(0.1 * y); };
   FrameMean frames;
   for (int n = 0; n < 20; ++n) {
@@ -121,7 +122,7 @@ TEST_CASE("Flat field: the shape of the light comes out, dead pixels are mended"
 }
 
 TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
-  oracle::Random random(17);
+  vam::oracle::Random random(17);
   test::Coverage width("width"), divergence("divergence"), at_axis("width at the axis");
   constexpr double pixel_mm = 0.0035;
   for (int run = 0; run < runs; ++run) {
@@ -132,14 +133,14 @@ TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
     BeamWidths widths;
     for (int plane = -5; plane <= 5; ++plane) {
       const double y_mm = 1.27 * plane;
-      oracle::BandTruth truth;
+      vam::oracle::BandTruth truth;
       truth.columns = 160;
       truth.rows = 48;
       truth.middle = 79.5 + 5 * (part(random) - 0.5);
       truth.half_width = 0.5 * fwhm_mm(y_mm) / pixel_mm;
       truth.blur_px = 1.5;
       truth.light = 400;
-      const Measured px = line_width_px(oracle::bright_band(truth, random), "plane");
+      const Measured px = line_width_px(vam::oracle::bright_band(truth, random), "plane");
       if (plane == 3) width.add(px, 2 * truth.half_width);
       widths.plane_mm.push_back(y_mm);
       widths.fwhm_mm.push_back({px.value * pixel_mm, px.sigma * pixel_mm, px.n});
@@ -157,7 +158,7 @@ TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
 }
 
 TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
-  oracle::Random random(19);
+  vam::oracle::Random random(19);
   test::Coverage column("column"), tilt("tilt"), wobble("wobble"), phase("phase");
   for (int run = 0; run < runs; ++run) {
     const double axis = 60 + 10 * part(random);
@@ -170,14 +171,14 @@ TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
     for (int n = 0; n < 24; ++n) {
       scan.angle_deg.push_back(15 * n + 3 * part(random));
       const double theta = (scan.angle_deg.back() - phase_deg) * std::numbers::pi / 180;
-      oracle::BandTruth truth;
+      vam::oracle::BandTruth truth;
       truth.columns = 130;
       truth.rows = 24;
       truth.middle = axis + amplitude * std::cos(theta) + 0.05 * std::sin(2 * theta);
       truth.lean = lean;
       truth.half_width = 30;
       truth.noise = 6;
-      const auto middles = bright_middles(oracle::bright_band(truth, random), 3);
+      const auto middles = bright_middles(vam::oracle::bright_band(truth, random), 3);
       for (std::size_t b = 0; b < 3; ++b) scan.middle[b].push_back(middles[b]);
     }
     const CameraAxis found = find_camera_axis(scan);
@@ -206,7 +207,7 @@ TEST_CASE("Camera axis: offset, tilt, wobble and its phase, 200 turns") {
 }
 
 TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
-  oracle::Random random(23);
+  vam::oracle::Random random(23);
   test::Coverage latency("latency, ms");
   for (int run = 0; run < runs; ++run) {
     const double delay_s = 0.06 * part(random);

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "metrology/measured.hpp"
+#include "base/stats/measured.hpp"
 
 namespace vam::test {
 
@@ -16,7 +16,7 @@ class Coverage {
  public:
   explicit Coverage(std::string name) : name_(std::move(name)) {}
   /// scale: of the error in worst().
-  void add(const metrology::Measured& found, double truth, double scale = 1) {
+  void add(const stats::Measured& found, double truth, double scale = 1) {
     const double error = std::abs(found.value - truth);
     worst_ = std::max(worst_, error * scale);
     ratios_.push_back(error / found.sigma);

@@ -1,4 +1,4 @@
-#include "metrology/cured.hpp"
+#include "metrology/ost/cured.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "metrology/threshold.hpp"
+#include "metrology/ost/threshold.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,4 +1,4 @@
-#include "metrology/deviation.hpp"
+#include "metrology/compare/deviation.hpp"
 
 #include <doctest/doctest.h>
 

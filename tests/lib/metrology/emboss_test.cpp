@@ -1,4 +1,4 @@
-#include "metrology/emboss.hpp"
+#include "metrology/compare/emboss.hpp"
 
 #include <doctest/doctest.h>
 

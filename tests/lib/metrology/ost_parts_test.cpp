@@ -5,9 +5,9 @@
 #include <random>
 
 #include "lib/metrology/synthetic_views.hpp"
-#include "metrology/ost.hpp"
-#include "solid/isosurface.hpp"
-#include "solid/surface.hpp"
+#include "metrology/ost/ost.hpp"
+#include "solid/mesh/surface.hpp"
+#include "solid/voxel/isosurface.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -1,4 +1,4 @@
-#include "metrology/ost.hpp"
+#include "metrology/ost/ost.hpp"
 
 #include <doctest/doctest.h>
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include "device/sim_scene.hpp"
 #include "fault_of.hpp"
-#include "metrology/calibrate_beam.hpp"
-#include "metrology/calibrate_edges.hpp"
+#include "metrology/calibrate/beam.hpp"
+#include "metrology/calibrate/edges.hpp"
 #include "optics/patterns.hpp"
+#include "sim/bench/scene.hpp"
 
 using namespace vam;
 
@@ -22,10 +22,10 @@ Image fractions(const GreyImage& levels) {
   return image;
 }
 
-metrology::SweepScan swept(const device::SimBench& bench, int pitch_px) {
+metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px) {
   const optics::PatternPlan line{"sweep", 1, pitch_px, 2 * pitch_px, 0};
   const auto& projector = bench.printer.projector;
-  const device::SimScene scene(bench, 1, 16);
+  const sim::SimScene scene(bench, 1, 16);
   metrology::SweepScan scan;
   scan.width_px = line.width_px;
   scan.height_mm = {2, 0, -2};
@@ -40,8 +40,8 @@ metrology::SweepScan swept(const device::SimBench& bench, int pitch_px) {
   return scan;
 }
 
-device::SimBench small_bench() {
-  device::SimBench bench;
+sim::SimBench small_bench() {
+  sim::SimBench bench;
   bench.columns = 200;
   bench.rows = 60;
   bench.axis_column = 2.5;
@@ -60,7 +60,7 @@ device::SimBench small_bench() {
 
 // How far the fit of a sweep without noise is from what the bench was set to: what the simulator and the fit do alike
 // to every scan. Columns, and parts of the radius.
-std::pair<double, double> edges_off(device::SimBench bench, int pitch_px) {
+std::pair<double, double> edges_off(sim::SimBench bench, int pitch_px) {
   bench.centre_px = 3.2;
   const auto found = metrology::find_edges(swept(bench, pitch_px), bench.printer);
   return {found.axis_column.value - bench.printer.projector.axis_column - bench.centre_px,
@@ -71,7 +71,7 @@ std::pair<double, double> edges_off(device::SimBench bench, int pitch_px) {
 
 // A hundredth and a tenth of what a scan may be off by.
 TEST_CASE("Edges in a bath on the simulated bench: no bias, telecentric or through a window") {
-  device::SimBench bench = small_bench();
+  sim::SimBench bench = small_bench();
   for (const bool telecentric : {true, false}) {
     bench.printer.projector.telecentric = telecentric;
     const auto [centre_px, radius] = edges_off(bench, 2);
@@ -83,7 +83,7 @@ TEST_CASE("Edges in a bath on the simulated bench: no bias, telecentric or throu
 // Near grazing the light turns by up to 49 degrees, and the camera gets most of it where its lines of sight cross each
 // other. What is left is the sweep's pitch of 4 pixels.
 TEST_CASE("Edges in air on the simulated bench: no bias, telecentric or not") {
-  device::SimBench bench;  // the printer of [RAY21]
+  sim::SimBench bench;  // the printer of [RAY21]
   bench.printer.camera.binning = 1;
   bench.printer.camera.pixel_mm = 0.156;
   bench.columns = 180;
@@ -99,7 +99,7 @@ TEST_CASE("Edges in air on the simulated bench: no bias, telecentric or not") {
 // A lit row is a box of a pixel's height, as wide as a Gaussian of 0.68 of it. What is left is that a plane
 // is 1.6 mm thick, and that such a row is no Gaussian: a hundredth.
 TEST_CASE("A lit row seen from the side: waist, focus and divergence of the simulated beam") {
-  device::SimBench bench = small_bench();
+  sim::SimBench bench = small_bench();
   bench.axis_column = 0;
   bench.beam_mm = 0.5;
   bench.focus_mm = 1.5;
@@ -109,7 +109,7 @@ TEST_CASE("A lit row seen from the side: waist, focus and divergence of the simu
   const GreyImage picture = optics::pattern_frame({"row", 1, 1, 1, 0}, printer.projector, 0);
   for (const double azimuth : {90.0, -90.0}) {
     printer.camera.azimuth_deg = azimuth;
-    const Image frame = fractions(device::SimScene(bench, 1, 16).render({0, &picture, 0}, 20000, 0));
+    const Image frame = fractions(sim::SimScene(bench, 1, 16).render({0, &picture, 0}, 20000, 0));
     const auto widths = metrology::side_widths(frame, {0.15, 99.5}, printer, 9);
     const auto beam = metrology::measure_beam(widths);
     CHECK(beam.waist_mm.value == doctest::Approx(std::hypot(0.5, 0.068)).epsilon(0.01));

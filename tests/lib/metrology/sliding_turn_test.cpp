@@ -1,4 +1,4 @@
-#include "metrology/sliding_turn.hpp"
+#include "metrology/ost/sliding_turn.hpp"
 
 #include <doctest/doctest.h>
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "metrology/views.hpp"
+#include "metrology/ost/views.hpp"
 #include "model/printer.hpp"
 #include "oracle/camera_views.hpp"
-#include "solid/shapes.hpp"
+#include "solid/shapes/shapes.hpp"
 
 namespace vam::test {
 
@@ -22,8 +22,8 @@ inline model::Printer glass_rig() {
   return printer;
 }
 
-inline oracle::CameraBench camera_bench(const model::Printer& printer, int columns, int rows, double pixel_mm) {
-  oracle::CameraBench camera;
+inline vam::oracle::CameraBench camera_bench(const model::Printer& printer, int columns, int rows, double pixel_mm) {
+  vam::oracle::CameraBench camera;
   camera.bench.lens_distance = printer.camera.distance_mm;
   camera.bench.bath = 1;
   camera.bench.cylinders = {{printer.vial.radius_mm, printer.vial.index_glass},
@@ -43,10 +43,11 @@ struct Summing {
 };
 
 /// Noise is Gaussian, seeded, its deviation in the units of the views.
-inline std::vector<metrology::View> take_views(const oracle::CameraBench& camera, const oracle::Density& density,
+inline std::vector<metrology::View> take_views(const vam::oracle::CameraBench& camera,
+                                               const vam::oracle::Density& density,
                                                const std::vector<double>& angles_deg, double noise, int binning,
                                                const Summing& summing = {}) {
-  const oracle::Camera eye(camera, summing.step_mm, summing.reach_mm);
+  const vam::oracle::Camera eye(camera, summing.step_mm, summing.reach_mm);
   std::vector<metrology::View> views(angles_deg.size());
   parallel_for(static_cast<int>(views.size()), [&](int i) {
     Image raw(camera.columns, camera.rows);

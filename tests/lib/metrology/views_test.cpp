@@ -1,4 +1,4 @@
-#include "metrology/views.hpp"
+#include "metrology/ost/views.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "metrology/angle_grid.hpp"
-#include "metrology/axis.hpp"
+#include "metrology/ost/axis.hpp"
+#include "metrology/ost/private/angle_grid.hpp"
 
 using namespace vam;
 using namespace vam::metrology;

@@ -9,7 +9,7 @@
 #include "base/error.hpp"
 #include "fault_of.hpp"
 #include "optics/flatland.hpp"
-#include "optics/taps.hpp"
+#include "optics/private/taps.hpp"
 
 using namespace vam::optics;
 using vam::Image;

@@ -17,8 +17,8 @@ namespace {
 // [RAY21]'s bench in projector pixels: one shell of n = 1.53, R = 212.37, D = 1.8 * 1024.
 View ray21() { return {1843.2, 1.0, 0.0, {{212.37, 1.53}}}; }
 
-oracle::Bench bench_of(const View& view) {
-  oracle::Bench bench;
+vam::oracle::Bench bench_of(const View& view) {
+  vam::oracle::Bench bench;
   if (view.lens_mm) bench.lens_distance = *view.lens_mm;
   bench.bath = view.bath_index;
   bench.window = view.window_mm;
@@ -74,27 +74,27 @@ TEST_CASE("chief rays agree with a vector ray tracer for random lenses, baths an
     const auto edge = column_of(view, 0.98 * reach_mm(view));
     REQUIRE(edge.has_value());
     const double x_p = std::uniform_real_distribution<double>(-*edge, *edge)(random);
-    const auto truth = oracle::trace(bench_of(view), x_p);
+    const auto truth = vam::oracle::trace(bench_of(view), x_p);
     const ChiefRay ray = chief_ray(view, x_p);
     REQUIRE(truth.has_value());
     REQUIRE(ray.hits);
-    const oracle::Line line = oracle::line_of(*truth);
+    const vam::oracle::Line line = vam::oracle::line_of(*truth);
     CHECK(std::abs(ray.x_v_mm - static_cast<double>(line.t)) < 1e-9 * radius);
     CHECK(std::abs(ray.delta_rad - static_cast<double>(line.a)) < 1e-9);
     CHECK(std::abs(ray.transmittance - static_cast<double>(truth->transmittance)) < 1e-9);
 
     // Derivatives: central differences of the tracer, one Richardson step: error h^4 f5 ~ 1e-10, rounding 1e-19 / h.
-    const auto slope = [&](oracle::Real h, auto part) {
-      const auto right = oracle::line_of(*oracle::trace(bench_of(view), x_p + h));
-      const auto left = oracle::line_of(*oracle::trace(bench_of(view), x_p - h));
+    const auto slope = [&](vam::oracle::Real h, auto part) {
+      const auto right = vam::oracle::line_of(*vam::oracle::trace(bench_of(view), x_p + h));
+      const auto left = vam::oracle::line_of(*vam::oracle::trace(bench_of(view), x_p - h));
       return (part(right) - part(left)) / (2 * h);
     };
-    const oracle::Real h = 1e-4L * static_cast<oracle::Real>(radius);
+    const vam::oracle::Real h = 1e-4L * static_cast<vam::oracle::Real>(radius);
     const auto richardson = [&](auto part) {
       return static_cast<double>((4 * slope(h / 2, part) - slope(h, part)) / 3);
     };
-    CHECK(std::abs(ray.jacobian - richardson([](const oracle::Line& l) { return l.t; })) < 1e-9);
-    CHECK(std::abs(ray.delta_rate - richardson([](const oracle::Line& l) { return l.a; })) * radius < 1e-9);
+    CHECK(std::abs(ray.jacobian - richardson([](const vam::oracle::Line& l) { return l.t; })) < 1e-9);
+    CHECK(std::abs(ray.delta_rate - richardson([](const vam::oracle::Line& l) { return l.a; })) * radius < 1e-9);
     ++compared;
   }
   CHECK(compared == 2000);
@@ -104,9 +104,9 @@ TEST_CASE("the tracer and the closed form agree on which rays miss") {
   const View view = ray21();
   const double edge = 213.794;  // the tangent column of physics section 2, slip 1
   CHECK(chief_ray(view, edge - 0.01).hits);
-  CHECK(oracle::trace(bench_of(view), edge - 0.01).has_value());
+  CHECK(vam::oracle::trace(bench_of(view), edge - 0.01).has_value());
   CHECK_FALSE(chief_ray(view, edge + 0.01).hits);
-  CHECK_FALSE(oracle::trace(bench_of(view), edge + 0.01).has_value());
+  CHECK_FALSE(vam::oracle::trace(bench_of(view), edge + 0.01).has_value());
 }
 
 TEST_CASE("column_of inverts chief_ray") {

@@ -4,13 +4,15 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "optimize/loss.hpp"
-#include "optimize/metrics.hpp"
-#include "optimize/surface_band.hpp"
+#include "lib/optimize/parts.hpp"
+#include "optimize/methods/metrics.hpp"
+#include "optimize/methods/private/loss.hpp"
+#include "optimize/target/surface_band.hpp"
 #include "oracle/part_2d.hpp"
-#include "parts.hpp"
 
+using namespace vam;
 using namespace vam::optimize;
+using namespace vam::light;
 
 namespace {
 
@@ -51,7 +53,7 @@ double cost(const Iterate& state, const Problem& problem, bool right) {
 }  // namespace
 
 TEST_CASE("surface voxels are left out unless asked; then they are part from half coverage on") {
-  const auto disc = oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 20.3; });
+  const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 20.3; });
   Demands demands;
   const auto left_out = problem_of(disc, demands);
   demands.surface = true;
@@ -109,7 +111,7 @@ TEST_CASE("the band around the surface: every voxel against every other") {
 }
 
 TEST_CASE("weights: nothing is asked where they are 0, and errors go where they cost less") {
-  const auto target = oracle::resolution_target(size);
+  const auto target = vam::oracle::resolution_target(size);
   std::vector<float> weight(target.size(), 1.0F);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
@@ -194,7 +196,7 @@ TEST_CASE("response curves: slope and area are derivative and integral, doses() 
 }
 
 TEST_CASE("bclp widens the process window of fbp with any response curve") {
-  const auto part = oracle::wheel(size);
+  const auto part = vam::oracle::wheel(size);
   const auto fbp = parts::run({part}, size, 180, "fbp", {}, 0)[0];
   Demands demands;
   for (const auto& curve : {CureCurve::step(0.75, 0.85), CureCurve::logistic(0.8, 0.1),

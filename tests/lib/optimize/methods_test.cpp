@@ -4,20 +4,22 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "optimize/loss.hpp"
-#include "optimize/metrics.hpp"
+#include "lib/optimize/parts.hpp"
+#include "optimize/methods/metrics.hpp"
+#include "optimize/methods/private/loss.hpp"
 #include "oracle/part_2d.hpp"
-#include "parts.hpp"
 
+using namespace vam;
 using namespace vam::optimize;
+using namespace vam::light;
 
 namespace {
 
 constexpr int size = 192;
 
 std::vector<std::vector<float>> some_parts() {
-  return {oracle::disc_grid(size, 0.65), oracle::gyroid(size, 3, 0.7, 0.4), oracle::wheel(size),
-          oracle::resolution_target(size)};
+  return {vam::oracle::disc_grid(size, 0.65), vam::oracle::gyroid(size, 3, 0.7, 0.4), vam::oracle::wheel(size),
+          vam::oracle::resolution_target(size)};
 }
 
 PerSlice losses(const std::vector<Slab>& dose, const Problem& problem) {
@@ -55,7 +57,7 @@ TEST_CASE("CAL19 fig S7: the resin's threshold in the loop") {
 }
 
 TEST_CASE("apg: a binary resolution target prints exactly within 120 projections, with room to spare") {
-  const auto target = oracle::resolution_target(size);
+  const auto target = vam::oracle::resolution_target(size);
   // 6 projections for the start, 12 for the step length, 2 an iteration.
   const auto m = parts::run({target}, size, 360, "apg", {}, 51)[0];
   CHECK(m.ver == 0.0);
@@ -109,8 +111,8 @@ TEST_CASE("apg starts from the better of fbp and dose-norm, and from its first s
 }
 
 TEST_CASE("apg widens the window of an easy part further than a hard one's, which still prints") {
-  const auto easy = oracle::draw(96, [](double x, double y) { return std::hypot(x - 6, y) < 18; });
-  const auto m = parts::run({easy, oracle::resolution_target(96)}, 96, 180, "apg", {}, 40);
+  const auto easy = vam::oracle::draw(96, [](double x, double y) { return std::hypot(x - 6, y) < 18; });
+  const auto m = parts::run({easy, vam::oracle::resolution_target(96)}, 96, 180, "apg", {}, 40);
   CHECK(m[0].min_part - m[0].max_void > 0.15);  // it began with 0.1
   CHECK(m[0].pw > m[1].pw);
   CHECK(m[1].ver == 0.0);
@@ -132,7 +134,7 @@ TEST_CASE("osmo, pm and bclp widen the process window of fbp and leave fewer vox
 }
 
 TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's loss worse") {
-  const auto part = oracle::wheel(96);
+  const auto part = vam::oracle::wheel(96);
   MethodOptions options;
   options.power = 4;
   const auto fbp = parts::run({part}, 96, 180, "fbp", {}, 0)[0];
@@ -190,7 +192,7 @@ TEST_CASE("projections are never negative") {
   for (const auto& name : method_names()) {
     CAPTURE(name);
     const ParallelOperator light(parts::turn(64, 60));
-    const auto part = oracle::wheel(64);
+    const auto part = vam::oracle::wheel(64);
     const auto problem = make_problem(part.data(), 1, 64, 64, parts::circle(64), {});
     Iterate state;
     iterate(*make_method(name, {}), problem, light, {.iterations = 3, .until = {}, .patience = 0}, state);
@@ -201,9 +203,9 @@ TEST_CASE("projections are never negative") {
 TEST_CASE("offset projections keep the shape of the filtered ones") {
   MethodOptions offset;
   offset.offset = true;
-  const auto m = parts::run({oracle::wheel(64)}, 64, 90, "fbp", offset, 0)[0];
+  const auto m = parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", offset, 0)[0];
   // Back-projecting the constant adds the same dose everywhere in the circle, so only the contrast suffers.
-  CHECK(m.cv < parts::run({oracle::wheel(64)}, 64, 90, "fbp", {}, 0)[0].cv);
+  CHECK(m.cv < parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", {}, 0)[0].cv);
 }
 
 TEST_CASE("contradictory thresholds and unknown methods are refused") {

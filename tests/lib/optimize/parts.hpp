@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "optimize/iterate.hpp"
-#include "optimize/metrics.hpp"
-#include "optimize/parallel_operator.hpp"
+#include "light/parallel.hpp"
+#include "optimize/methods/metrics.hpp"
+#include "optimize/run/iterate.hpp"
 
 namespace parts {
 
@@ -29,7 +29,7 @@ inline std::vector<float> stacked(const std::vector<std::vector<float>>& slices)
 inline std::vector<vam::model::DoseMetrics> run(const std::vector<std::vector<float>>& slices, int size, int angles,
                                                 const std::string& name, const vam::optimize::MethodOptions& options,
                                                 int iterations, const vam::optimize::Demands& demands = {}) {
-  const vam::optimize::ParallelOperator light(turn(size, angles));
+  const vam::light::ParallelOperator light(turn(size, angles));
   const auto all = stacked(slices);
   const auto problem =
       vam::optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, circle(size), demands);

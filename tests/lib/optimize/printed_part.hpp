@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "metrology/simulation.hpp"
+#include "light/parallel.hpp"
+#include "light/simulation.hpp"
+#include "light/vial_operator.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
-#include "optimize/automatic.hpp"
-#include "optimize/parallel_operator.hpp"
-#include "optimize/slice_figures.hpp"
-#include "optimize/vial_operator.hpp"
-#include "optimize/volume.hpp"
-#include "solid/shapes.hpp"
+#include "optimize/methods/automatic.hpp"
+#include "optimize/run/slice_figures.hpp"
+#include "optimize/run/volume.hpp"
+#include "solid/shapes/shapes.hpp"
 #include "tomo/fbp.hpp"
 
 namespace parts {
@@ -65,6 +65,7 @@ inline vam::model::StackInfo stack_info(const Part& part, int angles) {
 inline Light make_light(const Part& part, const vam::model::Printer& printer, int angles, const std::string& method,
                         bool resampled) {
   using namespace vam::optimize;
+  using namespace vam::light;
   const bool automatic = method == "auto";
   const std::string name = automatic ? automatic_method : method;
   VolumeTask task;
@@ -113,7 +114,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
 
 /// Of the whole part, by metrology's chief rays; voxels that the surface cuts are left out.
 inline vam::model::DoseMetrics judge(const Part& part, const vam::model::Printer& printer, const Light& light) {
-  const vam::metrology::Simulation simulation(printer, {}, light.info, part.grid);
+  const vam::light::Simulation simulation(printer, {}, light.info, part.grid);
   const auto circle = vam::model::writable_circle(part.grid, printer);
   std::vector<vam::Image> doses(light.sinograms.size());
   simulation.dose(light.sinograms, doses);

@@ -1,4 +1,4 @@
-#include "optimize/quantise.hpp"
+#include "optimize/run/quantise.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "optimize/volume.hpp"
+#include "optimize/run/volume.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,12 +7,14 @@
 #include <cstring>
 
 #include "base/error.hpp"
-#include "optimize/schedule.hpp"
-#include "optimize/shadowed_operator.hpp"
+#include "lib/optimize/parts.hpp"
+#include "light/shadowed.hpp"
+#include "optimize/target/schedule.hpp"
 #include "oracle/part_2d.hpp"
-#include "parts.hpp"
 
+using namespace vam;
 using namespace vam::optimize;
+using namespace vam::light;
 
 namespace {
 
@@ -46,11 +48,11 @@ Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {})
 std::vector<float> dose_of(const vam::Image& image) {
   const auto turn = parts::turn(size, angles);
   Slab sinogram(size, angles);
-  vam::tomo::pack(image.values.data(), 1, sinogram);
+  pack(image.values.data(), 1, sinogram);
   Slab dose(size, size);
   vam::tomo::adjoint(turn, {&sinogram, 1}, {&dose, 1});
   std::vector<float> values(size * size);
-  vam::tomo::unpack(dose, 1, values.data());
+  unpack(dose, 1, values.data());
   for (float& v : values) v *= static_cast<float>(turn.angle_step_rad);
   return values;
 }
@@ -58,7 +60,7 @@ std::vector<float> dose_of(const vam::Image& image) {
 }  // namespace
 
 TEST_CASE("a constant cross-section costs one slice, and equal slices get equal projections") {
-  const auto wheel = oracle::wheel(size);
+  const auto wheel = vam::oracle::wheel(size);
   const std::vector<float> empty(size * size, 0.0F);
   std::vector<std::vector<float>> slices(100, wheel);
   slices.front() = slices.back() = empty;
@@ -71,9 +73,9 @@ TEST_CASE("a constant cross-section costs one slice, and equal slices get equal 
 
 TEST_CASE("one threshold dose prints all slices: the middle of the window, in every slice") {
   const auto disc = [](double radius) {
-    return oracle::draw(size, [=](double x, double y) { return std::hypot(x - 4, y) < radius; });
+    return vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x - 4, y) < radius; });
   };
-  const std::vector<std::vector<float>> slices{disc(4), disc(12), disc(24), oracle::wheel(size)};
+  const std::vector<std::vector<float>> slices{disc(4), disc(12), disc(24), vam::oracle::wheel(size)};
   VolumeTask task;
   task.make = [] { return make_method("fbp", {}); };  // clipping alone gives each of them another scale
   const auto result = run(slices, task);
@@ -97,7 +99,7 @@ TEST_CASE("one threshold dose prints all slices: the middle of the window, in ev
 TEST_CASE("more slices than a pass come out in order, each as if alone") {
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 70; ++k) {
-    slices.push_back(oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
+    slices.push_back(vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
   }
   const auto all = run(slices);
   CHECK(all.outcome.jobs == 70);
@@ -112,11 +114,11 @@ TEST_CASE("more slices than a pass come out in order, each as if alone") {
 
 TEST_CASE("a slice that the part only grazes is printed from half coverage on") {
   auto cut = [](float coverage) {
-    auto slice = oracle::wheel(size);
+    auto slice = vam::oracle::wheel(size);
     for (float& v : slice) v *= coverage;
     return slice;
   };
-  const auto result = run({oracle::wheel(size), cut(0.6F), cut(0.4F)});
+  const auto result = run({vam::oracle::wheel(size), cut(0.6F), cut(0.4F)});
   const auto largest = [&](std::size_t s) {
     return *std::max_element(result.images[s].values.begin(), result.images[s].values.end());
   };
@@ -127,14 +129,14 @@ TEST_CASE("a slice that the part only grazes is printed from half coverage on") 
 TEST_CASE("a part beyond the light is refused with both radii") {
   VolumeTask task;
   task.circle = {31.5, 31.5, 20};
-  CHECK_THROWS_WITH_AS(run({oracle::wheel(size)}, task), doctest::Contains("light reaches only 20;"), vam::Error);
+  CHECK_THROWS_WITH_AS(run({vam::oracle::wheel(size)}, task), doctest::Contains("light reaches only 20;"), vam::Error);
 }
 
 TEST_CASE("targets without part or without void are refused") {
   CHECK_THROWS_WITH_AS(run({std::vector<float>(size * size, 0.0F)}), doctest::Contains("is empty"), vam::Error);
   VolumeTask task;
   task.circle = {31.5, 31.5, 20};
-  const auto full = oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 19.9; });
+  const auto full = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 19.9; });
   auto disc = full;
   for (float& v : disc) v = v > 0 ? 1.0F : 0.0F;
   task.circle.radius = 19;  // smaller than the disc, larger than nothing: the part leaves it, which is said first
@@ -148,9 +150,9 @@ TEST_CASE("targets without part or without void are refused") {
 }
 
 TEST_CASE("an insert that overlaps the part is refused; one that hides part of it is told") {
-  const auto disc = oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 10; });
-  const auto ring = oracle::draw(size, [](double x, double y) { return std::abs(std::hypot(x, y) - 14) < 2; });
-  const auto outside = oracle::draw(size, [](double x, double y) {
+  const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 10; });
+  const auto ring = vam::oracle::draw(size, [](double x, double y) { return std::abs(std::hypot(x, y) - 14) < 2; });
+  const auto outside = vam::oracle::draw(size, [](double x, double y) {
     return std::hypot(x, y) < 10 || (std::hypot(x, y) > 19 && std::hypot(x, y) < 24);
   });
   VolumeTask task;
@@ -170,7 +172,7 @@ TEST_CASE("an insert that overlaps the part is refused; one that hides part of i
 }
 
 TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
-  const std::vector<std::vector<float>> slices{oracle::wheel(size)};
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.watch = true;
   task.make = [] { return make_method("cal", {}); };
@@ -187,7 +189,7 @@ TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
 }
 
 TEST_CASE("projections to start from are taken up") {
-  const std::vector<std::vector<float>> slices{oracle::wheel(size)};
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.limits.iterations = 20;
   task.make = [] { return make_method("cal", {}); };
@@ -254,7 +256,8 @@ Broken run_in_pieces(const std::vector<std::vector<float>>& slices, const Volume
 TEST_CASE("a run that is broken off again and again gives the bytes of one that is not, with every method") {
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 70; ++k) {  // two passes; the last slices come again
-    slices.push_back(oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * (k % 67); }));
+    slices.push_back(
+        vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * (k % 67); }));
   }
   for (const auto& name : method_names()) {
     CAPTURE(name);
@@ -279,7 +282,7 @@ TEST_CASE("a run that is broken off again and again gives the bytes of one that 
 TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 70; ++k) {
-    slices.push_back(oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
+    slices.push_back(vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
   }
   VolumeTask task;
   task.blur_px = 0.8;
@@ -298,7 +301,7 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
 }
 
 TEST_CASE("a damaged state, and one of another job, are refused") {
-  const std::vector<std::vector<float>> slices{oracle::wheel(size)};
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.limits.iterations = 5;
   task.make = [] { return make_method("apg", {}); };
@@ -330,7 +333,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
 }
 
 TEST_CASE("light never exceeds the largest, whatever the scale of the end") {
-  const std::vector<std::vector<float>> slices{oracle::wheel(size), oracle::resolution_target(size)};
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
   for (const std::string name : {"cal", "osmo", "pm", "bclp", "apg"}) {
     CAPTURE(name);
     VolumeTask task;

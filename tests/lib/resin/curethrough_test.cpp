@@ -1,4 +1,4 @@
-#include "resin/curethrough.hpp"
+#include "resin/curethrough/curethrough.hpp"
 
 #include <doctest/doctest.h>
 
@@ -27,7 +27,7 @@ void compare(const resin::Process& process, std::uint32_t seed) {
   const resin::Limits limits = resin::limits_of(process);
   const double critical = resin::critical_intensity_mw_cm2(process);
   const int slices = 30;
-  oracle::Print print{process.slice_um * 1e-3, process.absorbance_height_um * 1e-3, process.speed_mm_h / 3600, {}};
+  vam::oracle::Print print{process.slice_um * 1e-3, process.absorbance_height_um * 1e-3, process.speed_mm_h / 3600, {}};
   print.intensity_mw_cm2 = random_intensities(slices, process.min_intensity_mw_cm2, process.max_intensity_mw_cm2, seed);
   std::vector<double> phi;
   for (const double value : print.intensity_mw_cm2) phi.push_back(value / critical);
@@ -36,8 +36,8 @@ void compare(const resin::Process& process, std::uint32_t seed) {
   CHECK(omega.back() == 0);
   for (int n = 0; n < slices; ++n) {
     const double z = n * print.slice_mm;
-    const double dose = process.exposure == Exposure::continuous ? oracle::continuous_dose_mj_cm3(print, z)
-                                                                 : oracle::layered_dose_mj_cm3(print, z);
+    const double dose = process.exposure == Exposure::continuous ? vam::oracle::continuous_dose_mj_cm3(print, z)
+                                                                 : vam::oracle::layered_dose_mj_cm3(print, z);
     const double expected = dose / process.critical_dose_mj_cm3;
     CHECK(std::fabs(omega[static_cast<std::size_t>(n)] - expected) <= 1e-6 * expected);
   }
@@ -63,20 +63,20 @@ TEST_CASE("the dose half way through a slice and the cured thickness agree with 
   process.absorbance_height_um = 300;
   const resin::Limits limits = resin::limits_of(process);
   const double critical = resin::critical_intensity_mw_cm2(process);
-  oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
+  vam::oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
   std::vector<double> phi;
   for (const double value : print.intensity_mw_cm2) phi.push_back(value / critical);
   const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
   for (int n = 0; n < 12; ++n) {
     const auto i = static_cast<std::size_t>(n);
-    const double centre = oracle::continuous_dose_mj_cm3(print, (n + 0.5) * 0.05) / 576;
+    const double centre = vam::oracle::continuous_dose_mj_cm3(print, (n + 0.5) * 0.05) / 576;
     CHECK(resin::dose_at_centre(phi[i], omega[i + 1], limits) == doctest::Approx(centre).epsilon(1e-6));
     // A threshold between the doses of both planes is crossed where the fraction says: the oracle's dose there is it.
     const double threshold = 0.3 * omega[i] + 0.7 * omega[i + 1];
     const double fraction = resin::cured_fraction(phi[i], omega[i + 1], threshold, limits);
     const double depth = omega[i] > omega[i + 1] ? fraction : 1 - fraction;  // from the platform side
     // The oracle starts the exposure of a point inside a slice at one of its 2000 steps: half a step of 110/16.
-    const double there = oracle::continuous_dose_mj_cm3(print, (n + depth) * 0.05) / 576;
+    const double there = vam::oracle::continuous_dose_mj_cm3(print, (n + depth) * 0.05) / 576;
     CHECK(std::fabs(there - threshold) < 0.5 / 2000 * (1 - limits.q) * 110 / critical * 1.5);
   }
 }

@@ -1,4 +1,4 @@
-#include "resin/slice_correction.hpp"
+#include "resin/curethrough/slice_correction.hpp"
 
 #include <doctest/doctest.h>
 

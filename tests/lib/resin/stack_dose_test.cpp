@@ -1,4 +1,4 @@
-#include "resin/stack_dose.hpp"
+#include "resin/curethrough/stack_dose.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "resin/cure_map.hpp"
-#include "resin/target_dose.hpp"
+#include "resin/curethrough/cure_map.hpp"
+#include "resin/curethrough/target_dose.hpp"
 
 using namespace vam;
 

@@ -1,4 +1,4 @@
-#include "resin/sweep.hpp"
+#include "resin/curethrough/sweep.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "resin/gaps.hpp"
-#include "resin/target_dose.hpp"
+#include "resin/curethrough/gaps.hpp"
+#include "resin/curethrough/target_dose.hpp"
 
 using namespace vam;
 

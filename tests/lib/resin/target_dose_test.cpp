@@ -1,4 +1,4 @@
-#include "resin/target_dose.hpp"
+#include "resin/curethrough/target_dose.hpp"
 
 #include <doctest/doctest.h>
 
@@ -168,9 +168,9 @@ TEST_CASE("thousands of random columns: every constraint holds, or the column is
 namespace {
 
 // The constraints as a linear program in y = phi - phi_min >= 0. Omega(n) = sum_{m >= n} gain q^(m-n) phi_m.
-oracle::LinearProgram program_of(const Part& part, const resin::Limits& limits, double omega_max, int slices) {
+vam::oracle::LinearProgram program_of(const Part& part, const resin::Limits& limits, double omega_max, int slices) {
   const auto count = static_cast<std::size_t>(slices);
-  oracle::LinearProgram lp;
+  vam::oracle::LinearProgram lp;
   lp.cost.assign(count, 0);
   const auto add = [&](const std::vector<double>& row, double bound) {
     lp.a.push_back(row);
@@ -223,12 +223,12 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
     const int extra = trial % 4 == 0 ? 0 : std::min(6, needed_extra(limits));
     const int slices = static_cast<int>(part.size()) + extra;
     const double omega_max = trial % 2 == 0 ? 3.0 : std::numeric_limits<double>::infinity();
-    oracle::LinearProgram lp = program_of(part, limits, omega_max, slices);
+    vam::oracle::LinearProgram lp = program_of(part, limits, omega_max, slices);
     const resin::Column least = resin::correct_column(part, limits, {1}, extra);
 
     // Total light: sum of phi.
     std::fill(lp.cost.begin(), lp.cost.end(), 1.0);
-    const auto best = oracle::minimise(lp);
+    const auto best = vam::oracle::minimise(lp);
     INFO("trial " << trial);
     // omega_max = 1 asks for phi_min <= hold(); a looser limit may be feasible without it.
     if (limits.settled(limits.phi_min) < 1) CHECK(best.has_value() == least.feasible());
@@ -255,7 +255,7 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
       lp.cost[static_cast<std::size_t>(m)] = inside ? -weight : weight;
       base += weight * limits.phi_min;
     }
-    const auto extreme = oracle::minimise(lp);
+    const auto extreme = vam::oracle::minimise(lp);
     REQUIRE(extreme.has_value());
     const double dose = base + (inside ? -extreme->value : extreme->value);
     CHECK(full.omega[static_cast<std::size_t>(probe)] == doctest::Approx(dose).epsilon(1e-7));

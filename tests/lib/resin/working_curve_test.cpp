@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "resin/student.hpp"
+#include "base/stats/student.hpp"
 
 using namespace vam;
 using resin::CuredSample;
@@ -62,14 +62,14 @@ std::string message(const std::vector<CuredSample>& samples) {
 TEST_CASE("Student's t") {
   for (const double freedom : {1.0, 2.0, 5.0, 16.0, 120.0}) {
     for (const double t : {0.1, 1.0, 2.5, 6.0}) {
-      CHECK(resin::student_tail(t, freedom) == doctest::Approx(integrated_tail(t, freedom)).epsilon(1e-6));
+      CHECK(stats::student_tail(t, freedom) == doctest::Approx(integrated_tail(t, freedom)).epsilon(1e-6));
     }
   }
-  CHECK(resin::student_quantile(0.05, 5) == doctest::Approx(2.570582).epsilon(1e-6));  // any printed table
-  CHECK(resin::student_quantile(0.01, 10) == doctest::Approx(3.169273).epsilon(1e-6));
-  CHECK(resin::student_tail(resin::student_quantile(0.02, 7), 7) == doctest::Approx(0.02).epsilon(1e-9));
-  CHECK(resin::f_tail(4.102821, 2, 10) == doctest::Approx(0.05).epsilon(1e-5));
-  CHECK(resin::f_tail(3.0 * 3.0, 1, 8) == doctest::Approx(resin::student_tail(3.0, 8)).epsilon(1e-9));
+  CHECK(stats::student_quantile(0.05, 5) == doctest::Approx(2.570582).epsilon(1e-6));  // any printed table
+  CHECK(stats::student_quantile(0.01, 10) == doctest::Approx(3.169273).epsilon(1e-6));
+  CHECK(stats::student_tail(stats::student_quantile(0.02, 7), 7) == doctest::Approx(0.02).epsilon(1e-9));
+  CHECK(stats::f_tail(4.102821, 2, 10) == doctest::Approx(0.05).epsilon(1e-5));
+  CHECK(stats::f_tail(3.0 * 3.0, 1, 8) == doctest::Approx(stats::student_tail(3.0, 8)).epsilon(1e-9));
 }
 
 TEST_CASE("exact data give the exact curve") {

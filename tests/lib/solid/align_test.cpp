@@ -1,12 +1,12 @@
-#include "solid/align.hpp"
+#include "solid/mesh/align.hpp"
 
 #include <doctest/doctest.h>
 
 #include "lib/meshes.hpp"
-#include "solid/isosurface.hpp"
-#include "solid/shapes.hpp"
-#include "solid/surface.hpp"
-#include "solid/winding.hpp"
+#include "solid/mesh/private/winding.hpp"
+#include "solid/mesh/surface.hpp"
+#include "solid/shapes/shapes.hpp"
+#include "solid/voxel/isosurface.hpp"
 
 using namespace vam;
 using vam::model::TriangleSoup;

@@ -1,4 +1,4 @@
-#include "solid/isosurface.hpp"
+#include "solid/voxel/isosurface.hpp"
 
 #include <doctest/doctest.h>
 

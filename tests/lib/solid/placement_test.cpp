@@ -1,5 +1,5 @@
 // Where parts land, and which grid holds them.
-#include "solid/placement.hpp"
+#include "solid/voxel/placement.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "oracle/meshes.hpp"
-#include "solid/shapes.hpp"
+#include "solid/shapes/shapes.hpp"
 
 using namespace vam;
 using namespace vam::solid;
@@ -47,7 +47,7 @@ TEST_CASE("rotations are right-handed, about x, then y, then z; quarter turns ar
 }
 
 TEST_CASE("scale, rotate, fit, centre, stretch, in this order") {
-  const model::TriangleSoup brick = oracle::box({10, 10, 10}, {12, 14, 11});
+  const model::TriangleSoup brick = vam::oracle::box({10, 10, 10}, {12, 14, 11});
   Placement placement;
   placement.centre = false;
   CHECK(placed(brick, placement).box.high == Point{12, 14, 11});
@@ -67,9 +67,9 @@ TEST_CASE("to fit the writable cylinder") {
   Placement placement;
   placement.fit_writable = true;
   placement.stretch_z = 1.1;
-  const Extent flat = placed(oracle::box({0, 0, 0}, {6, 8, 1}), placement);
+  const Extent flat = placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement);
   CHECK(flat.radius_mm == doctest::Approx(8));  // bound by the circle
-  const Extent tall = placed(oracle::box({0, 0, 0}, {1, 1, 30}), placement);
+  const Extent tall = placed(vam::oracle::box({0, 0, 0}, {1, 1, 30}), placement);
   CHECK(tall.box.high[2] == doctest::Approx(20));  // bound by the rows, after stretching
   const Field shape = make_shape("hollow-cylinder");
   CHECK(transformed(shape, place(shape, placement, room, "test")).radius_mm == doctest::Approx(8).epsilon(1e-4));
@@ -116,7 +116,7 @@ TEST_CASE("a part that leaves the writable cylinder is refused with both numbers
 }
 
 TEST_CASE("a mirror turns triangles over, so that outside stays outside") {
-  model::TriangleSoup mesh = oracle::box({-1, -1, -1}, {1, 1, 1});
+  model::TriangleSoup mesh = vam::oracle::box({-1, -1, -1}, {1, 1, 1});
   transform(mesh, scaling({-1, 1, 1}));
-  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(8));
 }

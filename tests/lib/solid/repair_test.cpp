@@ -1,5 +1,5 @@
 // What repair finds and does, counted on meshes with known damage.
-#include "solid/repair.hpp"
+#include "solid/mesh/repair.hpp"
 
 #include <doctest/doctest.h>
 
@@ -16,7 +16,7 @@ using model::TriangleSoup;
 
 namespace {
 
-const TriangleSoup cube = oracle::box({-1, -1, -1}, {1, 1, 1});
+const TriangleSoup cube = vam::oracle::box({-1, -1, -1}, {1, 1, 1});
 
 Repair repaired(TriangleSoup& mesh) { return repair(mesh, "test"); }
 Repair repaired_copy(TriangleSoup mesh) { return repair(mesh, "test"); }
@@ -31,11 +31,11 @@ TEST_CASE("a sound mesh is left as it is") {
   CHECK(done.summary().empty());
   CHECK(done.components == 1);
   CHECK(mesh.triangles.size() == 12);
-  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(8));
 }
 
 TEST_CASE("equal points are welded, 0 and -0 too, and unused ones dropped") {
-  TriangleSoup mesh = oracle::unwelded(oracle::box({0, 0, 0}, {1, 1, 1}));
+  TriangleSoup mesh = vam::oracle::unwelded(vam::oracle::box({0, 0, 0}, {1, 1, 1}));
   for (std::size_t i = 0; i < mesh.points.size(); i += 2) {
     for (double& c : mesh.points[i]) {
       if (c == 0) c = -0.0;
@@ -50,14 +50,14 @@ TEST_CASE("equal points are welded, 0 and -0 too, and unused ones dropped") {
 }
 
 TEST_CASE("cracks are welded, features are not") {
-  TriangleSoup mesh = oracle::cracked(oracle::sphere(10, 20), 1e-4, 1);
+  TriangleSoup mesh = vam::oracle::cracked(vam::oracle::sphere(10, 20), 1e-4, 1);
   const Repair done = repaired(mesh);
   CHECK(done.closed());
   CHECK(done.weld_distance > 2e-4);
   CHECK(done.weld_distance < 0.0035);  // 1e-4 of the diagonal
-  CHECK(mesh.points.size() == oracle::sphere(10, 20).points.size());
+  CHECK(mesh.points.size() == vam::oracle::sphere(10, 20).points.size());
   // Two sheets a hair apart keep their points: nothing but borders is joined, at a fifth of their edges at most.
-  TriangleSoup wall = oracle::box({0, 0, 0}, {10, 10, 1e-4});
+  TriangleSoup wall = vam::oracle::box({0, 0, 0}, {10, 10, 1e-4});
   CHECK(repaired(wall).weld_distance == 0);
   CHECK(wall.points.size() == 8);
 }
@@ -72,54 +72,54 @@ TEST_CASE("degenerate and duplicate triangles go") {
   CHECK(done.duplicates_dropped == 2);
   CHECK(mesh.triangles.size() == 12);
   CHECK(done.closed());
-  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(8));
 }
 
 TEST_CASE("a wall of no thickness between closed surfaces goes, both sides of it") {
   // Two cubes side by side, each with its own face where they touch: the two copies cancel.
-  TriangleSoup mesh = oracle::join(cube, cube, {2, 0, 0});
+  TriangleSoup mesh = vam::oracle::join(cube, cube, {2, 0, 0});
   const Repair done = repaired(mesh);
   CHECK(done.closed());
   CHECK(done.duplicates_dropped == 4);
   CHECK(done.components == 1);
-  CHECK(oracle::signed_volume(mesh) == doctest::Approx(16));
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(16));
 }
 
 TEST_CASE("a surface in both orientations at once is kept once") {
-  TriangleSoup mesh = oracle::join(cube, oracle::flipped(cube, 1, 1));
+  TriangleSoup mesh = vam::oracle::join(cube, vam::oracle::flipped(cube, 1, 1));
   const Repair done = repaired(mesh);
   CHECK(done.duplicates_dropped == 12);
-  CHECK(oracle::signed_volume(mesh) == doctest::Approx(8));
+  CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(8));
 }
 
 TEST_CASE("orientation: one triangle, all of them, and one of two solids") {
   for (const double share : {0.1, 1.0}) {
-    TriangleSoup mesh = oracle::flipped(oracle::sphere(3, 20), share, 4);
+    TriangleSoup mesh = vam::oracle::flipped(vam::oracle::sphere(3, 20), share, 4);
     CHECK(repaired(mesh).closed());
-    CHECK(oracle::signed_volume(mesh) == doctest::Approx(oracle::signed_volume(oracle::sphere(3, 20))));
+    CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(vam::oracle::signed_volume(vam::oracle::sphere(3, 20))));
   }
-  TriangleSoup two = oracle::join(cube, oracle::flipped(cube, 1, 1), {5, 0, 0});
+  TriangleSoup two = vam::oracle::join(cube, vam::oracle::flipped(cube, 1, 1), {5, 0, 0});
   const Repair done = repaired(two);
   CHECK(done.flipped == 12);
   CHECK(done.components == 2);
   CHECK(done.cavities == 0);
-  CHECK(oracle::signed_volume(two) == doctest::Approx(16));
+  CHECK(vam::oracle::signed_volume(two) == doctest::Approx(16));
 }
 
 TEST_CASE("cavities and islands keep their sense, in files that are inside out too") {
-  const TriangleSoup large = oracle::box({-3, -3, -3}, {3, 3, 3});
-  const TriangleSoup island = oracle::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
-  const TriangleSoup nest = oracle::join(oracle::join(large, oracle::flipped(cube, 1, 1)), island);
+  const TriangleSoup large = vam::oracle::box({-3, -3, -3}, {3, 3, 3});
+  const TriangleSoup island = vam::oracle::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+  const TriangleSoup nest = vam::oracle::join(vam::oracle::join(large, vam::oracle::flipped(cube, 1, 1)), island);
   for (const double share : {0.0, 1.0}) {
-    TriangleSoup mesh = oracle::flipped(nest, share, 1);
+    TriangleSoup mesh = vam::oracle::flipped(nest, share, 1);
     const Repair done = repaired(mesh);
     CHECK(done.cavities == 1);
-    CHECK(oracle::signed_volume(mesh) == doctest::Approx(216 - 8 + 1));
+    CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(216 - 8 + 1));
   }
   // The box of one holds that of the other, but not its body: a ring's middle is outside.
-  TriangleSoup frame =
-      oracle::join(oracle::join(oracle::box({-3, 2, -3}, {3, 3, 3}), oracle::box({-3, -3, -3}, {3, -2, 3})),
-                   oracle::flipped(cube, 1, 1));
+  TriangleSoup frame = vam::oracle::join(
+      vam::oracle::join(vam::oracle::box({-3, 2, -3}, {3, 3, 3}), vam::oracle::box({-3, -3, -3}, {3, -2, 3})),
+      vam::oracle::flipped(cube, 1, 1));
   CHECK(repaired(frame).cavities == 0);
 }
 
@@ -132,7 +132,7 @@ TEST_CASE("open, crowded and unorientable edges are counted") {
   CHECK(open.summary() == "3 open edges remain");
 
   // Two cubes that share one edge only: closed, though four triangles meet there.
-  const Repair edge = repaired_copy(oracle::join(cube, cube, {2, 2, 0}));
+  const Repair edge = repaired_copy(vam::oracle::join(cube, cube, {2, 2, 0}));
   CHECK(edge.crowded_edges == 1);
   CHECK(edge.closed());
 
@@ -158,17 +158,19 @@ TEST_CASE("open, crowded and unorientable edges are counted") {
 // CGAL chooses one of the two sides, this house the outer one: what both must agree on is which triangles run the same
 // way, so the enclosed volume is the same up to its sign, whatever was flipped, split or doubled.
 TEST_CASE("welded and oriented as CGAL's polygon soup does it") {
-  const TriangleSoup sphere = oracle::sphere(3, 20);
+  const TriangleSoup sphere = vam::oracle::sphere(3, 20);
   for (const TriangleSoup& damaged :
-       {oracle::unwelded(sphere), oracle::flipped(oracle::unwelded(sphere), 0.2, 3), oracle::flipped(sphere, 0.45, 7),
-        oracle::join(sphere, sphere), oracle::unwelded(oracle::flipped(cube, 0.3, 5))}) {
+       {vam::oracle::unwelded(sphere), vam::oracle::flipped(vam::oracle::unwelded(sphere), 0.2, 3),
+        vam::oracle::flipped(sphere, 0.45, 7), vam::oracle::join(sphere, sphere),
+        vam::oracle::unwelded(vam::oracle::flipped(cube, 0.3, 5))}) {
     TriangleSoup ours = damaged;
     const Repair done = repaired(ours);
-    const TriangleSoup theirs = oracle::oriented_by_cgal(damaged);
+    const TriangleSoup theirs = vam::oracle::oriented_by_cgal(damaged);
     CHECK(done.closed());
     CHECK(ours.points.size() == theirs.points.size());
     CHECK(ours.triangles.size() == theirs.triangles.size());
-    CHECK(oracle::signed_volume(ours) == doctest::Approx(std::abs(oracle::signed_volume(theirs))).epsilon(1e-12));
+    CHECK(vam::oracle::signed_volume(ours) ==
+          doctest::Approx(std::abs(vam::oracle::signed_volume(theirs))).epsilon(1e-12));
   }
 }
 

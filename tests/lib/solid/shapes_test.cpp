@@ -1,5 +1,5 @@
 // Shapes against volumes in closed form, and the catalogue against bad input.
-#include "solid/shapes.hpp"
+#include "solid/shapes/shapes.hpp"
 
 #include <doctest/doctest.h>
 

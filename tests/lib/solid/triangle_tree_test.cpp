@@ -1,5 +1,5 @@
 // The tree against CGAL's, and heights from above against closed forms.
-#include "solid/triangle_tree.hpp"
+#include "solid/mesh/private/triangle_tree.hpp"
 
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "lib/meshes.hpp"
-#include "solid/height_map.hpp"
+#include "solid/mesh/height_map.hpp"
 
 using namespace vam;
 using namespace vam::solid;

@@ -1,5 +1,5 @@
 // Coverage against exact volumes, and what damage does to it.
-#include "solid/voxelize.hpp"
+#include "solid/voxel/voxelize.hpp"
 
 #include <doctest/doctest.h>
 
@@ -10,8 +10,8 @@
 #include "base/parallel.hpp"
 #include "oracle/convex.hpp"
 #include "oracle/meshes.hpp"
-#include "solid/placement.hpp"
-#include "solid/repair.hpp"
+#include "solid/mesh/repair.hpp"
+#include "solid/voxel/placement.hpp"
 
 using namespace vam;
 using namespace vam::solid;
@@ -61,12 +61,12 @@ double grossly_wrong(const std::vector<float>& got, const std::vector<float>& wa
 
 // A turned box as half spaces and as a mesh.
 struct Turned {
-  std::vector<oracle::HalfSpace> planes;
+  std::vector<vam::oracle::HalfSpace> planes;
   TriangleSoup mesh;
 };
 Turned turned_box(const Vector3& half, const Affine& turn) {
   Turned result;
-  result.mesh = oracle::box(-1.0 * half, half);
+  result.mesh = vam::oracle::box(-1.0 * half, half);
   for (Vector3& p : result.mesh.points) p = turn(p);
   const Affine linear{turn.linear, {}};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -83,12 +83,12 @@ Turned turned_box(const Vector3& half, const Affine& turn) {
 }  // namespace
 
 TEST_CASE("a sphere of 80,000 triangles has the volume of its mesh") {
-  const TriangleSoup mesh = oracle::sphere(45, 142);
+  const TriangleSoup mesh = vam::oracle::sphere(45, 142);
   REQUIRE(mesh.triangles.size() > 80000);
   const Result result = voxels(mesh, cube_grid(96));
   CHECK(result.repair.closed());
   // The bar is 1e-4; what is left is the rounding of 900,000 floats.
-  CHECK(std::abs(result.sum() / oracle::signed_volume(mesh) - 1) < 1e-6);
+  CHECK(std::abs(result.sum() / vam::oracle::signed_volume(mesh) - 1) < 1e-6);
 }
 
 TEST_CASE("every voxel of turned boxes against cutting cubes with half spaces") {
@@ -109,7 +109,7 @@ TEST_CASE("every voxel of turned boxes against cutting cubes with half spaces") 
         for (int j = 0; j < grid.ny; ++j) {
           for (int i = 0; i < grid.nx; ++i) {
             const double want =
-                oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, body.planes) /
+                vam::oracle::shared_volume({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)}, grid.voxel_mm, body.planes) /
                 std::pow(grid.voxel_mm, 3);
             const auto at = static_cast<std::size_t>((k * grid.ny + j) * grid.nx + i);
             worst = std::max(worst, std::abs(values[at] - want));
@@ -123,7 +123,7 @@ TEST_CASE("every voxel of turned boxes against cutting cubes with half spaces") 
 
 TEST_CASE("a sphere's surface against counting points") {
   const double radius = 13.3;
-  const TriangleSoup mesh = oracle::sphere(radius, 300);  // sagitta radius (pi / 600)^2 / 2 = 2e-4 voxels
+  const TriangleSoup mesh = vam::oracle::sphere(radius, 300);  // sagitta radius (pi / 600)^2 / 2 = 2e-4 voxels
   const model::Grid grid = cube_grid(30);
   const Result result = voxels(mesh, grid);
   constexpr int n = 24;
@@ -156,7 +156,7 @@ TEST_CASE("a sphere's surface against counting points") {
 TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
   const model::Grid grid = cube_grid(100);
   const double radius = 44;
-  const TriangleSoup whole = oracle::lumpy_sphere(radius, 100, 0.05);
+  const TriangleSoup whole = vam::oracle::lumpy_sphere(radius, 100, 0.05);
   const std::vector<float> want = voxels(whole, grid).values;
   const double hole = 0.08 * radius;  // a diameter of 8 % of the part's
 
@@ -166,23 +166,23 @@ TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
     bool closed;  // repair is expected to close it
   };
   const std::vector<Case> cases{
-      {"hole in the side", oracle::punched(whole, {radius, 0, 0}, hole), false},
-      {"hole at the top", oracle::punched(whole, {0, 0, radius}, hole), false},
-      {"hole at a slant", oracle::punched(whole, {0.577 * radius, 0.577 * radius, 0.577 * radius}, hole), false},
-      {"facets missing", oracle::without(whole, 0.005, 1), false},
-      {"all facets flipped", oracle::flipped(whole, 1, 1), true},
-      {"some facets flipped", oracle::flipped(whole, 0.01, 2), true},
-      {"half of the facets flipped", oracle::flipped(whole, 0.49, 3), true},
-      {"some facets flipped, in an STL file", oracle::unwelded(oracle::flipped(whole, 0.01, 4)), true},
-      {"cracks of rounding", oracle::cracked(whole, 1e-5 * radius, 5), true},
-      {"cracks that are not welded", oracle::cracked(whole, 2e-3 * radius, 6), false},
-      {"cracks, all inside out", oracle::flipped(oracle::cracked(whole, 2e-3 * radius, 6), 1, 1), false},
-      {"all facets twice", oracle::repeated(whole, 1, 7), true},
-      {"some facets twice", oracle::repeated(whole, 0.1, 8), true},
+      {"hole in the side", vam::oracle::punched(whole, {radius, 0, 0}, hole), false},
+      {"hole at the top", vam::oracle::punched(whole, {0, 0, radius}, hole), false},
+      {"hole at a slant", vam::oracle::punched(whole, {0.577 * radius, 0.577 * radius, 0.577 * radius}, hole), false},
+      {"facets missing", vam::oracle::without(whole, 0.005, 1), false},
+      {"all facets flipped", vam::oracle::flipped(whole, 1, 1), true},
+      {"some facets flipped", vam::oracle::flipped(whole, 0.01, 2), true},
+      {"half of the facets flipped", vam::oracle::flipped(whole, 0.49, 3), true},
+      {"some facets flipped, in an STL file", vam::oracle::unwelded(vam::oracle::flipped(whole, 0.01, 4)), true},
+      {"cracks of rounding", vam::oracle::cracked(whole, 1e-5 * radius, 5), true},
+      {"cracks that are not welded", vam::oracle::cracked(whole, 2e-3 * radius, 6), false},
+      {"cracks, all inside out", vam::oracle::flipped(vam::oracle::cracked(whole, 2e-3 * radius, 6), 1, 1), false},
+      {"all facets twice", vam::oracle::repeated(whole, 1, 7), true},
+      {"some facets twice", vam::oracle::repeated(whole, 0.1, 8), true},
       {"some facets twice, once turned over",
-       oracle::join(whole, oracle::flipped(oracle::without(whole, 0.9, 9), 1, 9)), true},
-      {"missing and flipped", oracle::flipped(oracle::without(whole, 0.005, 10), 0.01, 11), false},
-      {"missing, all inside out", oracle::flipped(oracle::without(whole, 0.005, 12), 1, 1), false},
+       vam::oracle::join(whole, vam::oracle::flipped(vam::oracle::without(whole, 0.9, 9), 1, 9)), true},
+      {"missing and flipped", vam::oracle::flipped(vam::oracle::without(whole, 0.005, 10), 0.01, 11), false},
+      {"missing, all inside out", vam::oracle::flipped(vam::oracle::without(whole, 0.005, 12), 1, 1), false},
   };
   for (const Case& c : cases) {
     CAPTURE(std::string(c.name));
@@ -197,41 +197,42 @@ TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
 }
 
 TEST_CASE("overlapping solids are one solid") {
-  const TriangleSoup ball = oracle::sphere(20, 60);
+  const TriangleSoup ball = vam::oracle::sphere(20, 60);
   const model::Grid grid = cube_grid(80);
-  const std::vector<float> left = voxels(oracle::join({}, ball, {-10, 0, 0}), grid).values;
-  const std::vector<float> right = voxels(oracle::join({}, ball, {10, 1, 0}), grid).values;
+  const std::vector<float> left = voxels(vam::oracle::join({}, ball, {-10, 0, 0}), grid).values;
+  const std::vector<float> right = voxels(vam::oracle::join({}, ball, {10, 1, 0}), grid).values;
   std::vector<float> want(left.size());
   for (std::size_t i = 0; i < want.size(); ++i) want[i] = std::max(left[i], right[i]);
-  const TriangleSoup both = oracle::join(oracle::join({}, ball, {-10, 0, 0}), ball, {10, 1, 0});
+  const TriangleSoup both = vam::oracle::join(vam::oracle::join({}, ball, {-10, 0, 0}), ball, {10, 1, 0});
   CHECK(grossly_wrong(voxels(both, grid).values, want) <= 1e-3);
   // The same when one of the two is inside out, and when a small one lies within a large one.
-  const TriangleSoup mixed = oracle::join(oracle::join({}, ball, {-10, 0, 0}), oracle::flipped(ball, 1, 1), {10, 1, 0});
+  const TriangleSoup mixed =
+      vam::oracle::join(vam::oracle::join({}, ball, {-10, 0, 0}), vam::oracle::flipped(ball, 1, 1), {10, 1, 0});
   CHECK(grossly_wrong(voxels(mixed, grid).values, want) <= 1e-3);
-  const Result nested = voxels(oracle::join(ball, oracle::sphere(8, 20)), grid);
+  const Result nested = voxels(vam::oracle::join(ball, vam::oracle::sphere(8, 20)), grid);
   CHECK(nested.values == voxels(ball, grid).values);
 }
 
 TEST_CASE("a closed cavity stays a void, however the file is turned") {
-  const TriangleSoup outer = oracle::sphere(30, 80);
-  const TriangleSoup inner = oracle::sphere(12, 40);
-  const TriangleSoup part = oracle::join(outer, oracle::flipped(inner, 1, 1), {3, 4, 5});
+  const TriangleSoup outer = vam::oracle::sphere(30, 80);
+  const TriangleSoup inner = vam::oracle::sphere(12, 40);
+  const TriangleSoup part = vam::oracle::join(outer, vam::oracle::flipped(inner, 1, 1), {3, 4, 5});
   const model::Grid grid = cube_grid(64);
-  const double volume = oracle::signed_volume(outer) - oracle::signed_volume(inner);
+  const double volume = vam::oracle::signed_volume(outer) - vam::oracle::signed_volume(inner);
   for (const TriangleSoup& mesh :
-       {part, oracle::flipped(part, 1, 1), oracle::flipped(part, 0.01, 2), oracle::unwelded(part)}) {
+       {part, vam::oracle::flipped(part, 1, 1), vam::oracle::flipped(part, 0.01, 2), vam::oracle::unwelded(part)}) {
     const Result result = voxels(mesh, grid);
     CHECK(result.repair.cavities == 1);
     CHECK(std::abs(result.sum() / volume - 1) < 1e-6);
     CHECK(result.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 0);
   }
   // An island within the cavity is a solid again.
-  const Result island = voxels(oracle::join(part, oracle::sphere(5, 20), {3, 4, 5}), grid);
+  const Result island = voxels(vam::oracle::join(part, vam::oracle::sphere(5, 20), {3, 4, 5}), grid);
   CHECK(island.repair.cavities == 1);
   CHECK(island.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 1);
   // With a hole in the outer surface the cavity is still there.
   const TriangleSoup open =
-      oracle::join(oracle::punched(outer, {30, 0, 0}, 2.4), oracle::flipped(inner, 1, 1), {3, 4, 5});
+      vam::oracle::join(vam::oracle::punched(outer, {30, 0, 0}, 2.4), vam::oracle::flipped(inner, 1, 1), {3, 4, 5});
   const std::vector<float> want = voxels(part, grid).values;
   CHECK(grossly_wrong(voxels(open, grid).values, want) <= 1e-3);
 }
@@ -239,7 +240,7 @@ TEST_CASE("a closed cavity stays a void, however the file is turned") {
 TEST_CASE("faces on voxel borders, and thin walls") {
   const model::Grid grid = cube_grid(16);
   // The box fills voxels exactly: borders at whole voxels, up to the edge of the grid.
-  const Result block = voxels(oracle::box({-8, -3, -8}, {2, 5, 8}), grid);
+  const Result block = voxels(vam::oracle::box({-8, -3, -8}, {2, 5, 8}), grid);
   for (std::size_t at = 0; at < block.values.size(); ++at) {
     const std::size_t i = at % 16;
     const std::size_t j = at / 16 % 16;
@@ -247,12 +248,12 @@ TEST_CASE("faces on voxel borders, and thin walls") {
     if (block.values[at] != (inside ? 1.0F : 0.0F)) FAIL("voxel ", i, " ", j, " ", at / 256);
   }
   // A wall of a hundredth of a voxel is not lost.
-  const Result wall = voxels(oracle::box({-5, -5, 0.4}, {5, 5, 0.41}), grid);
+  const Result wall = voxels(vam::oracle::box({-5, -5, 0.4}, {5, 5, 0.41}), grid);
   CHECK(wall.sum() == doctest::Approx(1.0).epsilon(1e-5));
 }
 
 TEST_CASE("what lies below or above the grid is cut off") {
-  const TriangleSoup ball = oracle::sphere(18.3, 40);
+  const TriangleSoup ball = vam::oracle::sphere(18.3, 40);
   const model::Grid whole = cube_grid(40);
   model::Grid middle = whole;
   middle.nz = 9;
@@ -276,7 +277,7 @@ TEST_CASE("what lies below or above the grid is cut off") {
 
 TEST_CASE("a cup without its lid is full, an open sheet is nothing") {
   const model::Grid grid = cube_grid(20);
-  TriangleSoup cup = oracle::box({-5, -5, -5}, {5, 5, 5});
+  TriangleSoup cup = vam::oracle::box({-5, -5, -5}, {5, 5, 5});
   cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);  // the face z = 5
   const Result full = voxels(cup, grid);
   CHECK(full.vote.undecided == 0);
@@ -286,9 +287,9 @@ TEST_CASE("a cup without its lid is full, an open sheet is nothing") {
 }
 
 TEST_CASE("the same bytes for any number of threads") {
-  const TriangleSoup whole = oracle::lumpy_sphere(20, 60, 0.1);
+  const TriangleSoup whole = vam::oracle::lumpy_sphere(20, 60, 0.1);
   const model::Grid grid = cube_grid(52);
-  for (const TriangleSoup& mesh : {whole, oracle::without(whole, 0.01, 3)}) {
+  for (const TriangleSoup& mesh : {whole, vam::oracle::without(whole, 0.01, 3)}) {
     set_threads(1);
     const std::vector<float> one = voxels(mesh, grid).values;
     set_threads(0);

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 
+using namespace vam;
 using namespace vam::tomo;
 
 namespace {

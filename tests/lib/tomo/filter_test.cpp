@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 
+using namespace vam;
 using namespace vam::tomo;
 
 namespace {

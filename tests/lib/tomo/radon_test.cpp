@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "oracle/strip_radon.hpp"
 
+using namespace vam;
 using namespace vam::tomo;
 
 namespace {
@@ -84,7 +85,7 @@ TEST_CASE("forward and adjoint agree with clipped squares") {
   for (const Case& c : cases) {
     CAPTURE(c.name);
     const ParallelGeometry& g = c.geometry;
-    oracle::StripRadon slow{g.nx, g.ny, g.columns, g.axis_x, g.axis_y, {}, g.alpha_per_px};
+    vam::oracle::StripRadon slow{g.nx, g.ny, g.columns, g.axis_x, g.axis_y, {}, g.alpha_per_px};
     for (int a = 0; a < g.angles; ++a) slow.theta_rad.push_back(g.angle_start_rad + a * g.angle_step_rad);
     const std::vector<Slab> images = random_slabs(1, g.nx, g.ny, 1);
     const std::vector<Slab> sinograms = random_slabs(1, g.columns, g.angles, 2);

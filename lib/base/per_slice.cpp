@@ -1,0 +1,57 @@
+#include "base/per_slice.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace vam {
+
+std::vector<Slab> slabs(std::size_t count, int width, int height) {
+  return std::vector<Slab>(count, Slab(width, height));
+}
+
+PerSlice minima(std::span<const Slab> images) {
+  constexpr float highest = std::numeric_limits<float>::max();
+  const auto lower = [](float& a, float b) { a = std::min(a, b); };
+  return reduce(
+      images, highest, [&](float& a, std::size_t s, std::size_t i) { lower(a, images[s].values[i]); }, lower);
+}
+
+PerSlice largest(std::span<const Slab> images) {
+  constexpr float lowest = std::numeric_limits<float>::lowest();
+  return reduce(
+      images, lowest, [&](float& a, std::size_t s, std::size_t i) { larger(a, images[s].values[i]); }, larger);
+}
+
+PerSlice reciprocal(PerSlice values) {
+  for (auto& lane : values) {
+    for (float& v : lane) v = v > 0 ? 1.0F / v : 0.0F;
+  }
+  return values;
+}
+
+void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerSlice& back) {
+  for_values(now, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (back[s][i % lanes] != 0.0F) now[s].values[i] = before[s].values[i];
+    }
+  });
+}
+
+void scale(std::span<Slab> images, const PerSlice& factor) {
+  for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
+    float* v = images[s].values.data();
+    const float* f = factor[s].data();
+    for (std::size_t i = first; i < last; i += lanes) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) v[i + lane] *= f[lane];
+    }
+  });
+}
+
+void clip_below(std::span<Slab> images, float floor) {
+  for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
+    float* v = images[s].values.data();
+    for (std::size_t i = first; i < last; ++i) v[i] = v[i] > floor ? v[i] : floor;
+  });
+}
+
+}  // namespace vam

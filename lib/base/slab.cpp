@@ -1,0 +1,63 @@
+#include "base/slab.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <new>
+
+#include "base/parallel.hpp"
+
+namespace vam {
+
+namespace {
+
+constexpr std::size_t huge_page = std::size_t{2} << 20;
+
+std::align_val_t alignment_of(std::size_t bytes) { return std::align_val_t{bytes < 2 * huge_page ? 64 : huge_page}; }
+
+constexpr int block = 4096;  // pixels a work item: 256 KiB of slab
+
+template <class Work>
+void over_blocks(const Slab& slab, const Work& work) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  const int count = static_cast<int>((pixels + block - 1) / block);
+  parallel_for(count, [&](int item) {
+    const std::size_t first = static_cast<std::size_t>(item) * block;
+    work(first, std::min(first + block, pixels));
+  });
+}
+
+}  // namespace
+
+void* allocate_aligned(std::size_t bytes) {
+  void* memory = ::operator new(bytes, alignment_of(bytes));
+#ifdef MADV_HUGEPAGE
+  if (bytes >= 2 * huge_page) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a wish, no more
+#endif
+  return memory;
+}
+
+void free_aligned(void* memory, std::size_t bytes) { ::operator delete(memory, alignment_of(bytes)); }
+
+void pack(const float* images, int count, Slab& slab) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  over_blocks(slab, [&](std::size_t first, std::size_t last) {
+    for (std::size_t p = first; p < last; ++p) {
+      float* to = slab.values.data() + p * lanes;
+      for (int s = 0; s < count; ++s) to[s] = images[static_cast<std::size_t>(s) * pixels + p];
+      for (int s = count; s < lanes; ++s) to[s] = 0;
+    }
+  });
+}
+
+void unpack(const Slab& slab, int count, float* images) {
+  const std::size_t pixels = slab.values.size() / lanes;
+  over_blocks(slab, [&](std::size_t first, std::size_t last) {
+    for (int s = 0; s < count; ++s) {
+      float* to = images + static_cast<std::size_t>(s) * pixels;
+      for (std::size_t p = first; p < last; ++p) to[p] = slab.values[p * lanes + static_cast<std::size_t>(s)];
+    }
+  });
+}
+
+}  // namespace vam

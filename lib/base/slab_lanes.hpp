@@ -1,0 +1,6 @@
+// The number of slices in a slab; apart, because kernel files include no standard header.
+#pragma once
+
+namespace vam {
+inline constexpr int lanes = 16;
+}

@@ -1,0 +1,63 @@
+#include "base/stats/measured.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "base/stats/student.hpp"
+
+namespace vam::stats {
+
+double few_readings_factor(int freedom) { return stats::student_quantile(0.05, std::max(freedom, 1)) / 1.959964; }
+
+Measured weighted_mean(const std::vector<Measured>& parts) {
+  double weights = 0;
+  Measured mean;
+  for (const auto& part : parts) {
+    const double weight = 1 / (part.sigma * part.sigma);
+    mean.value += weight * part.value;
+    mean.n += part.n;
+    weights += weight;
+  }
+  mean.value /= weights;
+  double chi = 0;
+  for (const auto& part : parts) chi += std::pow((part.value - mean.value) / part.sigma, 2);
+  const double excess = parts.size() > 1 ? chi / static_cast<double>(parts.size() - 1) : 1;
+  mean.sigma = std::sqrt(std::max(1.0, excess) / weights);
+  return mean;
+}
+
+WeightedLine weighted_line(const std::vector<double>& x, const std::vector<Measured>& y) {
+  double s = 0;
+  double sx = 0;
+  double sxx = 0;
+  double sy = 0;
+  double sxy = 0;
+  int n = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double w = 1 / (y[i].sigma * y[i].sigma);
+    s += w;
+    sx += w * x[i];
+    sxx += w * x[i] * x[i];
+    sy += w * y[i].value;
+    sxy += w * x[i] * y[i].value;
+    n += y[i].n;
+  }
+  const double determinant = s * sxx - sx * sx;
+  WeightedLine line{{(sxx * sy - sx * sxy) / determinant, 0, n}, {(s * sxy - sx * sy) / determinant, 0, n}};
+  double chi = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    chi += std::pow((y[i].value - line.at_zero.value - line.slope.value * x[i]) / y[i].sigma, 2);
+  }
+  const double excess = x.size() > 2 ? std::max(1.0, chi / static_cast<double>(x.size() - 2)) : 1;
+  line.at_zero.sigma = std::sqrt(excess * sxx / determinant);
+  line.slope.sigma = std::sqrt(excess * s / determinant);
+  return line;
+}
+
+Measured lean_deg(const Measured& slope, double pitch) {
+  const double rise = slope.value * pitch;
+  return {std::atan(rise) * deg_per_rad, slope.sigma * pitch / (1 + rise * rise) * deg_per_rad, slope.n};
+}
+
+}  // namespace vam::stats

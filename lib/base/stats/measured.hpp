@@ -1,0 +1,32 @@
+// Measured numbers and what follows from several of them.
+#pragma once
+
+#include <vector>
+
+namespace vam::stats {
+
+/// A measured number with one standard deviation, out of n readings. The unit is in the name of whatever holds it.
+struct Measured {
+  double value = 0;
+  double sigma = 0;
+  int n = 0;
+};
+
+/// Mean by weight 1/sigma^2; its sigma grows when the parts scatter more than they say.
+[[nodiscard]] Measured weighted_mean(const std::vector<Measured>& parts);
+
+/// y = at_zero + slope x by weight 1/sigma^2, at least two points; sigmas grow as those of weighted_mean().
+struct WeightedLine {
+  Measured at_zero;
+  Measured slope;
+};
+[[nodiscard]] WeightedLine weighted_line(const std::vector<double>& x, const std::vector<Measured>& y);
+
+/// The angle of a line that moves by slope * pitch along its length.
+[[nodiscard]] Measured lean_deg(const Measured& slope, double pitch);
+
+/// Student's t at 95 % over that of the normal distribution: the factor by which a standard error from few readings
+/// grows.
+[[nodiscard]] double few_readings_factor(int freedom);
+
+}  // namespace vam::stats

@@ -1,0 +1,18 @@
+// The middle of some numbers.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace vam::stats {
+
+/// Of an even count the upper of the two in the middle. There must be one.
+template <class Number>
+[[nodiscard]] double median(std::vector<Number> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return static_cast<double>(*middle);
+}
+
+}  // namespace vam::stats

@@ -1,0 +1,300 @@
+// Video4Linux2 by its own calls: streaming with memory-mapped buffers.
+#include <fcntl.h>
+#include <linux/videodev2.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "device/camera/camera_backends.hpp"
+#include "device/camera/private/frame_count.hpp"
+#include "device/camera/private/grey_pixels.hpp"
+#include "device/os/interrupt.hpp"
+
+namespace vam::device {
+
+namespace {
+
+class KernelV4l2 final : public V4l2Driver {
+ public:
+  ~KernelV4l2() override { KernelV4l2::close(); }
+  int open(const char* path) override { return fd_ = ::open(path, O_RDWR | O_NONBLOCK | O_CLOEXEC); }
+  int control(unsigned long request, void* argument) override {
+    int result = 0;
+    do {
+      result = ioctl(fd_, request, argument);
+    } while (result < 0 && errno == EINTR);
+    return result;
+  }
+  void* map(std::size_t size, std::size_t offset) override {
+    return mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, static_cast<off_t>(offset));
+  }
+  void unmap(void* start, std::size_t size) override { munmap(start, size); }
+  int wait(double seconds) override {
+    std::array<pollfd, 2> ready{pollfd{fd_, POLLIN, 0}, pollfd{interrupt_fd(), POLLIN, 0}};
+    if (poll(ready.data(), ready.size(), static_cast<int>(std::ceil(1e3 * seconds))) <= 0) return 0;
+    if ((ready[0].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return -1;
+    return (ready[0].revents & POLLIN) != 0 ? 1 : 0;
+  }
+  void close() override {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+  }
+
+ private:
+  int fd_ = -1;
+};
+
+struct Format {
+  std::uint32_t code;
+  const char* name;
+  PixelLayout layout;
+  int bits;
+};
+constexpr std::array formats{
+    Format{V4L2_PIX_FMT_GREY, "GREY", PixelLayout::bytes, 8}, Format{V4L2_PIX_FMT_Y16, "Y16", PixelLayout::words, 16},
+    Format{V4L2_PIX_FMT_Y12, "Y12", PixelLayout::words, 12}, Format{V4L2_PIX_FMT_Y10, "Y10", PixelLayout::words, 10},
+    Format{V4L2_PIX_FMT_YUYV, "YUYV", PixelLayout::even_bytes, 8}};
+
+struct Mapping {
+  void* start = nullptr;
+  std::size_t size = 0;
+};
+
+template <class Struct>
+Struct cleared() {
+  Struct value;
+  std::memset(&value, 0, sizeof value);
+  return value;
+}
+
+class V4l2Camera final : public Camera {
+ public:
+  V4l2Camera(const Address& address, const CameraSettings& settings, std::unique_ptr<V4l2Driver> driver, Clock& clock)
+      : path_(address.place), settings_(settings), driver_(std::move(driver)), clock_(clock) {
+    if (driver_->open(path_.c_str()) < 0) {
+      const bool busy = errno == EBUSY;
+      throw Error{busy ? Fault::busy : Fault::absent, path_ + ": cannot be opened (" + std::strerror(errno) + ")"};
+    }
+    check_capture();
+    choose_format();
+    set_exposure();
+    set_rate();
+    map_buffers(address.integer("buffers", 2, 64).value_or(10));
+  }
+
+  ~V4l2Camera() override {
+    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    if (streaming_) driver_->control(VIDIOC_STREAMOFF, &type);
+    for (const auto& mapping : mappings_) driver_->unmap(mapping.start, mapping.size);
+    driver_->close();
+  }
+
+  Json identify() override { return about_; }
+  CameraMode mode() const override { return mode_; }
+  void trigger() override { throw Error{Fault::usage, path_ + ": V4L2 has no software trigger"}; }
+
+  void start() override {
+    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    ask(VIDIOC_STREAMON, &type, "does not start (VIDIOC_STREAMON)");
+    streaming_ = true;
+  }
+
+  std::optional<CameraFrame> next() override {
+    const double limit_s = clock_.now_s() + settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1);
+    for (;;) {
+      check_interrupted();
+      const double left_s = limit_s - clock_.now_s();
+      if (left_s <= 0) {
+        throw Error{Fault::busy, path_ + ": no frame within " +
+                                     format_number(settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1), 3) +
+                                     " s; is it triggered, or another stream running?"};
+      }
+      const int ready = driver_->wait(std::min(left_s, 0.2));
+      if (ready < 0) throw gone();
+      if (ready == 0) continue;
+      auto buffer = capture_buffer();
+      if (driver_->control(VIDIOC_DQBUF, &buffer) == 0) return take(buffer);
+      if (errno != EAGAIN) throw gone();
+    }
+  }
+
+ private:
+  [[nodiscard]] Error gone() const {
+    return {Fault::absent, path_ + ": the camera is gone (" + std::strerror(errno) + ")"};
+  }
+
+  void ask(unsigned long request, void* argument, const std::string& what) {
+    if (driver_->control(request, argument) == 0) return;
+    if (errno == ENODEV) throw gone();
+    const Fault fault = errno == EBUSY ? Fault::busy : Fault::protocol;
+    throw Error{fault, path_ + ": " + what + " (" + std::strerror(errno) + ")"};
+  }
+
+  static v4l2_buffer capture_buffer() {
+    auto buffer = cleared<v4l2_buffer>();
+    buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    buffer.memory = V4L2_MEMORY_MMAP;
+    return buffer;
+  }
+
+  void check_capture() {
+    auto what = cleared<v4l2_capability>();
+    ask(VIDIOC_QUERYCAP, &what, "is no video device (VIDIOC_QUERYCAP)");
+    const std::uint32_t able = (what.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? what.device_caps : what.capabilities;
+    if ((able & V4L2_CAP_VIDEO_CAPTURE) == 0 || (able & V4L2_CAP_STREAMING) == 0) {
+      throw Error{Fault::usage, path_ + ": cannot stream pictures; a camera has several nodes, try the next"};
+    }
+    const auto text = [](const __u8* bytes) { return std::string(reinterpret_cast<const char*>(bytes)); };
+    about_ = {{"maker", text(what.driver)}, {"model", text(what.card)}, {"serial", text(what.bus_info)}};
+    about_["firmware"] = std::to_string(what.version >> 16 & 255) + "." + std::to_string(what.version >> 8 & 255);
+  }
+
+  void choose_format() {
+    std::vector<std::string> offered;
+    for (std::uint32_t index = 0;; ++index) {
+      auto found = cleared<v4l2_fmtdesc>();
+      found.index = index;
+      found.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+      if (driver_->control(VIDIOC_ENUM_FMT, &found) != 0) break;
+      const auto* known =
+          std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.code == found.pixelformat; });
+      if (known != formats.end()) offered.emplace_back(known->name);
+    }
+    const auto has = [&](const std::string& name) {
+      return std::find(offered.begin(), offered.end(), name) != offered.end();
+    };
+    const auto* chosen = std::find_if(formats.begin(), formats.end(), [&](const Format& f) {
+      return settings_.format.empty() ? has(f.name) : f.name == settings_.format && has(f.name);
+    });
+    if (chosen == formats.end()) {
+      throw Error{Fault::usage, path_ + ": no pixel format " +
+                                    (settings_.format.empty() ? "of grey" : settings_.format) + "; it has " +
+                                    (offered.empty() ? "none that is known" : join(offered, ", "))};
+    }
+    format_ = *chosen;
+    auto size = cleared<v4l2_format>();
+    size.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    ask(VIDIOC_G_FMT, &size, "does not tell its format (VIDIOC_G_FMT)");
+    size.fmt.pix.pixelformat = format_.code;
+    ask(VIDIOC_S_FMT, &size, "refuses the format (VIDIOC_S_FMT)");
+    if (size.fmt.pix.pixelformat != format_.code) {
+      throw Error{Fault::protocol, path_ + ": took another pixel format than " + format_.name};
+    }
+    mode_.columns = static_cast<int>(size.fmt.pix.width);
+    mode_.rows = static_cast<int>(size.fmt.pix.height);
+    mode_.bits = format_.bits;
+    stride_ = size.fmt.pix.bytesperline;
+  }
+
+  // Read back: a control that the camera rounds by more than a hundredth is not what was asked for.
+  void set_exposure() {
+    auto value = cleared<v4l2_control>();
+    value.id = V4L2_CID_EXPOSURE_ABSOLUTE;  // 100 us
+    if (settings_.exposure_us) {
+      auto manual = cleared<v4l2_control>();
+      manual.id = V4L2_CID_EXPOSURE_AUTO;
+      manual.value = V4L2_EXPOSURE_MANUAL;
+      driver_->control(VIDIOC_S_CTRL, &manual);  // a camera without automatics does not have it
+      value.value = static_cast<int>(std::lround(*settings_.exposure_us / 100));
+      ask(VIDIOC_S_CTRL, &value, "does not take an exposure (VIDIOC_S_CTRL)");
+    }
+    if (driver_->control(VIDIOC_G_CTRL, &value) == 0) mode_.exposure_us = 100.0 * value.value;
+    if (settings_.exposure_us) check("exposure", *settings_.exposure_us, mode_.exposure_us, 100);
+  }
+
+  void set_rate() {
+    auto rate = cleared<v4l2_streamparm>();
+    rate.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    auto& period = rate.parm.capture.timeperframe;
+    if (settings_.fps) {
+      period = {1000, static_cast<__u32>(std::lround(1000 * *settings_.fps))};
+      ask(VIDIOC_S_PARM, &rate, "does not take a frame rate (VIDIOC_S_PARM)");
+    } else if (driver_->control(VIDIOC_G_PARM, &rate) != 0) {
+      return;
+    }
+    if (period.numerator > 0) mode_.fps = static_cast<double>(period.denominator) / period.numerator;
+    if (settings_.fps) check("frame rate", *settings_.fps, mode_.fps, 0);
+  }
+
+  void check(const std::string& what, double wanted, double got, double grain) const {
+    if (std::abs(wanted - got) <= 0.01 * wanted + grain) return;
+    throw Error{Fault::protocol, path_ + ": the " + what + " reads back as " + format_number(got) + " instead of " +
+                                     format_number(wanted) + "; ask for what it can"};
+  }
+
+  void map_buffers(int count) {
+    auto wanted = cleared<v4l2_requestbuffers>();
+    wanted.count = static_cast<std::uint32_t>(count);
+    wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    wanted.memory = V4L2_MEMORY_MMAP;
+    ask(VIDIOC_REQBUFS, &wanted, "gives no buffers (VIDIOC_REQBUFS)");
+    for (std::uint32_t i = 0; i < wanted.count; ++i) {
+      auto buffer = capture_buffer();
+      buffer.index = i;
+      ask(VIDIOC_QUERYBUF, &buffer, "does not show its buffers (VIDIOC_QUERYBUF)");
+      void* start = driver_->map(buffer.length, buffer.m.offset);
+      if (start == MAP_FAILED) throw Error{Fault::memory, path_ + ": a buffer cannot be mapped"};
+      mappings_.push_back({start, buffer.length});
+      ask(VIDIOC_QBUF, &buffer, "does not take a buffer (VIDIOC_QBUF)");
+    }
+    if (mappings_.empty()) throw Error{Fault::memory, path_ + ": gives no buffers"};
+  }
+
+  CameraFrame take(v4l2_buffer& buffer) {
+    if (buffer.index >= mappings_.size()) throw Error{Fault::protocol, path_ + ": hands out a buffer of nobody"};
+    const Mapping& mapping = mappings_[buffer.index];
+    CameraFrame frame;
+    frame.number = count_.number(buffer.sequence);
+    frame.complete = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0;
+    const double stamp_s =
+        static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
+    const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+    const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    frame.time_s = (monotonic ? stamp_s : clock_.now_s()) + (at_start ? 0.5e-6 : -0.5e-6) * mode_.exposure_us;
+    frame.device_s = stamp_s;
+    const auto used = std::min<std::size_t>(buffer.bytesused, mapping.size);
+    const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,
+                               stride_, format_.layout, format_.bits, frame.levels);
+    frame.complete = frame.complete && whole;
+    ask(VIDIOC_QBUF, &buffer, "does not take a buffer back (VIDIOC_QBUF)");
+    return frame;
+  }
+
+  std::string path_;
+  CameraSettings settings_;
+  std::unique_ptr<V4l2Driver> driver_;
+  Clock& clock_;
+  Json about_;
+  CameraMode mode_;
+  Format format_ = formats.front();
+  std::size_t stride_ = 0;
+  std::vector<Mapping> mappings_;
+  bool streaming_ = false;
+  FrameCount count_;
+};
+
+}  // namespace
+
+std::unique_ptr<V4l2Driver> kernel_v4l2() { return std::make_unique<KernelV4l2>(); }
+
+std::unique_ptr<Camera> open_v4l2_camera(const Address& address, const CameraSettings& settings,
+                                         std::unique_ptr<V4l2Driver> driver, Clock& clock) {
+  address.allow({"buffers"});
+  if (settings.binning.value_or(1) != 1 || settings.trigger != "free") {
+    throw Error{Fault::usage, "device '" + address.text + "': V4L2 knows neither binning nor triggers"};
+  }
+  return std::make_unique<V4l2Camera>(address, settings, std::move(driver), clock);
+}
+
+}  // namespace vam::device

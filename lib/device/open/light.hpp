@@ -1,0 +1,12 @@
+// Which light engine a device string names.
+#pragma once
+
+#include "device/projector/light_engine.hpp"
+
+namespace vam::device {
+
+/// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current, max_current and leds; sim: is a simulated
+/// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
+[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian);
+
+}  // namespace vam::device

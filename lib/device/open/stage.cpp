@@ -1,0 +1,91 @@
+#include "device/open/stage.hpp"
+
+#include "base/error.hpp"
+#include "device/open/private/backends.hpp"
+#include "device/os/lock.hpp"
+#include "device/port/serial_port.hpp"
+#include "device/stage/gcs_stage.hpp"
+#include "device/stage/grbl_stage.hpp"
+#include "device/stage/tic_stage.hpp"
+#include "sim/controllers/options.hpp"
+
+namespace vam::device {
+
+namespace {
+
+std::unique_ptr<Stage> open_sim(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow(sim::sim_option_names());
+  auto device =
+      sim::make_sim_gcs(sim::sim_settings(address), clock.now_s(), sim::file_sim_log(address.word("log", "")));
+  return make_gcs_stage(sim::make_sim_port(std::move(device), clock), clock, {}, "1", guardian);
+}
+
+// The guardian holds the lock too: nobody gets the device before it is safe.
+std::unique_ptr<DeviceLock> lock_device(const std::string& name, Guardian* guardian) {
+  auto lock = std::make_unique<DeviceLock>(name);
+  if (guardian != nullptr) guardian->keep(lock->handle());
+  return lock;
+}
+
+std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"baud", "address", "axis", "timeout_s"});
+  GcsSettings settings;
+  settings.address = address.integer("address", 1, 16);
+  settings.timeout_s = address.number("timeout_s", settings.timeout_s, 0.01, 0.4);
+  auto lock = lock_device(address.place, guardian);
+  const std::string axis = address.word("axis", "1");
+  GcsLink link(find_gcs(address.place, address.integer("baud", 50, 4000000), clock, settings), clock, settings);
+  require_axis(link, axis);
+  auto stage = make_gcs_stage(link.take_port(), clock, settings, axis, guardian);
+  stage->hold(std::move(lock));
+  (void)stage->fault();  // what a former user left behind, "stopped by command" for one
+  return stage;
+}
+
+std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"baud", "axis"});
+  const std::string axis = address.word("axis", "X");
+  if (axis != "X" && axis != "Y" && axis != "Z") {
+    throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is none of X, Y, Z"};
+  }
+  auto lock = lock_device(address.place, guardian);
+  auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
+  auto stage = make_grbl_stage(std::move(port), clock, axis.front() - 'X', guardian);
+  stage->hold(std::move(lock));
+  return stage;
+}
+
+std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"steps_per_deg"});
+  const double steps_per_deg = address.number("steps_per_deg", 0, -1e6, 1e6);
+  if (steps_per_deg == 0) {
+    throw Error{Fault::usage,
+                "device '" + address.text + "': needs ?steps_per_deg=N, the microsteps a degree of the table"};
+  }
+  auto link = open_usb(tic_id(address.place), -1);
+  auto lock = lock_device(link->name(), guardian);
+  auto stage = make_tic_stage(std::move(link), clock, steps_per_deg, guardian);
+  stage->hold(std::move(lock));
+  return stage;
+}
+
+struct StageBackend {
+  const char* scheme;
+  std::unique_ptr<Stage> (*open)(const Address& address, Clock& clock, Guardian* guardian);
+};
+
+constexpr StageBackend backends[] = {{"sim", open_sim}, {"gcs", open_gcs}, {"tic", open_tic}, {"grbl", open_grbl}};
+
+}  // namespace
+
+const std::vector<std::string>& stage_schemes() {
+  static const auto schemes = schemes_of(backends);
+  return schemes;
+}
+
+std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
+  const Address address = parse_address(device, stage_schemes());
+  return backend_of(backends, address).open(address, clock, guardian);
+}
+
+}  // namespace vam::device

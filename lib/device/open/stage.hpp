@@ -1,0 +1,15 @@
+// Which stage a device string names.
+#pragma once
+
+#include "device/stage/stage.hpp"
+
+namespace vam::device {
+
+/// Opens gcs:, tic:, grbl: or sim:, locked for this process. guardian may be null where nobody can be killed (tests in
+/// virtual time). Throws as the constructors and DeviceLock do, and Fault::usage for a bad device string.
+[[nodiscard]] std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian);
+
+/// The schemes that open_stage knows.
+[[nodiscard]] const std::vector<std::string>& stage_schemes();
+
+}  // namespace vam::device

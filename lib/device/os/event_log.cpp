@@ -1,0 +1,100 @@
+#include "device/os/event_log.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <utility>
+
+#include "base/error.hpp"
+#include "device/os/clock.hpp"
+#include "device/os/interrupt.hpp"
+
+namespace vam::device {
+
+std::string utc_now(double ago_s) {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  const double back_s = std::ceil(ago_s - 1e-9 * static_cast<double>(now.tv_nsec));
+  now.tv_nsec += std::lround(1e9 * (back_s - ago_s));
+  now.tv_sec -= static_cast<time_t>(back_s);
+  tm parts{};
+  gmtime_r(&now.tv_sec, &parts);
+  std::array<char, 64> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
+  std::array<char, 80> whole{};
+  std::snprintf(whole.data(), whole.size(), "%s.%03ldZ", text.data(), now.tv_nsec / 1000000);
+  return whole.data();
+}
+
+EventLog::EventLog(const std::string& path) : path_(path) {
+  if (path.empty()) return;
+  const auto opened = [&](int more) {
+    return open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | more, 0644);
+  };
+  if (path == "-") {
+    fd_ = dup(STDERR_FILENO);
+  } else if (fd_ = opened(O_EXCL); fd_ >= 0) {
+    made_ = true;
+  } else {
+    fd_ = opened(0);
+  }
+  if (fd_ < 0) throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
+}
+
+EventLog::~EventLog() {
+  if (fd_ >= 0) close(fd_);
+}
+
+void EventLog::operator()(const std::string& event, const Json& facts) { at(real_clock().now_s(), event, facts); }
+
+void EventLog::at(double t_s, const std::string& event, const Json& facts) {
+  if (fd_ < 0) return;
+  Json whole{{"utc", utc_now(real_clock().now_s() - t_s)}, {"t_monotonic_s", t_s}, {"event", event}};
+  whole.update(facts);
+  line(whole);
+}
+
+void EventLog::line(const Json& facts) {
+  if (fd_ < 0) return;
+  // Bytes that a device made up need not be UTF-8.
+  const std::string text = facts.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (write(fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
+    throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
+  }
+}
+
+void EventLog::sync() {
+  if (fd_ >= 0) fdatasync(fd_);
+}
+
+void EventLog::undo() {
+  if (std::exchange(made_, false)) unlink(path_.c_str());
+}
+
+void logged(const std::string& path, const std::function<void()>& body) {
+  EventLog log(path);
+  const auto note = [&](const char* event, const Json& facts) {
+    try {
+      log(event, facts);
+    } catch (const Error&) {
+      // A disk that is full may be the very cause; that is what to report.
+    }
+  };
+  try {
+    body();
+  } catch (const Error& error) {
+    if (error.fault == Fault::usage) log.undo();
+    note("error", {{"status", static_cast<int>(error.fault)}, {"message", error.what()}});
+    throw;
+  } catch (const Interrupted& interrupted) {
+    note("interrupted", {{"signal", interrupted.signal}});
+    throw;
+  }
+}
+
+}  // namespace vam::device

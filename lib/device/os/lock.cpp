@@ -1,0 +1,83 @@
+#include "device/os/lock.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.hpp"
+
+namespace vam::device {
+
+namespace {
+
+std::string lock_folder() {
+  if (const char* wish = std::getenv("VAM_LOCK_DIR"); wish != nullptr && *wish != '\0') return wish;
+  return access("/run/lock", W_OK) == 0 ? "/run/lock" : "/tmp";
+}
+
+std::string lock_path(const std::string& name) {
+  std::string real = name;
+  if (!name.empty() && name.front() == '/') {
+    std::error_code none;
+    const auto resolved = std::filesystem::canonical(name, none);
+    if (!none) real = resolved;
+  }
+  for (char& c : real) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
+  }
+  return lock_folder() + "/vam" + (real.front() == '-' ? "" : "-") + real + ".lock";
+}
+
+// A holder writes its pid just after it has the lock: wait a moment for the pid of a living process.
+std::string holder(int fd) {
+  std::string pid = "unknown";
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    std::array<char, 32> text{};
+    if (pread(fd, text.data(), text.size() - 1, 0) > 0) {
+      pid.assign(text.data(), strcspn(text.data(), "\n"));
+      if (kill(std::atoi(pid.c_str()), 0) == 0 || errno == EPERM) break;
+    }
+    usleep(5000);
+  }
+  return pid;
+}
+
+}  // namespace
+
+DeviceLock::DeviceLock(const std::string& name) {
+  const std::string path = lock_path(name);
+  // Without O_CREAT first: in a sticky folder the kernel refuses to "create" what another user owns.
+  fd_ = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+  if (fd_ < 0 && errno == ENOENT) {
+    fd_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (fd_ >= 0) fchmod(fd_, 0666);  // past the umask: the next user may be another one
+  }
+  if (fd_ < 0) {
+    throw Error{Fault::no_output, path + ": cannot lock the device (" + std::strerror(errno) +
+                                      "); point VAM_LOCK_DIR at a folder that all its users can write"};
+  }
+  if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    const std::string pid = holder(fd_);
+    close(fd_);
+    throw Error{Fault::busy, name + ": in use by process " + pid + "; try again when it has ended"};
+  }
+  const std::string pid = std::to_string(getpid()) + "\n";
+  if (ftruncate(fd_, 0) != 0 || pwrite(fd_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
+    const int reason = errno;
+    close(fd_);
+    throw Error{Fault::io, path + ": cannot write the lock (" + std::strerror(reason) + ")"};
+  }
+}
+
+DeviceLock::~DeviceLock() { close(fd_); }
+
+}  // namespace vam::device

@@ -1,0 +1,206 @@
+#include <poll.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <xf86drm.h>
+#include <xf86drmMode.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/error.hpp"
+#include "device/os/interrupt.hpp"
+#include "device/projector/private/display_backends.hpp"
+#include "device/projector/private/drm_output.hpp"
+
+namespace vam::device {
+
+namespace {
+
+constexpr double flip_timeout_s = 0.25;  // less than the guardian's patience
+
+std::string reason() { return std::string(" (") + std::strerror(errno) + ")"; }
+
+// Whose fault it is that the card refuses, once it had been ours.
+Fault fault_of_card() {
+  if (errno == ENODEV || errno == ENXIO) return Fault::absent;                  // unplugged
+  if (errno == EBUSY || errno == EACCES || errno == EPERM) return Fault::busy;  // a flip hangs, or another is master
+  return Fault::io;
+}
+
+// A picture in the card's memory.
+struct Buffer {
+  std::uint32_t handle = 0;
+  std::uint32_t framebuffer = 0;
+};
+
+class DrmDisplay final : public Display {
+ public:
+  DrmDisplay(const std::string& connector, Clock& clock, Guardian* guardian)
+      : clock_(clock), guardian_(guardian), output_(open_drm_output(connector)), name_("drm:" + connector) {
+    if (drmSetMaster(output_.card) != 0) {
+      const std::string why = reason();
+      close(output_.card);
+      throw Error{Fault::busy,
+                  name_ + ": the card is in use, by a desktop for instance; log out of it or use sdl:" + why};
+    }
+    mode_ = {output_.mode.hdisplay, output_.mode.vdisplay,
+             output_.mode.clock * 1000.0 / (output_.mode.htotal * output_.mode.vtotal)};
+    black_ =
+        load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * static_cast<std::size_t>(mode_.rows)));
+    if (!show_black()) throw Error{Fault::absent, name_ + ": does not take its own mode" + reason()};
+    straighten_gamma(output_, name_);
+  }
+
+  // Black stays on until the last copy of the card's handle is closed: master is not given up before the guardian has
+  // gone, too.
+  ~DrmDisplay() override {
+    try {
+      if (show_black()) unwatch();
+    } catch (...) {
+      // The guardian is gone; black is on.
+    }
+    for (const Buffer& buffer : frames_) drop(buffer);
+    close(output_.card);
+  }
+
+  DisplayMode mode() const override { return mode_; }
+
+  int add(const GreyImage& levels) override {
+    frames_.push_back(load(screen_bytes(levels, mode_)));
+    return static_cast<int>(frames_.size()) - 1;
+  }
+
+  Flip present(int index) override {
+    watch(index >= 0);
+    const std::uint32_t framebuffer =
+        index < 0 ? black_.framebuffer : frames_[static_cast<std::size_t>(index)].framebuffer;
+    flip_.sequence = -1;
+    drm_mode_crtc_page_flip order{};
+    order.crtc_id = output_.crtc;
+    order.fb_id = framebuffer;
+    order.flags = DRM_MODE_PAGE_FLIP_EVENT;
+    order.user_data = ++asked_;
+    if (drmIoctl(output_.card, DRM_IOCTL_MODE_PAGE_FLIP, &order) != 0) {
+      throw Error{fault_of_card(), name_ + ": the card refused a page flip" + reason()};
+    }
+    wait_for_flip();
+    if (index < 0) unwatch();
+    return flip_;
+  }
+
+ private:
+  Buffer load(const std::vector<std::uint8_t>& bytes) {
+    drm_mode_create_dumb make{};
+    make.width = output_.mode.hdisplay;
+    make.height = output_.mode.vdisplay;
+    make.bpp = 32;
+    if (drmIoctl(output_.card, DRM_IOCTL_MODE_CREATE_DUMB, &make) != 0) {
+      throw Error{Fault::memory,
+                  name_ + ": no room in the card's memory for frame " + std::to_string(frames_.size()) + reason()};
+    }
+    Buffer buffer{make.handle, 0};
+    drm_mode_map_dumb where{};
+    where.handle = make.handle;
+    void* pixels = MAP_FAILED;
+    if (drmModeAddFB(output_.card, make.width, make.height, 24, 32, make.pitch, make.handle, &buffer.framebuffer) ==
+            0 &&
+        drmIoctl(output_.card, DRM_IOCTL_MODE_MAP_DUMB, &where) == 0) {
+      pixels =
+          mmap(nullptr, make.size, PROT_READ | PROT_WRITE, MAP_SHARED, output_.card, static_cast<off_t>(where.offset));
+    }
+    if (pixels == MAP_FAILED) throw Error{Fault::memory, name_ + ": a frame cannot be written to the card" + reason()};
+    for (std::uint32_t y = 0; y < make.height; ++y) {
+      auto* row =
+          reinterpret_cast<std::uint32_t*>(static_cast<char*>(pixels) + static_cast<std::size_t>(y) * make.pitch);
+      for (std::uint32_t x = 0; x < make.width; ++x)
+        row[x] = bytes[static_cast<std::size_t>(y) * make.width + x] * 0x010101U;
+    }
+    munmap(pixels, make.size);
+    return buffer;
+  }
+
+  void drop(const Buffer& buffer) const {
+    drmModeRmFB(output_.card, buffer.framebuffer);
+    drm_mode_destroy_dumb gone{buffer.handle};
+    drmIoctl(output_.card, DRM_IOCTL_MODE_DESTROY_DUMB, &gone);
+  }
+
+  bool show_black() {
+    return drmModeSetCrtc(output_.card, output_.crtc, black_.framebuffer, 0, 0, &output_.connector, 1, &output_.mode) ==
+           0;
+  }
+
+  // An event carries the number of its flip: that of an earlier one, given up as late, may come first.
+  void read_events() {
+    alignas(drm_event_vblank) std::array<char, 1024> bytes{};
+    const ssize_t size = read(output_.card, bytes.data(), bytes.size());
+    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the card is gone"};
+    for (std::size_t at = 0; at + sizeof(drm_event_vblank) <= static_cast<std::size_t>(size);) {
+      drm_event_vblank event{};
+      std::memcpy(&event, bytes.data() + at, sizeof event);
+      at += std::max<std::size_t>(event.base.length, sizeof(drm_event));
+      if (event.base.type != DRM_EVENT_FLIP_COMPLETE || event.user_data != asked_) continue;
+      flip_ = {static_cast<long>(event.sequence), event.tv_sec + 1e-6 * event.tv_usec};
+    }
+  }
+
+  void wait_for_flip() {
+    const double deadline_s = clock_.now_s() + flip_timeout_s;
+    while (flip_.sequence < 0) {
+      const double left_s = deadline_s - clock_.now_s();
+      pollfd ready{output_.card, POLLIN, 0};
+      const int count = left_s > 0 ? poll(&ready, 1, static_cast<int>(left_s * 1000) + 1) : 0;
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) {
+        throw Error{Fault::busy, name_ + ": no flip within 0.25 s; is the screen on?"};
+      }
+      read_events();
+    }
+    check_interrupted();
+  }
+
+  // The guardian shares the opened card, so that the pictures outlive the tool until black is on.
+  void watch(bool lit) {
+    if (guardian_ == nullptr) return;
+    if (lit && action_ == 0) {
+      action_ = guardian_->add({{"do", "drm"},
+                                {"order", 0},
+                                {"name", "screen"},
+                                {"crtc", output_.crtc},
+                                {"framebuffer", black_.framebuffer}},
+                               output_.card);
+    }
+    guardian_->beat();
+  }
+  void unwatch() {
+    if (action_ != 0) guardian_->forget(action_);
+    action_ = 0;
+  }
+
+  Clock& clock_;
+  Guardian* guardian_;
+  DrmOutput output_;
+  std::string name_;
+  DisplayMode mode_;
+  Buffer black_;
+  std::vector<Buffer> frames_;
+  std::uint64_t asked_ = 0;  // flips so far
+  Flip flip_;
+  int action_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Display> open_drm_display(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({});
+  auto lock = std::make_unique<DeviceLock>("drm-" + address.place);
+  if (guardian != nullptr) guardian->keep(lock->handle());
+  auto display = std::make_unique<DrmDisplay>(address.place, clock, guardian);
+  display->hold(std::move(lock));
+  return display;
+}
+
+}  // namespace vam::device

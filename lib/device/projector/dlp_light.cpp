@@ -1,0 +1,197 @@
+// TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) as light engines.
+// Source: TI DLPU010 and DLPU018, "Programmer's Guide".
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "device/os/clock.hpp"
+#include "device/projector/light_engine.hpp"
+#include "device/projector/private/dlp_link.hpp"
+#include "device/safety/guardian_actions.hpp"
+
+namespace vam::device {
+
+namespace {
+
+using enum DlpCommand;
+
+constexpr double patience_s = 15;  // to wake, to find the picture
+constexpr double mode_s = 2;       // to take up a mode: some tenths of a second
+constexpr int asleep = 1;
+constexpr int from_video_port = 0;
+constexpr int from_hdmi = 1;
+constexpr int video_mode = 0;
+constexpr int video_pattern_mode = 2;
+constexpr int stop = 0;
+constexpr int start = 2;
+constexpr int sequencer_runs = 1 << 1;  // of the main status
+constexpr int picture_found = 1 << 3;   // of the main status, DLPC900
+// Three of them and the 105 us of black before the next frame fit in a frame of 60 Hz.
+constexpr int pattern_us = 5500;
+
+void unless_refused(const std::function<void()>& words) {
+  try {
+    words();
+  } catch (const Error& error) {
+    if (error.fault != Fault::protocol) throw;
+  }
+}
+
+class DlpLight final : public LightEngine {
+ public:
+  DlpLight(std::unique_ptr<UsbLink> usb, const LightSettings& settings, Clock& clock, Guardian* guardian)
+      : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
+    if (settings.current.value_or(0) > settings.max_current) {
+      throw Error{Fault::usage, link_.name() + ": current " + std::to_string(*settings.current) +
+                                    " is above the cap of " + std::to_string(settings.max_current) +
+                                    "; raise projector.max_led_current only within what the LEDs bear"};
+    }
+    for (const char led : settings.leds) {
+      const std::size_t bit = std::string("rgb").find(led);
+      if (bit == std::string::npos)
+        throw Error{Fault::usage, link_.name() + ": leds=" + settings.leds + " is not made of r, g and b"};
+      led_bits_ |= 1 << bit;
+    }
+  }
+
+  ~DlpLight() override {
+    if (!awake_) return;
+    try {
+      standby();
+    } catch (...) {
+      // The guardian still holds the order.
+    }
+  }
+
+  Json identify() override {
+    Json about = link_.about();
+    const DlpBytes version = link_.ask(firmware, 4);
+    about["firmware"] = std::to_string(version[3]) + "." + std::to_string(version[2]) + "." +
+                        std::to_string(version[0] + 256 * version[1]);
+    about["hardware_status"] = link_.ask(hardware_status);
+    about["system_status"] = link_.ask(system_status);
+    about["main_status"] = link_.ask(main_status);
+    return about;
+  }
+
+  void prepare() override {
+    wake();
+    link_.set(led_enable, {0}, "LED enable");
+    stop_patterns();
+    link_.set(display_mode, {video_mode}, "video mode", mode_s);
+    link_.set(input_source, {(link_.ask(input_source) & ~7) | from_video_port}, "input from the video port");
+    // Grey must be linear: the host's own table makes the intensity.
+    if (link_.about()["usb_id"] == "0451:c900") {
+      show_patterns();
+    } else {
+      link_.set(gamma, {link_.ask(gamma) & 0x7F}, "gamma off");  // whatever its number
+    }
+    if (settings_.current) {
+      link_.set(led_current, DlpBytes(3, *settings_.current), "LED current");
+    } else {
+      require_capped(link_.ask(led_current, 3));
+    }
+    if ((link_.ask(hardware_status) & 1) == 0) {
+      throw Error{Fault::protocol, link_.name() + ": its own start-up check failed; switch it off and on again"};
+    }
+  }
+
+  void on() override {
+    watch();
+    link_.set(led_enable, {led_bits_}, "LED enable");
+  }
+
+  void dark() override {
+    link_.set(led_enable, {0}, "LED enable");
+    if (action_) guardian_->forget(*action_);
+    action_.reset();
+  }
+
+  void standby() override {
+    dark();
+    stop_patterns();
+    link_.tell(power, {asleep});
+    awake_ = false;
+  }
+
+ private:
+  // The engine answers while it wakes, but is not awake at once.
+  void wake() {
+    awake_ = true;
+    link_.tell(power, {0});
+    require_soon([&] { return link_.ask(power) == 0; }, "does not wake", "switch it off and on again");
+  }
+
+  void stop_patterns() {
+    unless_refused([&] { link_.tell(pattern_start_stop, {stop}); });  // when there are none
+  }
+
+  // A DLPC900 cannot be told to leave its gamma. Its grey is linear where it takes a frame for three patterns of 8
+  // bits, its colours one after the other, which it does only with a picture that it has found.
+  void show_patterns() {
+    unless_refused([&] {  // by a board without a receiver
+      if (link_.ask(video_receiver) == 0) link_.tell(video_receiver, {from_hdmi});
+    });
+    require_soon([&] { return (link_.ask(main_status) & picture_found) != 0; }, "finds no picture at its input",
+                 "check the video cable and the screen's mode");
+    link_.set(display_mode, {video_pattern_mode}, "video pattern mode", mode_s);
+    for (int colour = 0; colour < 3; ++colour) {
+      const int begins_with_frame = colour == 0 ? 0x80 : 0;
+      const int first_bit = 8 * colour;
+      link_.tell(pattern, {colour, 0, pattern_us & 0xFF, pattern_us >> 8, 0,
+                           begins_with_frame | led_bits_ << 4 | (8 - 1) << 1, 0, 0, 0, 0, 0, first_bit << 3});
+    }
+    link_.tell(pattern_table, {3, 0, 0, 0, 0, 0});  // all three, for ever
+    link_.tell(pattern_start_stop, {start});
+    require_soon([&] { return (link_.ask(main_status) & sequencer_runs) != 0; }, "does not start its patterns",
+                 "check the screen's mode: at most 60 Hz");
+  }
+
+  void require_soon(const std::function<bool()>& done, const std::string& problem, const std::string& remedy) {
+    if (link_.within(patience_s, done)) return;
+    throw Error{Fault::busy, link_.name() + ": " + problem + " within " + format_number(patience_s) + " s; " + remedy};
+  }
+
+  void require_capped(const DlpBytes& currents) const {
+    for (std::size_t led = 0; led < 3; ++led) {
+      if ((led_bits_ >> led & 1) == 0 || currents[led] <= settings_.max_current) continue;
+      throw Error{Fault::protocol, link_.name() + ": its current is " + std::to_string(currents[led]) +
+                                       ", above the cap of " + std::to_string(settings_.max_current) +
+                                       "; give current=N"};
+    }
+  }
+
+  void watch() {
+    if (guardian_ == nullptr || action_) return;
+    const Json about = link_.about();
+    // Flags 0: no acknowledgement, since nobody is left to read it.
+    const Json reports =
+        Json::array({to_hex(dlp_report(0, 0, led_enable, {0})), to_hex(dlp_report(0, 1, pattern_start_stop, {stop})),
+                     to_hex(dlp_report(0, 2, power, {asleep}))});
+    action_ = guardian_->add({{"do", "usb"},
+                              {"order", 0},
+                              {"name", "light"},
+                              {"usb_id", about["usb_id"]},
+                              {"serial", about["serial"]},
+                              {"interface", 0},
+                              {"reports", reports}});
+  }
+
+  DlpLink link_;
+  LightSettings settings_;
+  Guardian* guardian_;
+  int led_bits_ = 0;
+  bool awake_ = false;
+  std::optional<int> action_;
+};
+
+}  // namespace
+
+std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings, Clock& clock,
+                                            Guardian* guardian) {
+  return std::make_unique<DlpLight>(std::move(link), settings, clock, guardian);
+}
+
+}  // namespace vam::device

@@ -1,0 +1,52 @@
+// The lamp half of a projector: LEDs, their current, and whether grey is linear.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "device/os/clock.hpp"
+#include "device/os/lock.hpp"
+#include "device/port/usb_link.hpp"
+#include "device/safety/guardian.hpp"
+
+namespace vam::device {
+
+inline constexpr int dlpc350_product = 0x6401;  // USB product ids
+inline constexpr int dlpc900_product = 0xc900;
+
+struct LightSettings {
+  std::optional<int> current;  // 0..255, in the controller's own steps; absent: as it is
+  int max_current = 100;       // a larger current is refused
+  std::string leds = "b";      // any of r, g, b
+};
+
+/// A DLP controller on USB. Between on() and dark() the guardian holds the order to darken. Throws Error: absent, busy
+/// (no answer), protocol (NACK, wrong answer, or a setting that does not read back), usage (current above the cap).
+class LightEngine {
+ public:
+  virtual ~LightEngine() = default;
+  /// Model, firmware, status bits.
+  virtual Json identify() = 0;
+  /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs a picture at its
+  /// input) and current set, each read back. LEDs stay off.
+  virtual void prepare() = 0;
+  virtual void on() = 0;
+  /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.
+  virtual void dark() = 0;
+  /// dark(), then no pattern, then asleep: what the destructor of an engine does that was prepared.
+  virtual void standby() = 0;
+
+  void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
+
+ private:
+  std::unique_ptr<DeviceLock> lock_;
+};
+
+/// Which of the two controllers it is the link's usb_id tells.
+[[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
+                                                          Clock& clock, Guardian* guardian);
+
+}  // namespace vam::device

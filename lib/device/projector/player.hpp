@@ -1,0 +1,50 @@
+// A print's light: at every vertical blank the frame that belongs to the table's angle.
+#pragma once
+
+#include <functional>
+
+#include "base/json.hpp"
+#include "device/projector/display.hpp"
+#include "device/projector/light_engine.hpp"
+#include "device/stage/angle_source.hpp"
+
+namespace vam::device {
+
+struct PlayPlan {
+  int frames_per_turn = 360;  // frame n belongs to the angle 360 n / frames_per_turn
+  int turns = 1;
+  double latency_s = 0;           // from a vertical blank to the light, calibrated
+  double allowed_missed = 0.001;  // part of all vertical blanks
+};
+
+/// One flip, as it is logged.
+struct FlipRecord {
+  Flip flip;
+  int frame = -1;        // -1: black
+  double angle_deg = 0;  // predicted for the middle of its showing
+  double sigma_deg = 0;
+  long missed = 0;    // vertical blanks between the flip before and this one
+  double late_s = 0;  // after the vertical blank that it counts as
+};
+/// What of it is logged besides its time.
+[[nodiscard]] Json to_json(const FlipRecord& record);
+
+struct PlayTally {
+  long flips = 0;
+  long lit = 0;
+  long missed = 0;  // while lit or in the run-up
+};
+
+/// Shows black until the predicted angle at the next vertical blank is 0, then for every vertical blank the frame
+/// nearest to the angle in the middle of its showing, then black from 360 * turns on. The light engine (may be null)
+/// goes on a tenth of a second before angle 0 and off right after the last frame. The run-up is a dry run: flips missed
+/// there count, too. Throws Fault::busy when more than the allowed part of flips is missed, before light when that was
+/// in the run-up; and what display, light and source throw. Black and dark whenever it leaves.
+PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
+               const std::function<void(const FlipRecord&)>& log);
+
+/// Shows all frames one after the other, each for hold_s, with light, once or until a signal. For test patterns.
+PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int frames, double hold_s, bool forever,
+                       const std::function<void(const FlipRecord&)>& log);
+
+}  // namespace vam::device

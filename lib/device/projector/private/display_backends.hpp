@@ -1,0 +1,14 @@
+// The constructors behind open_display().
+#pragma once
+
+#include "device/projector/display.hpp"
+
+namespace vam::device {
+
+[[nodiscard]] std::unique_ptr<Display> open_sdl_display(const Address& address, Clock& clock, Guardian* guardian);
+[[nodiscard]] std::unique_ptr<Display> open_drm_display(const Address& address, Clock& clock, Guardian* guardian);
+/// Options hz, and miss=N: every N-th flip comes one vertical blank late.
+[[nodiscard]] std::unique_ptr<Display> open_null_display(const Address& address, const DisplayMode& wanted,
+                                                         Clock& clock);
+
+}  // namespace vam::device

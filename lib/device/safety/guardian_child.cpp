@@ -1,0 +1,137 @@
+#include "device/safety/private/guardian_child.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "device/os/clock.hpp"
+#include "device/os/realtime.hpp"
+#include "device/safety/guardian_actions.hpp"
+
+namespace vam::device {
+
+namespace {
+
+struct Action {
+  Json what;
+  int handle = -1;
+};
+
+struct Packet {
+  char kind = 0;  // 0: the parent's end is closed
+  int id = 0;
+  std::string text;
+  int handle = -1;
+};
+
+Packet receive(int socket) {
+  std::array<char, 65536> bytes{};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
+  iovec part{bytes.data(), bytes.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t size = recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
+  if (size <= 0) return {};
+  Packet packet;
+  const cmsghdr* header = CMSG_FIRSTHDR(&message);
+  if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {
+    std::memcpy(&packet.handle, CMSG_DATA(header), sizeof(int));
+  }
+  const std::string all(bytes.data(), static_cast<std::size_t>(size));
+  const std::size_t blank = all.find(' ');
+  packet.kind = all[0];
+  packet.id = std::atoi(all.substr(1, blank - 1).c_str());
+  packet.text = all.substr(blank + 1);
+  return packet;
+}
+
+// Terminal signals reach the whole group, and a closing terminal the whole session: leave both, and ignore the rest.
+// Standard input and output belong to the tool's pipes, whose other ends must see them closed when the tool dies. Their
+// numbers stay taken: as 0 or 1 a device's handle would get whatever a library prints.
+void detach(int socket) {
+  setsid();
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGTSTP, SIGUSR1, SIGUSR2}) {
+    std::signal(signal, SIG_IGN);
+  }
+  const auto low = static_cast<unsigned>(socket);
+  const int nowhere = open("/dev/null", O_RDWR);
+  for (const int number : {STDIN_FILENO, STDOUT_FILENO}) {
+    if (number != socket) dup2(nowhere, number);
+  }
+  if (low > 3) close_range(3, low - 1, 0);
+  close_range(low + 1, ~0U, 0);
+}
+
+std::string carry_all_out(const std::map<int, Action>& actions) {
+  std::vector<const Action*> sorted;
+  for (const auto& [id, action] : actions) sorted.push_back(&action);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Action* a, const Action* b) {
+    return a->what.value("order", 1) < b->what.value("order", 1);
+  });
+  std::string report;
+  for (const Action* action : sorted) {
+    const bool done = carry_out(action->what, action->handle);
+    report += (report.empty() ? "" : ", ") + action->what.value("name", std::string("device")) +
+              (done ? " safe" : " DID NOT TAKE IT");
+  }
+  return report;
+}
+
+}  // namespace
+
+void guard(int socket, int parent, double stall_s) {
+  detach(socket);
+  hurry(Urgency::guardian);
+  std::map<int, Action> actions;
+  double last_beat_s = real_clock().now_s();
+  const char* reason = "ended without a word";
+  bool quietly = false;
+  for (;;) {
+    int wait_ms = -1;
+    if (!actions.empty()) {
+      wait_ms = static_cast<int>(std::max(0.0, last_beat_s + stall_s - real_clock().now_s()) * 1000) + 1;
+    }
+    pollfd readable{socket, POLLIN, 0};
+    const int ready = poll(&readable, 1, wait_ms);
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready == 0) {
+      kill(parent, SIGKILL);  // a tool that hangs must not wake up and undo what follows
+      reason = "made no progress and was killed";
+      break;
+    }
+    Packet packet = receive(socket);
+    if (packet.kind == 0) break;
+    last_beat_s = real_clock().now_s();
+    if (packet.kind == 'a') actions[packet.id] = {Json::parse(packet.text, nullptr, false), packet.handle};
+    if (packet.kind == 'f' && actions.contains(packet.id)) {
+      close(actions[packet.id].handle);
+      actions.erase(packet.id);
+    }
+    if (packet.kind == 'q') {
+      quietly = true;
+      break;
+    }
+  }
+  const std::string report = carry_all_out(actions);
+  if (!actions.empty() && !quietly)
+    std::fprintf(stderr, "guardian: process %d %s; %s\n", parent, reason, report.c_str());
+  _exit(0);
+}
+
+}  // namespace vam::device

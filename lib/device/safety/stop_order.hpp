@@ -1,0 +1,49 @@
+// The guardian's order to stop a table: standing from the moment it is told to move until it is known to stand.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "base/json.hpp"
+#include "device/safety/guardian.hpp"
+#include "device/safety/guardian_actions.hpp"
+
+namespace vam::device {
+
+class StopOrder {
+ public:
+  /// Without a guardian the order is only remembered.
+  explicit StopOrder(Guardian* guardian) : guardian_(guardian) {}
+
+  /// Before the command that sets the table moving: bytes that stop it, to be written to its port. A simulated port
+  /// has no handle (-1) and ends with the tool; then the order is only remembered.
+  void give(const std::string& bytes, int handle) {
+    if (handle < 0)
+      standing_ = true;
+    else
+      give({{"do", "write"}, {"order", 1}, {"name", "stage"}, {"hex", to_hex(bytes)}}, handle);
+  }
+  /// The same by any action of guardian_actions.hpp.
+  void give(const Json& action, int handle = -1) {
+    standing_ = true;
+    if (guardian_ != nullptr && !action_) action_ = guardian_->add(action, handle);
+  }
+  /// The table stands.
+  void withdraw() {
+    standing_ = false;
+    if (action_) guardian_->forget(*action_);
+    action_.reset();
+  }
+  [[nodiscard]] bool standing() const { return standing_; }
+  /// The controller has answered.
+  void beat() {
+    if (guardian_ != nullptr) guardian_->beat();
+  }
+
+ private:
+  Guardian* guardian_;
+  bool standing_ = false;
+  std::optional<int> action_;
+};
+
+}  // namespace vam::device

@@ -1,0 +1,50 @@
+// The stage's angle as a straight line in time, fitted to its latest samples: what the angle is now and will be at the
+// next flip.
+#pragma once
+
+#include <deque>
+#include <string>
+
+#include "device/stage/stage.hpp"
+
+namespace vam::device {
+
+/// An angle at a time with its standard deviation: one line of vam-stage's output.
+struct AngleSample {
+  double t_s = 0;  // CLOCK_MONOTONIC
+  double angle_deg = 0;
+  double sigma_deg = 0;
+};
+
+/// The middle of question and answer; the uncertainty is that of a moment uniformly spread between them (1/sqrt(12))
+/// times the speed, and of the encoder's last digit.
+[[nodiscard]] AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s);
+
+/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma":0.00123}
+[[nodiscard]] std::string to_line(const AngleSample& sample);
+/// Throws Fault::data for anything else: "follow: line 7: ...".
+[[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);
+
+/// Weighted least squares over the samples of the last window_s seconds.
+class AngleFit {
+ public:
+  explicit AngleFit(double window_s = 1.0) : window_s_(window_s) {}
+  void add(const AngleSample& sample);
+  void clear() { samples_.clear(); }
+  /// At least three samples over at least a quarter of the window.
+  [[nodiscard]] bool ready() const;
+  /// Both need ready(). sigma_deg is the fit's own uncertainty at t_s.
+  [[nodiscard]] AngleSample at(double t_s) const;
+  [[nodiscard]] double speed_deg_s() const;
+  [[nodiscard]] double speed_sigma_deg_s() const;
+  [[nodiscard]] double last_s() const { return samples_.back().t_s; }
+
+ private:
+  void solve() const;
+  double window_s_;
+  std::deque<AngleSample> samples_;
+  mutable bool solved_ = false;
+  mutable double mean_t_s_ = 0, mean_deg_ = 0, slope_ = 0, slope_variance_ = 0, mean_variance_ = 0;
+};
+
+}  // namespace vam::device

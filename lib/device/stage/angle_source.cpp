@@ -1,0 +1,107 @@
+#include "device/stage/angle_source.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::device {
+
+namespace {
+
+constexpr double stale_s = 0.3;
+constexpr std::size_t longest_line = 4096;
+
+class ElapsedAngle final : public AngleSource {
+ public:
+  ElapsedAngle(double speed_deg_s, Clock& clock) : speed_deg_s_(speed_deg_s), clock_(clock) {}
+  void update() override {
+    if (!start_s_) start_s_ = clock_.now_s();
+  }
+  std::optional<AngleSample> at(double t_s) const override {
+    if (!start_s_) return std::nullopt;
+    return AngleSample{t_s, speed_deg_s_ * (t_s - *start_s_), 0};
+  }
+
+ private:
+  double speed_deg_s_;
+  Clock& clock_;
+  std::optional<double> start_s_;
+};
+
+class FollowedAngle final : public AngleSource {
+ public:
+  FollowedAngle(const std::string& path, Clock& clock) : clock_(clock) {
+    fd_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd_ < 0) throw Error{Fault::no_input, path + ": cannot be opened (" + std::strerror(errno) + ")"};
+  }
+  ~FollowedAngle() override { close(fd_); }
+
+  void update() override {
+    while (readable()) {
+      std::array<char, 4096> bytes{};
+      const ssize_t count = read(fd_, bytes.data(), bytes.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count <= 0) throw Error{Fault::busy, "stage angles: ended" + so_far() + "; vam-stage says why"};
+      buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+      take_lines();
+    }
+    if (lines_ > 0 && clock_.now_s() - heard_s_ > stale_s) {
+      throw Error{Fault::busy, "stage angles: none for " + format_number(stale_s) + " s" + so_far()};
+    }
+  }
+
+  std::optional<AngleSample> at(double t_s) const override {
+    if (!fit_.ready()) return std::nullopt;
+    return fit_.at(t_s);
+  }
+
+ private:
+  bool readable() const {
+    pollfd ready{fd_, POLLIN, 0};
+    return poll(&ready, 1, 0) > 0;
+  }
+
+  void take_lines() {
+    std::size_t begin = 0;
+    for (std::size_t end = 0; (end = buffer_.find('\n', begin)) != std::string::npos; begin = end + 1) {
+      last_ = parse_angle_line(buffer_.substr(begin, end - begin), ++lines_);
+      fit_.add(last_);
+      heard_s_ = clock_.now_s();
+    }
+    buffer_.erase(0, begin);
+    if (buffer_.size() > longest_line) (void)parse_angle_line(buffer_, lines_ + 1);  // throws: no line is so long
+  }
+
+  std::string so_far() const {
+    return lines_ == 0 ? " before the first"
+                       : " after line " + std::to_string(lines_) + ", at " + format_number(last_.angle_deg, 7) + " deg";
+  }
+
+  Clock& clock_;
+  int fd_ = -1;
+  std::string buffer_;
+  long lines_ = 0;
+  double heard_s_ = 0;
+  AngleSample last_;
+  AngleFit fit_;
+};
+
+}  // namespace
+
+std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock) {
+  return std::make_unique<ElapsedAngle>(speed_deg_s, clock);
+}
+
+std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock) {
+  return std::make_unique<FollowedAngle>(path, clock);
+}
+
+}  // namespace vam::device

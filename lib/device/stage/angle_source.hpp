@@ -1,0 +1,30 @@
+// Where the player learns the angle of the table from.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "device/os/clock.hpp"
+#include "device/stage/angle_fit.hpp"
+
+namespace vam::device {
+
+class AngleSource {
+ public:
+  virtual ~AngleSource() = default;
+  /// Takes in what has become known. Throws when the table can no longer be followed.
+  virtual void update() = 0;
+  /// The angle at a moment of the near future; nothing before it is known.
+  [[nodiscard]] virtual std::optional<AngleSample> at(double t_s) const = 0;
+};
+
+/// By the clock alone: the angle is speed times the time since the first question [OST22].
+[[nodiscard]] std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock);
+
+/// By the lines of vam-stage from a file, FIFO, or "-" (stdin): their running line fit, extrapolated. update() throws
+/// Fault::data for a bad line, Fault::busy when nothing came for 0.3 s or the lines have ended. Before the first line
+/// it waits without limit. Throws Fault::no_input when the file cannot be opened.
+[[nodiscard]] std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock);
+
+}  // namespace vam::device

@@ -1,0 +1,285 @@
+#include "device/stage/grbl_stage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "device/safety/stop_order.hpp"
+
+namespace vam::device {
+
+namespace {
+
+constexpr double timeout_s = 0.2;
+constexpr double wake_s = 2.0;  // opening the port resets most boards; their greeting takes a second
+const std::string jog_cancel = "\x85";
+const std::string soft_reset = "\x18";
+
+class GrblStage final : public Stage {
+ public:
+  GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian)
+      : port_(std::move(port)), clock_(clock), axis_(axis), stop_order_(guardian) {
+    greet();
+  }
+
+  ~GrblStage() override {
+    if (!stop_order_.standing()) return;
+    try {
+      port_->write(homing_ ? soft_reset : jog_cancel);
+    } catch (...) {
+      // The line is dead for us; the guardian keeps its order.
+    }
+  }
+
+  // A board has no serial number; the name that its owner gave it ($I=name) must do.
+  Json identify() override {
+    return {
+        {"maker", "GRBL"}, {"model", greeting_}, {"serial", given_name_}, {"firmware", version_}, {"axis", letter()}};
+  }
+
+  StageCaps caps() override {
+    read_settings();
+    StageCaps caps;
+    const bool limited = settings_["$20"] != 0;
+    const double travel_deg = limited ? settings_["$" + std::to_string(130 + axis_)] : 1e7;
+    // GRBL's machine space lies below zero when limits are on.
+    caps.min_deg = -travel_deg + offset_deg_;
+    caps.max_deg = (limited ? 0 : travel_deg) + offset_deg_;
+    caps.max_speed_deg_s = settings_["$" + std::to_string(110 + axis_)] / 60;
+    caps.acceleration_deg_s2 = settings_["$" + std::to_string(120 + axis_)];
+    return caps;
+  }
+
+  void enable() override { order("$X"); }
+
+  void start_homing() override {
+    watch();
+    send("$H");
+    homing_ = true;
+    idle_since_s_.reset();
+  }
+
+  // "$H" answers ok only when it is done. Reports pause meanwhile, so the one that is asked for at each look comes at
+  // its end; a board that idles and has not said ok is not going to.
+  bool homed() override {
+    if (!homing_) return true;
+    stop_order_.beat();
+    const std::string line = next_line(0.05, false);
+    if (line.empty()) {
+      if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + timeout_s) {
+        throw Error{Fault::busy, port_->name() + ": no answer to '$H', though it idles"};
+      }
+      port_->write("?");
+      return false;
+    }
+    if (line.front() == '<') {
+      if (state_of(line) == "Idle" && !idle_since_s_) idle_since_s_ = clock_.now_s();
+      return false;
+    }
+    require_ok("$H", line);
+    homing_ = false;
+    offset_deg_ = -sample().angle_deg;
+    stop_order_.withdraw();
+    return true;
+  }
+
+  void set_speed(double deg_s) override { speed_deg_s_ = deg_s; }
+
+  void set_angle(double angle_deg) override { offset_deg_ += angle_deg - sample().angle_deg; }
+
+  void start_move(double angle_deg) override {
+    watch();
+    std::array<char, 80> text{};
+    std::snprintf(text.data(), text.size(), "$J=G53 G90 %s%.4f F%.3f", letter().c_str(), angle_deg - offset_deg_,
+                  60 * speed_deg_s_);
+    order(text.data());
+  }
+
+  StageSample sample() override {
+    StageSample now;
+    drain();
+    now.t0_s = clock_.now_s();
+    const std::string report = status();
+    now.t1_s = clock_.now_s();
+    now.angle_deg = position(report) + offset_deg_;
+    return now;
+  }
+
+  bool moving() override {
+    drain();
+    const std::string report = status();
+    const std::string state = state_of(report);
+    if (state == "Alarm") throw Error{Fault::protocol, port_->name() + ": is in alarm; home it, or unlock it with $X"};
+    const bool moves = state != "Idle";
+    if (!moves) stop_order_.withdraw();
+    return moves;
+  }
+
+  // Both stops are the cancelling of the jog, at the axis' acceleration: a reset would stop harder, but lose the
+  // position. A search for the reference hears nothing else, and has no position yet.
+  void stop(Stop) override {
+    stop_order_.beat();
+    port_->write(homing_ ? soft_reset : jog_cancel);
+    homing_ = false;
+  }
+
+  std::optional<std::string> fault() override { return std::nullopt; }  // every order answers for itself
+
+ private:
+  std::string letter() const { return std::string(1, static_cast<char>('X' + axis_)); }
+
+  void greet() {
+    port_->write("\n");
+    const double deadline_s = clock_.now_s() + wake_s;
+    while (clock_.now_s() < deadline_s) {
+      const std::string line = next_line(0.2, false);
+      if (line.rfind("Grbl ", 0) == 0) {
+        greeting_ = line.substr(0, line.find(" ["));
+        break;
+      }
+      if (line == "ok") break;  // it was awake
+    }
+    drain();
+    send("$I");
+    for (;;) {
+      const std::string line = next_line(timeout_s, true);
+      if (line == "ok") break;
+      if (line.rfind("[VER:", 0) == 0) read_version(line);
+      if (line.rfind('[', 0) != 0) {
+        throw Error{Fault::protocol,
+                    port_->name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
+      }
+    }
+  }
+
+  // "[VER:1.1h.20190830:name]"
+  void read_version(const std::string& line) {
+    const std::size_t colon = line.find(':', 5);
+    version_ = line.substr(5, std::min(colon, line.size() - 1) - 5);
+    greeting_ = "Grbl " + version_;
+    if (colon != std::string::npos) given_name_ = line.substr(colon + 1, line.find(']', colon) - colon - 1);
+  }
+
+  void read_settings() {
+    send("$$");
+    for (;;) {
+      const std::string line = next_line(timeout_s, true);
+      if (line == "ok") return;
+      const std::size_t equals = line.find('=');
+      const auto value =
+          equals == std::string::npos ? std::nullopt : parse_number(split(line.substr(equals + 1), ' ').front());
+      if (line.front() != '$' || !value) throw nonsense("$$", line);
+      settings_[line.substr(0, equals)] = *value;
+    }
+  }
+
+  Error nonsense(const std::string& question, const std::string& line) const {
+    return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + line.substr(0, 40) + "'"};
+  }
+
+  void drain() {
+    buffer_.clear();
+    while (!port_->read(1e-9).empty()) continue;
+  }
+
+  void send(const std::string& line) {
+    drain();
+    port_->write(line + "\n");
+  }
+
+  std::string next_line(double wait_s, bool needed) {
+    for (;;) {
+      const std::size_t end = buffer_.find('\n');
+      if (end != std::string::npos) {
+        std::string line = buffer_.substr(0, end);
+        buffer_.erase(0, end + 1);
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        if (!line.empty()) return line;
+        continue;
+      }
+      const std::string bytes = port_->read(wait_s);
+      if (bytes.empty() && needed) {
+        throw Error{Fault::busy, port_->name() + ": no answer within " + format_number(wait_s) +
+                                     " s; check power, cable and baud rate"};
+      }
+      if (bytes.empty()) return "";
+      if (buffer_.size() + bytes.size() > 65536) throw nonsense("?", buffer_);
+      buffer_ += bytes;
+    }
+  }
+
+  void require_ok(const std::string& question, const std::string& line) const {
+    if (line == "ok") return;
+    if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
+      throw Error{Fault::protocol, port_->name() + ": '" + question + "' was refused with " + line};
+    }
+    throw nonsense(question, line);
+  }
+
+  void order(const std::string& line) {
+    send(line);
+    std::string answer = next_line(timeout_s, true);
+    while (answer.front() == '[') answer = next_line(timeout_s, true);  // "[MSG:Caution: Unlocked]"
+    require_ok(line, answer);
+    stop_order_.beat();
+  }
+
+  static std::string state_of(const std::string& report) { return report.substr(1, report.find_first_of("|>:") - 1); }
+
+  // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
+  std::string status() {
+    port_->write("?");
+    std::string line = next_line(timeout_s, true);
+    while (line == "ok") line = next_line(timeout_s, true);
+    if (line.front() != '<' || line.back() != '>') throw nonsense("?", line);
+    stop_order_.beat();
+    return line;
+  }
+
+  double position(const std::string& report) const {
+    const std::size_t begin = report.find("MPos:");
+    const auto parts = begin == std::string::npos
+                           ? std::vector<std::string>{}
+                           : split(report.substr(begin + 5, report.find_first_of("|>", begin) - begin - 5), ',');
+    const auto value = parts.size() == 3 ? parse_number(parts[static_cast<std::size_t>(axis_)]) : std::nullopt;
+    if (!value || !std::isfinite(*value)) {
+      throw Error{Fault::protocol,
+                  port_->name() + ": its status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
+    }
+    return *value;
+  }
+
+  void watch() {
+    // Cancels the jog; the LF ends half a line of the dead tool, and the second cancel what that may have started. The
+    // reset stops whatever is left.
+    const std::string bytes = jog_cancel + "\n" + jog_cancel + "!" + soft_reset;
+    stop_order_.give(bytes, port_->handle());
+  }
+
+  std::unique_ptr<Port> port_;
+  Clock& clock_;
+  int axis_;
+  StopOrder stop_order_;
+  std::string greeting_ = "Grbl";
+  std::string version_;
+  std::string given_name_;
+  std::string buffer_;
+  std::map<std::string, double> settings_;
+  double offset_deg_ = 0;
+  double speed_deg_s_ = 10;
+  bool homing_ = false;
+  std::optional<double> idle_since_s_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_grbl_stage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian) {
+  return std::make_unique<GrblStage>(std::move(port), clock, axis, guardian);
+}
+
+}  // namespace vam::device

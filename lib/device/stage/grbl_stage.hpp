@@ -1,0 +1,17 @@
+// A rotation axis driven by GRBL 1.1, one unit a degree.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "device/port/port.hpp"
+#include "device/stage/stage.hpp"
+
+namespace vam::device {
+
+/// axis: X, Y or Z (0, 1, 2). Motions are jogs, which 0x85 cancels without losing the position. Angles are machine
+/// positions plus an offset that lives as long as this object.
+[[nodiscard]] std::unique_ptr<Stage> make_grbl_stage(std::unique_ptr<Port> port, Clock& clock, int axis,
+                                                     Guardian* guardian);
+
+}  // namespace vam::device

@@ -1,0 +1,85 @@
+// The short commands: home, move, stop, follow, identify, status.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "device/stage/private/stop_on_exit.hpp"
+#include "device/stage/spin.hpp"
+
+namespace vam::device {
+
+void wait_until_standing(Stage& stage, Clock& clock, double period_s, double timeout_s,
+                         const std::function<void(const AngleSample&)>& report) {
+  const double deadline_s = clock.now_s() + timeout_s;
+  while (stage.moving()) {
+    if (clock.now_s() > deadline_s) {
+      throw Error{Fault::busy, "stage: still moves after " + format_number(timeout_s) + " s"};
+    }
+    if (report) report(to_angle_sample(stage.sample(), 0));
+    clock.sleep_until(clock.now_s() + std::min(period_s, heartbeat_s));
+  }
+}
+
+void home(Stage& stage, Clock& clock, double timeout_s) {
+  StopOnExit stopper(stage);
+  stage.enable();
+  stage.start_homing();
+  const double deadline_s = clock.now_s() + timeout_s;
+  while (!stage.homed()) {
+    if (clock.now_s() > deadline_s) {
+      throw Error{Fault::busy, "stage: found no reference within " + format_number(timeout_s) + " s"};
+    }
+    clock.sleep_until(clock.now_s() + 0.05);
+  }
+  stopper.disarm();
+}
+
+void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s) {
+  StopOnExit stopper(stage);
+  stage.enable();
+  stage.set_speed(speed_deg_s);
+  stage.start_move(relative ? stage.sample().angle_deg + angle_deg : angle_deg);
+  wait_until_standing(stage, clock, 0.02, timeout_s);
+  if (const auto problem = stage.fault()) throw Error{Fault::protocol, "stage: stopped with error " + *problem};
+  stopper.disarm();
+}
+
+void halt(Stage& stage, Clock& clock, Stop how) {
+  stage.stop(how);
+  wait_until_standing(stage, clock, 0.005, 10);
+}
+
+void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> seconds,
+            const std::function<void(const AngleSample&)>& report) {
+  const double start_s = clock.now_s();
+  AngleFit fit;
+  const double samples = seconds ? std::ceil(*seconds / period_s - 1e-6) : 0;  // one at the start, none at the end
+  for (long n = 0; !seconds || static_cast<double>(n) < samples; ++n) {
+    clock.sleep_until(start_s + static_cast<double>(n) * period_s);
+    const AngleSample now = to_angle_sample(stage.sample(), fit.ready() ? fit.speed_deg_s() : 0);
+    fit.add(now);
+    report(now);
+  }
+}
+
+Json describe(Stage& stage) {
+  Json about = stage.identify();
+  const StageCaps caps = stage.caps();
+  about["min_deg"] = caps.min_deg;
+  about["max_deg"] = caps.max_deg;
+  if (caps.max_speed_deg_s > 0) about["max_speed_deg_s"] = caps.max_speed_deg_s;
+  if (caps.acceleration_deg_s2 > 0) about["acceleration_deg_s2"] = caps.acceleration_deg_s2;
+  return about;
+}
+
+Json status(Stage& stage) {
+  const StageSample now = stage.sample();
+  Json state{{"t_monotonic_s", 0.5 * (now.t0_s + now.t1_s)}, {"angle_deg", now.angle_deg}, {"moving", stage.moving()}};
+  const auto problem = stage.fault();
+  state["fault"] = problem ? Json(*problem) : Json(nullptr);
+  return state;
+}
+
+}  // namespace vam::device

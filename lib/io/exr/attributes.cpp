@@ -1,0 +1,176 @@
+#include "io/exr/private/attributes.hpp"
+
+#include <OpenEXR/ImfDoubleAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+namespace vam::io::exr {
+
+namespace {
+
+using model::ImageInfo;
+using model::Kind;
+using model::Space;
+using model::StackInfo;
+
+constexpr std::array kinds = {Kind::sinogram, Kind::frames};
+constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
+
+void set_text(Imf::Header& header, const char* name, const std::string& text) {
+  header.insert(name, Imf::StringAttribute(text));
+}
+void set_number(Imf::Header& header, const char* name, double value) {
+  header.insert(name, Imf::DoubleAttribute(value));
+}
+void set_integer(Imf::Header& header, const char* name, int value) { header.insert(name, Imf::IntAttribute(value)); }
+
+std::optional<std::string> text(const Imf::Header& header, const char* name) {
+  const auto* found = header.findTypedAttribute<Imf::StringAttribute>(name);
+  return found != nullptr ? std::optional(found->value()) : std::nullopt;
+}
+
+// Other programs that pass a file on may store a number in another type.
+std::optional<double> number(const Imf::Header& header, const char* name) {
+  std::optional<double> value;
+  if (const auto* wide = header.findTypedAttribute<Imf::DoubleAttribute>(name)) value = wide->value();
+  if (const auto* narrow = header.findTypedAttribute<Imf::FloatAttribute>(name)) value = narrow->value();
+  if (const auto* whole = header.findTypedAttribute<Imf::IntAttribute>(name)) value = whole->value();
+  if (value && !std::isfinite(*value)) throw std::runtime_error(std::string(name) + " is not a finite number");
+  return value;
+}
+
+std::string join(const std::vector<std::string>& lines) {
+  std::string all;
+  for (const std::string& line : lines) all += (all.empty() ? "" : "\n") + line;
+  return all;
+}
+
+std::vector<std::string> split(const std::string& all) {
+  std::vector<std::string> lines;
+  std::istringstream stream(all);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+std::string kind_name(Kind kind) { return kind == Kind::sinogram ? "sinogram" : "frames"; }
+
+std::string space_name(Space space) {
+  switch (space) {
+    case Space::projector:
+      return "projector";
+    case Space::camera:
+      return "camera";
+    default:
+      return "virtual";
+  }
+}
+
+ImageInfo implied(const StackInfo& info, int index) {
+  ImageInfo about;
+  const bool sinogram = info.kind == Kind::sinogram;
+  about.z_mm = info.z_start_mm + (sinogram ? index * info.row_mm : 0.0);
+  about.angle_deg = info.angle_start_deg + (sinogram ? 0.0 : index * info.angle_step_deg);
+  return about;
+}
+
+std::string part_name(const StackInfo& info, int index) {
+  const int digits = std::max(4, static_cast<int>(std::to_string(info.count - 1).size()));
+  char name[32];
+  std::snprintf(name, sizeof name, "%c%0*d", info.kind == Kind::sinogram ? 'z' : 'a', digits, index);
+  return name;
+}
+
+void set_common(Imf::Header& header, const StackInfo& info) {
+  for (const auto& [name, value] : info.extra) set_text(header, name.c_str(), value);
+  set_text(header, "vam:kind", kind_name(info.kind));
+  set_text(header, "vam:space", space_name(info.space));
+  set_integer(header, "vam:count", info.count);
+  set_number(header, "vam:pixel_mm", info.pixel_mm);
+  set_number(header, "vam:row_mm", info.row_mm);
+  set_number(header, "vam:angle_start_deg", info.angle_start_deg);
+  set_number(header, "vam:angle_step_deg", info.angle_step_deg);
+  set_text(header, "vam:units", info.units);
+  set_text(header, "vam:history", join(info.history));
+}
+
+void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageInfo& about) {
+  header.setName(part_name(info, index));
+  set_integer(header, "vam:index", index);
+  set_number(header, "vam:z_mm", about.z_mm);
+  if (about.has_angle) set_number(header, "vam:angle_deg", about.angle_deg);
+  if (about.has_time) set_number(header, "vam:time_s", about.time_s);
+  if (!about.has_number) return;
+  set_integer(header, "vam:number", about.number);
+  set_integer(header, "vam:incomplete", about.incomplete ? 1 : 0);
+}
+
+StackInfo stack_info(const Imf::Header& header) {
+  StackInfo info;
+  const auto kind = text(header, "vam:kind");
+  if (!kind) throw std::runtime_error("has no vam:kind, so it is not a stack that these tools wrote");
+  const auto* same_kind = std::find_if(kinds.begin(), kinds.end(), [&](Kind k) { return kind_name(k) == *kind; });
+  if (same_kind == kinds.end()) throw std::runtime_error("vam:kind is '" + *kind + "', not sinogram or frames");
+  info.kind = *same_kind;
+  const auto space = text(header, "vam:space").value_or("");
+  const auto* same_space = std::find_if(spaces.begin(), spaces.end(), [&](Space s) { return space_name(s) == space; });
+  if (same_space == spaces.end()) {
+    throw std::runtime_error("vam:space is '" + space + "', not virtual, projector or camera");
+  }
+  info.space = *same_space;
+  info.count = static_cast<int>(number(header, "vam:count").value_or(0));
+  info.pixel_mm = number(header, "vam:pixel_mm").value_or(0);
+  if (info.pixel_mm <= 0) throw std::runtime_error("vam:pixel_mm is missing or not positive");
+  info.row_mm = number(header, "vam:row_mm").value_or(0);
+  info.z_start_mm = number(header, "vam:z_mm").value_or(0);
+  info.angle_start_deg = number(header, "vam:angle_start_deg").value_or(0);
+  info.angle_step_deg = number(header, "vam:angle_step_deg").value_or(0);
+  info.units = text(header, "vam:units").value_or(info.units);
+  info.history = split(text(header, "vam:history").value_or(""));
+  for (auto it = header.begin(); it != header.end(); ++it) {
+    const std::string name = it.name();
+    const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history";
+    const bool standard = name == "name" || name == "type" || name == "view";
+    if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
+  }
+  return info;
+}
+
+ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index) {
+  const int found = static_cast<int>(number(header, "vam:index").value_or(index));
+  if (found != index) {
+    throw std::runtime_error("part " + std::to_string(index) + " has vam:index " + std::to_string(found) +
+                             "; parts are missing, or not in order");
+  }
+  if (text(header, "vam:kind").value_or("") != kind_name(info.kind)) {
+    throw std::runtime_error("part " + std::to_string(index) + " is of another kind than part 0");
+  }
+  ImageInfo about = implied(info, index);
+  about.z_mm = number(header, "vam:z_mm").value_or(about.z_mm);
+  if (const auto angle = number(header, "vam:angle_deg")) {
+    about.angle_deg = *angle;
+    about.has_angle = true;
+  }
+  if (const auto time = number(header, "vam:time_s")) {
+    about.time_s = *time;
+    about.has_time = true;
+  }
+  if (const auto taken = number(header, "vam:number")) {
+    about.number = static_cast<int>(*taken);
+    about.has_number = true;
+    about.incomplete = number(header, "vam:incomplete").value_or(0) != 0;
+  }
+  return about;
+}
+
+}  // namespace vam::io::exr

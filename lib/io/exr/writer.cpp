@@ -1,0 +1,243 @@
+// The multi-part file is put together here and not by Imf::MultiPartOutputFile, which holds the buffers of all parts at
+// once (5,000 parts of ZIP take 1 GB) and seeks back to fill its offset tables: an uncompressed chunk is always 12 +
+// row bytes, so the tables can be sent ahead of the pixels and a pipe carries a valid, complete file.
+#include <OpenEXR/ImfPartType.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "io/exr/private/attributes.hpp"
+#include "io/exr/private/format.hpp"
+#include "io/exr/stack.hpp"
+#include "io/stream/finite.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using model::ImageInfo;
+using model::StackInfo;
+
+constexpr float largest_half = 65504;
+constexpr std::size_t batch = 16;  // images compressed at a time, in parallel
+
+Imf::Compression compression_named(const std::string& name) {
+  static const std::map<std::string, Imf::Compression> known = {
+      {"none", Imf::NO_COMPRESSION},   {"rle", Imf::RLE_COMPRESSION}, {"zip", Imf::ZIP_COMPRESSION},
+      {"zips", Imf::ZIPS_COMPRESSION}, {"piz", Imf::PIZ_COMPRESSION}, {"pxr24", Imf::PXR24_COMPRESSION}};
+  const auto found = known.find(name);
+  if (found != known.end()) return found->second;
+  throw Error{Fault::usage, "compression '" + name + "' is not known; use none, rle, zip, zips, piz or pxr24"};
+}
+
+bool same(const ImageInfo& a, const ImageInfo& b) {
+  return a.z_mm == b.z_mm && a.has_angle == b.has_angle && a.has_time == b.has_time &&
+         (!a.has_angle || a.angle_deg == b.angle_deg) && (!a.has_time || a.time_s == b.time_s) &&
+         a.has_number == b.has_number && a.number == b.number && a.incomplete == b.incomplete;
+}
+
+void check_half(const Image& image, const std::string& what) {
+  float largest = 0;
+  for (const float value : image.values) largest = std::max(largest, std::abs(value));
+  if (largest <= largest_half) return;
+  throw Error{Fault::data,
+              what + " has the value " + format_number(largest) + ", but half goes to 65504 only; leave out --half"};
+}
+
+std::vector<ImageInfo> all_implied(const StackInfo& info) {
+  std::vector<ImageInfo> about;
+  for (int i = 0; i < info.count; ++i) about.push_back(exr::implied(info, i));
+  return about;
+}
+
+}  // namespace
+
+struct StackWriter::State {
+  State(const std::string& path, const StackInfo& stack, std::vector<ImageInfo> facts, const StackOptions& options);
+
+  void put(const Image& image, const ImageInfo& own);
+  void settle(const ImageInfo& own);
+  [[nodiscard]] std::string head() const;
+  void flush();
+  void send(const std::string& bytes);
+  void finish();
+
+  OutputFile out;
+  StackInfo info;
+  std::vector<ImageInfo> about;
+  Imf::PixelType type;
+  Imf::Compression compression;
+  std::vector<std::uint64_t> offsets;  // of every chunk of every part, from the start of the file
+  std::uint64_t position = 0;          // of the next chunk
+  std::size_t head_bytes = 0;
+  bool stale_head = false;  // facts came after it was written
+  bool settled = false;     // the first image has decided what the headers hold
+  std::vector<Image> waiting;
+  std::size_t done = 0;  // images taken in
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> spool{nullptr, std::fclose};
+};
+
+StackWriter::State::State(const std::string& path, const StackInfo& stack, std::vector<ImageInfo> facts,
+                          const StackOptions& options)
+    : out(path),
+      info(stack),
+      about(std::move(facts)),
+      type(options.half ? Imf::HALF : Imf::FLOAT),
+      compression(compression_named(options.compression)) {
+  if (out.is_stream()) compression = Imf::NO_COMPRESSION;
+  const bool sane = info.width > 0 && info.height > 0 && info.count > 0 && info.width <= exr::max_side &&
+                    info.height <= exr::max_side && std::int64_t{info.width} * info.height <= exr::max_pixels;
+  if (!sane || about.size() != static_cast<std::size_t>(info.count)) {
+    throw Error{Fault::data, out.name() + ": a stack of " + std::to_string(info.count) + " images of " +
+                                 std::to_string(info.width) + " x " + std::to_string(info.height) +
+                                 " pixels cannot be written; at most 65536 a side and 2^28 in all"};
+  }
+}
+
+// Magic, version, all headers and all tables: all that stands before the first chunk.
+std::string StackWriter::State::head() const {
+  const int chunks = exr::chunk_count(info.height, compression);
+  Imf::Header header = exr::layout_header(info.width, info.height, type, compression);
+  header.setType(Imf::SCANLINEIMAGE);
+  header.setChunkCount(chunks);
+  exr::set_common(header, info);
+  std::int32_t flags = exr::version | exr::multi_part_flag;
+  for (const auto& [name, value] : info.extra) {
+    if (name.size() > 31) flags |= exr::long_names_flag;
+  }
+  std::string bytes;
+  exr::append(bytes, exr::magic);
+  exr::append(bytes, flags);
+  for (int i = 0; i < info.count; ++i) {
+    exr::set_own(header, info, i, about[static_cast<std::size_t>(i)]);
+    bytes += exr::serialize(header);
+  }
+  bytes += '\0';
+  bytes.append(reinterpret_cast<const char*>(offsets.data()), offsets.size() * sizeof(offsets[0]));
+  return bytes;
+}
+
+// The first image settles which facts the headers hold; their values can still be filled in later where the output can
+// be rewritten.
+void StackWriter::State::settle(const ImageInfo& own) {
+  settled = true;
+  const bool late_facts = !same(own, about.front());
+  for (ImageInfo& each : about) {
+    each.has_angle = own.has_angle;
+    each.has_time = own.has_time;
+    each.has_number = own.has_number;
+  }
+  const auto chunks = static_cast<std::size_t>(exr::chunk_count(info.height, compression));
+  offsets.resize(chunks * about.size());
+  head_bytes = head().size();
+  position = head_bytes;
+  if (out.is_stream()) {
+    const std::size_t pixel = type == Imf::HALF ? 2 : sizeof(float);
+    const std::uint64_t chunk_bytes = 12 + static_cast<std::uint64_t>(info.width) * pixel;
+    for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = head_bytes + i * chunk_bytes;
+  }
+  if (out.is_stream() && late_facts) {
+    spool.reset(std::tmpfile());
+    if (!spool) throw Error{Fault::no_output, out.name() + ": cannot create a temporary file"};
+    return;
+  }
+  out.write(head());
+}
+
+void StackWriter::State::put(const Image& image, const ImageInfo& own) {
+  const std::string what = out.name() + ": image " + std::to_string(done);
+  if (done >= about.size() || image.width != info.width || image.height != info.height) {
+    throw Error{Fault::bug, what + " does not belong to the " + std::to_string(info.count) + " announced"};
+  }
+  if (!all_finite(image.values.data(), image.size())) {
+    throw Error{Fault::bug, what + " has a pixel that is not a finite number"};
+  }
+  if (type == Imf::HALF) check_half(image, what);
+  if (!settled) settle(own);
+  if (!same(own, about[done])) {
+    const ImageInfo& promised = about[done];
+    if (own.has_angle != promised.has_angle || own.has_time != promised.has_time ||
+        own.has_number != promised.has_number || (out.is_stream() && !spool)) {
+      throw Error{Fault::bug, what + " comes with other facts than were announced"};
+    }
+    about[done] = own;
+    stale_head = true;
+  }
+  waiting.push_back(image);
+  ++done;
+  if (waiting.size() == (compression == Imf::NO_COMPRESSION ? 1 : batch) || done == about.size()) flush();
+}
+
+void StackWriter::State::flush() {
+  std::vector<exr::Chunks> encoded(waiting.size());
+  parallel_for(static_cast<int>(waiting.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    encoded[at] = exr::encode(waiting[at], type, compression);
+  });
+  std::size_t part = done - waiting.size();
+  for (const exr::Chunks& image : encoded) {
+    std::string bytes;
+    bytes.reserve(image.bytes.size() + 4 * image.starts.size());
+    for (std::size_t chunk = 0; chunk < image.starts.size(); ++chunk) {
+      if (!out.is_stream()) offsets[part * image.starts.size() + chunk] = position + bytes.size();
+      const auto size = exr::number_at<std::int32_t>(image.bytes, image.starts[chunk] + 4);
+      exr::append(bytes, static_cast<std::int32_t>(part));
+      bytes.append(image.bytes, image.starts[chunk], 8 + static_cast<std::size_t>(size));
+    }
+    send(bytes);
+    ++part;
+  }
+  waiting.clear();
+}
+
+void StackWriter::State::send(const std::string& bytes) {
+  position += bytes.size();
+  if (!spool) return out.write(bytes);
+  if (std::fwrite(bytes.data(), 1, bytes.size(), spool.get()) != bytes.size()) {
+    throw Error{Fault::io, out.name() + ": cannot write a temporary file; $TMPDIR is full?"};
+  }
+}
+
+void StackWriter::State::finish() {
+  if (done != about.size()) {
+    throw Error{Fault::bug, out.name() + ": " + std::to_string(done) + " images of the " + std::to_string(info.count) +
+                                " announced"};
+  }
+  const std::string complete = head();
+  if (complete.size() != head_bytes) throw Error{Fault::bug, out.name() + ": the header changed its size"};
+  if (spool) {
+    out.write(complete);
+    std::rewind(spool.get());
+    std::vector<char> buffer(std::size_t{1} << 20);
+    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), spool.get())) {
+      out.write(buffer.data(), got);
+    }
+    if (std::ferror(spool.get()) != 0) throw Error{Fault::io, out.name() + ": cannot read a temporary file back"};
+  } else if (!out.is_stream()) {
+    out.write_at(0, complete.data(), complete.size());
+  }
+  out.commit();
+}
+
+StackWriter::StackWriter(const std::string& path, const StackInfo& info, const StackOptions& options)
+    : StackWriter(path, info, all_implied(info), options) {}
+StackWriter::StackWriter(const std::string& path, const StackInfo& info, std::vector<ImageInfo> about,
+                         const StackOptions& options)
+    : state_(std::make_unique<State>(path, info, std::move(about), options)) {}
+StackWriter::~StackWriter() = default;
+
+void StackWriter::write(const Image& image) {
+  const auto& about = state_->about;
+  write(image, about[std::min(state_->done, about.size() - 1)]);
+}
+void StackWriter::write(const Image& image, const ImageInfo& about) { state_->put(image, about); }
+void StackWriter::commit() { state_->finish(); }
+
+}  // namespace vam::io

@@ -1,0 +1,116 @@
+// The text formats and PLY through CGAL. CGAL's readers trust the counts in a header and accept some cut files, so both
+// are looked at first.
+#include <CGAL/IO/OBJ.h>
+#include <CGAL/IO/OFF.h>
+#include <CGAL/IO/PLY.h>
+#include <CGAL/IO/STL.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <cstdint>
+#include <sstream>
+
+#include "io/mesh/private/formats.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using Point = CGAL::Simple_cartesian<double>::Point_3;
+
+struct CgalSoup {
+  std::vector<Point> points;
+  std::vector<std::vector<int>> faces;
+};
+
+PolygonSoup converted(CgalSoup&& soup) {
+  PolygonSoup result;
+  result.points.reserve(soup.points.size());
+  for (const auto& p : soup.points) result.points.push_back({p.x(), p.y(), p.z()});
+  result.faces = std::move(soup.faces);
+  return result;
+}
+
+// Every vertex and face takes at least two bytes, so a larger count is a lie that must not become an allocation.
+void check_count(std::uint64_t count, const char* what, const std::string& bytes) {
+  if (count > bytes.size() / 2) {
+    throw MeshProblem{"the header promises " + std::to_string(count) + " " + what + " but the file has " +
+                      std::to_string(bytes.size()) + " bytes; it is truncated or damaged"};
+  }
+}
+
+[[noreturn]] void give_up(const char* format, const CgalSoup& soup) {
+  throw MeshProblem{std::string("not a whole ") + format + " file: reading stopped after " +
+                    std::to_string(soup.points.size()) + " vertices and " + std::to_string(soup.faces.size()) +
+                    " faces; it is truncated or damaged"};
+}
+
+void check_ply_header(const std::string& bytes) {
+  std::istringstream lines(bytes.substr(0, bytes.find("end_header")));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string keyword;
+    std::string name;
+    std::uint64_t count = 0;
+    if (words >> keyword >> name >> count && keyword == "element") check_count(count, name.c_str(), bytes);
+  }
+  if (bytes.find("end_header") == std::string::npos) throw MeshProblem{"the PLY header has no end; it is truncated"};
+}
+
+// The first line that is neither empty, comment nor the magic word holds the counts.
+void check_off_header(const std::string& bytes) {
+  std::istringstream words(bytes.substr(0, 4096));
+  for (std::string word; words >> word;) {
+    if (word[0] == '#') {
+      std::getline(words, word);
+    } else if (word.find("OFF") == std::string::npos) {
+      std::istringstream number(word);
+      std::uint64_t vertices = 0;
+      std::uint64_t faces = 0;
+      if (!(number >> vertices) || !(words >> faces)) throw MeshProblem{"the OFF header has no counts"};
+      check_count(vertices, "vertices", bytes);
+      check_count(faces, "faces", bytes);
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+PolygonSoup parse_ascii_stl(const std::string& bytes) {
+  const std::size_t last_word = bytes.find_last_not_of(" \t\r\n");
+  const std::size_t last_line = bytes.find_last_of('\n', last_word);
+  const std::string tail = last_line == std::string::npos ? "" : bytes.substr(last_line + 1);
+  if (tail.find("endsolid") == std::string::npos && tail.find("ENDSOLID") == std::string::npos) {
+    throw MeshProblem{"the STL text does not end in 'endsolid'; it is truncated"};
+  }
+  std::istringstream stream(bytes);
+  CgalSoup soup;
+  if (!CGAL::IO::read_STL(stream, soup.points, soup.faces)) give_up("STL", soup);
+  return converted(std::move(soup));
+}
+
+PolygonSoup parse_obj(const std::string& bytes) {
+  std::istringstream stream(bytes);
+  CgalSoup soup;
+  // False also for a file without faces, which the caller names for what it is.
+  if (!CGAL::IO::read_OBJ(stream, soup.points, soup.faces) && !soup.faces.empty()) give_up("OBJ", soup);
+  return converted(std::move(soup));
+}
+
+PolygonSoup parse_ply(const std::string& bytes) {
+  check_ply_header(bytes);
+  std::istringstream stream(bytes);
+  CgalSoup soup;
+  if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces)) give_up("PLY", soup);
+  return converted(std::move(soup));
+}
+
+PolygonSoup parse_off(const std::string& bytes) {
+  check_off_header(bytes);
+  std::istringstream stream(bytes);
+  CgalSoup soup;
+  if (!CGAL::IO::read_OFF(stream, soup.points, soup.faces)) give_up("OFF", soup);
+  return converted(std::move(soup));
+}
+
+}  // namespace vam::io

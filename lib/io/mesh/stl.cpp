@@ -1,0 +1,91 @@
+// Binary STL, read and written by hand: the format is 50 bytes a triangle, and CGAL's reader welds through a std::map,
+// which takes longer than slicing.
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "io/mesh/file.hpp"
+#include "io/mesh/private/formats.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+static_assert(std::endian::native == std::endian::little, "STL and PLY are written as the machine has them");
+
+namespace {
+
+constexpr std::size_t header_bytes = 84;
+constexpr std::size_t triangle_bytes = 50;  // normal, three corners, 16 bits of attributes
+
+std::uint64_t triangles_promised(const std::string& bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, sizeof count);
+  return count;
+}
+
+std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<double, 3>& b,
+                               const std::array<double, 3>& c) {
+  const double u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  const double v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
+  const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+  const double length = std::hypot(n[0], n[1], n[2]);
+  if (!(length > 0)) return {0, 0, 0};
+  return {static_cast<float>(n[0] / length), static_cast<float>(n[1] / length), static_cast<float>(n[2] / length)};
+}
+
+}  // namespace
+
+bool has_binary_stl_size(const std::string& bytes) {
+  return bytes.size() >= header_bytes && bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes);
+}
+
+PolygonSoup parse_binary_stl(const std::string& bytes) {
+  if (bytes.size() < header_bytes) {
+    throw MeshProblem{"not a whole STL file: " + std::to_string(bytes.size()) + " bytes, the header alone has 84"};
+  }
+  const std::uint64_t count = triangles_promised(bytes);
+  if (bytes.size() < header_bytes + triangle_bytes * count) {
+    throw MeshProblem{"the header promises " + std::to_string(count) + " triangles (" +
+                      std::to_string(header_bytes + triangle_bytes * count) + " bytes) but the file has " +
+                      std::to_string(bytes.size()) + " bytes; it is truncated or no STL"};
+  }
+  PolygonSoup soup;
+  soup.points.reserve(3 * count);
+  soup.faces.reserve(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    float corner[9];
+    std::memcpy(corner, bytes.data() + header_bytes + triangle_bytes * t + 12, sizeof corner);
+    const int first = static_cast<int>(soup.points.size());
+    for (int c = 0; c < 9; c += 3) soup.points.push_back({corner[c], corner[c + 1], corner[c + 2]});
+    soup.faces.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+void write_stl(const std::string& path, const model::TriangleSoup& mesh) {
+  OutputFile file(path);
+  std::string header(80, ' ');
+  header.replace(0, 10, "binary STL");
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  file.write(header);
+  file.write(&count, sizeof count);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const auto& points = mesh.points;
+    float record[12];
+    const auto normal = normal_of(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
+                                  points[static_cast<std::size_t>(c)]);
+    std::memcpy(record, normal.data(), sizeof normal);
+    float* next = record + 3;
+    for (const int corner : {a, b, c}) {
+      for (const double x : points[static_cast<std::size_t>(corner)]) *next++ = static_cast<float>(x);
+    }
+    const std::uint16_t attributes = 0;
+    file.write(record, sizeof record);
+    file.write(&attributes, sizeof attributes);
+  }
+  file.commit();
+}
+
+}  // namespace vam::io

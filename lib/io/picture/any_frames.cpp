@@ -1,0 +1,123 @@
+#include "io/picture/any_frames.hpp"
+
+#include <fstream>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/picture/picture.hpp"
+#include "io/picture/private/video.hpp"
+
+namespace vam::io {
+
+namespace {
+
+Image fractions(const GreyImage& grey) {
+  Image image(grey.width, grey.height);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
+  }
+  return image;
+}
+
+model::StackInfo frames_of(int width, int height, int count) {
+  model::StackInfo info;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::projector;
+  info.width = width;
+  info.height = height;
+  info.count = count;
+  info.units = "fraction of full grey";
+  return info;
+}
+
+class StackSource : public ImageSource {
+ public:
+  explicit StackSource(const std::string& path) : reader_(path) {}
+  [[nodiscard]] const model::StackInfo& info() const override { return reader_.info(); }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return reader_.about(); }
+  bool next(Image& image, model::ImageInfo& about) override { return reader_.next(image, about); }
+
+ private:
+  StackReader reader_;
+};
+
+class VideoSource : public ImageSource {
+ public:
+  explicit VideoSource(const std::string& path) : reader_(path) {
+    info_ = frames_of(reader_.format().width, reader_.format().height, count_video_frames(path));
+  }
+  [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return about_; }
+  bool next(Image& image, model::ImageInfo& about) override {
+    GreyImage grey;
+    if (!reader_.next(grey)) return false;
+    image = fractions(grey);
+    about = {};
+    about.time_s = reader_.format().fps > 0 ? taken_ / reader_.format().fps : 0;
+    about.has_time = reader_.format().fps > 0;
+    ++taken_;
+    return true;
+  }
+
+ private:
+  VideoReader reader_;
+  model::StackInfo info_;
+  std::vector<model::ImageInfo> about_;
+  int taken_ = 0;
+};
+
+// frames.csv of vam-project beside the pictures: file,time_s,angle_deg. Empty when there is none.
+std::vector<model::ImageInfo> read_frame_index(const std::string& folder) {
+  std::ifstream stream(folder + "/frames.csv");
+  std::vector<model::ImageInfo> index;
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    const auto cells = split(line, ',');
+    const auto time_s = cells.size() == 3 ? parse_number(cells[1]) : std::nullopt;
+    const auto angle_deg = cells.size() == 3 ? parse_number(cells[2]) : std::nullopt;
+    if (!time_s || !angle_deg) return {};
+    model::ImageInfo& about = index.emplace_back();
+    about.time_s = *time_s;
+    about.angle_deg = *angle_deg;
+    about.has_time = about.has_angle = true;
+  }
+  return index;
+}
+
+class FolderSource : public ImageSource {
+ public:
+  explicit FolderSource(const std::string& path) : folder_(path), index_(read_frame_index(path)) {
+    const GreyImage first = folder_.read(0);
+    info_ = frames_of(first.width, first.height, folder_.count());
+    if (index_.size() > 1) info_.angle_step_deg = index_[1].angle_deg - index_[0].angle_deg;
+    if (index_.size() != static_cast<std::size_t>(folder_.count())) index_.clear();
+  }
+  [[nodiscard]] const model::StackInfo& info() const override { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
+  bool next(Image& image, model::ImageInfo& about) override {
+    if (taken_ == folder_.count()) return false;
+    about = index_.empty() ? model::ImageInfo{} : index_[static_cast<std::size_t>(taken_)];
+    image = fractions(folder_.read(taken_++));
+    return true;
+  }
+
+ private:
+  PictureFolder folder_;
+  std::vector<model::ImageInfo> index_;
+  model::StackInfo info_;
+  int taken_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type) {
+  if (type == FileType::video && path == "-")
+    throw Error{Fault::usage, "stdin: a video is read from a file only; name it"};
+  if (type == FileType::video) return std::make_unique<VideoSource>(path);
+  if (type == FileType::pictures) return std::make_unique<FolderSource>(path);
+  return std::make_unique<StackSource>(path);
+}
+
+}  // namespace vam::io

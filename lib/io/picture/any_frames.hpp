@@ -1,0 +1,31 @@
+// Stacks, videos and folders of pictures, read in the same way.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "io/exr/stack.hpp"
+#include "io/stream/file_type.hpp"
+
+namespace vam::io {
+
+/// Images one after the other. Of a video or a folder the values are grey as a fraction of full, and the pitches in
+/// info are 0.
+class ImageSource {
+ public:
+  ImageSource() = default;
+  virtual ~ImageSource() = default;
+  ImageSource(const ImageSource&) = delete;
+  ImageSource& operator=(const ImageSource&) = delete;
+  [[nodiscard]] virtual const model::StackInfo& info() const = 0;
+  /// The facts of every image, where they are known before the first is read; else empty.
+  [[nodiscard]] virtual const std::vector<model::ImageInfo>& about() const = 0;
+  virtual bool next(Image& image, model::ImageInfo& about) = 0;
+};
+
+/// type: stack, video or pictures. Throws Error: no_input, data.
+[[nodiscard]] std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type);
+
+}  // namespace vam::io

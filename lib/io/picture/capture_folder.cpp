@@ -1,0 +1,185 @@
+#include "io/picture/capture_folder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "io/picture/picture.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* manifest_name = "manifest.jsonl";
+
+std::string manifest_path(const std::string& folder) { return (fs::path(folder) / manifest_name).string(); }
+
+Error failed(const std::string& path) {
+  return {Fault::io, path + ": cannot be written (" + std::strerror(errno) + ")"};
+}
+
+// Whole and on the disk, or an Error.
+void write_synced(int file, const std::string& bytes, const std::string& path) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t now = write(file, bytes.data() + done, bytes.size() - done);
+    if (now < 0 && errno == EINTR) continue;
+    if (now <= 0) throw failed(path);
+    done += static_cast<std::size_t>(now);
+  }
+  if (fdatasync(file) != 0 && errno != EINVAL) throw failed(path);
+}
+
+std::optional<double> optional_number(const Json& line, const char* key) {
+  const auto found = line.find(key);
+  if (found == line.end() || !found->is_number()) return std::nullopt;
+  return found->get<double>();
+}
+
+CaptureRecord to_record(const Json& line) {
+  CaptureRecord record;
+  record.place = line.at("frame").get<long>();
+  record.number = line.at("number").get<long>();
+  record.t_monotonic_s = line.at("t_monotonic_s").get<double>();
+  record.device_s = optional_number(line, "device_s");
+  record.angle_deg = optional_number(line, "angle_deg");
+  record.sigma_deg = optional_number(line, "sigma_deg");
+  record.complete = line.at("complete").get<bool>();
+  record.levels = line.at("levels").get<std::string>();
+  return record;
+}
+
+Json to_line(const CaptureRecord& record) {
+  Json line{{"frame", record.place},
+            {"file", capture_file_name(record.place)},
+            {"number", record.number},
+            {"t_monotonic_s", record.t_monotonic_s}};
+  if (record.device_s) line["device_s"] = *record.device_s;
+  if (record.angle_deg) line["angle_deg"] = *record.angle_deg;
+  if (record.sigma_deg) line["sigma_deg"] = *record.sigma_deg;
+  line["complete"] = record.complete;
+  line["levels"] = record.levels;
+  return line;
+}
+
+// "exposure_us 20000, not 10000": the first thing that differs.
+std::string difference(const Json& there, const Json& wanted) {
+  for (const auto& [key, value] : wanted.items()) {
+    const auto found = there.find(key);
+    if (found == there.end() || *found != value) {
+      return key + " " + (found == there.end() ? "unknown" : found->dump()) + ", not " + value.dump();
+    }
+  }
+  return "";
+}
+
+void add_line(CaptureManifest& manifest, const std::string& text, const std::string& where) {
+  const Json line = Json::parse(text, nullptr, false);
+  try {
+    if (manifest.head.is_null()) {
+      manifest.head = line;
+      if (line.at("schema") != "vam-capture/1") throw Error{Fault::data, where + ": is no manifest of vam-capture"};
+    } else if (line.contains("dropped")) {
+      manifest.dropped += line.at("dropped").at(1).get<long>() - line.at("dropped").at(0).get<long>() + 1;
+    } else {
+      const CaptureRecord record = to_record(line);
+      const auto [there, fresh] = manifest.frames.try_emplace(record.place, record);
+      if (!fresh && (record.complete || !there->second.complete)) there->second = record;
+    }
+  } catch (const Json::exception& problem) {
+    throw Error{Fault::data, where + ": is no line of a manifest (" + problem.what() + ")"};
+  }
+}
+
+}  // namespace
+
+std::string capture_file_name(long place) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "%06ld.png", place);
+  return name.data();
+}
+
+bool is_capture_folder(const std::string& folder) { return fs::exists(manifest_path(folder)); }
+
+CaptureManifest read_manifest(const std::string& folder) {
+  const std::string path = manifest_path(folder);
+  const std::string text = read_all(path);
+  CaptureManifest manifest;
+  long number = 0;
+  for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    add_line(manifest, text.substr(begin, end - begin), path + ": line " + std::to_string(++number));
+  }
+  if (manifest.head.is_null()) throw Error{Fault::data, path + ": is empty; remove the folder and begin again"};
+  return manifest;
+}
+
+CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : folder_(folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem || !fs::is_directory(folder)) {
+    throw Error{Fault::no_output, folder + ": cannot make the folder (" + problem.message() + ")"};
+  }
+  const std::string path = manifest_path(folder);
+  const bool again = fs::exists(path) && fs::file_size(path) > 0;
+  if (!again && !fs::is_empty(folder) && !fs::exists(path)) {
+    throw Error{Fault::no_output, folder + ": holds other things than a capture; name another folder"};
+  }
+  if (again) {
+    manifest_ = read_manifest(folder);
+    const std::string other = difference(manifest_.head, head);
+    if (!other.empty()) {
+      throw Error{Fault::no_output, folder + ": was taken with " + other + "; name another folder"};
+    }
+    // What was being written when the capture before ended is no line.
+    const std::string text = read_all(path);
+    fs::resize_file(path, text.rfind('\n') + 1);
+  }
+  directory_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  log_ = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (directory_ < 0 || log_ < 0) {
+    throw Error{Fault::no_output, path + ": cannot be written (" + std::strerror(errno) + ")"};
+  }
+  if (!again) write_line(head);
+}
+
+CaptureFolder::~CaptureFolder() {
+  if (directory_ >= 0) close(directory_);
+  if (log_ >= 0) close(log_);
+}
+
+bool CaptureFolder::has(long place) const {
+  const auto found = manifest_.frames.find(place);
+  return found != manifest_.frames.end() && found->second.complete;
+}
+
+void CaptureFolder::keep(const CaptureRecord& record, const GreyImage& levels) {
+  const std::string name = capture_file_name(record.place);
+  const std::string path = (fs::path(folder_) / name).string();
+  const int file = openat(directory_, name.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) throw failed(path);
+  try {
+    write_synced(file, encode_png(levels), path);
+  } catch (...) {
+    close(file);
+    throw;
+  }
+  close(file);
+  if (fsync(directory_) != 0 && errno != EINVAL) throw failed(folder_);
+  write_line(to_line(record));
+  manifest_.frames[record.place] = record;
+}
+
+void CaptureFolder::dropped(long first, long last) { write_line({{"dropped", {first, last}}}); }
+
+void CaptureFolder::write_line(const Json& line) { write_synced(log_, line.dump() + "\n", manifest_path(folder_)); }
+
+}  // namespace vam::io

@@ -1,0 +1,100 @@
+#include "io/picture/frame_sink.hpp"
+
+#include <filesystem>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "io/picture/frame_folder.hpp"
+#include "io/picture/private/video.hpp"
+
+namespace vam::io {
+
+namespace {
+
+model::ImageInfo about(const ProjectorFrame& frame) {
+  model::ImageInfo info;
+  info.angle_deg = frame.angle_deg;
+  info.has_angle = true;
+  info.time_s = frame.time_s;
+  info.has_time = true;
+  return info;
+}
+
+class FolderSink : public FrameSink {
+ public:
+  FolderSink(const std::string& path, const FrameSinkOptions& options)
+      : folder_(path), text_{{"Comment", join(options.info.history, "\n")}} {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    const int first = static_cast<int>(shown_.size());
+    parallel_for(static_cast<int>(frames.size()),
+                 [&](int i) { folder_.write(first + i, frames[static_cast<std::size_t>(i)].levels, text_); });
+    for (const auto& frame : frames) shown_.push_back(about(frame));
+  }
+  void commit() override { folder_.commit(shown_); }
+
+ private:
+  FrameFolder folder_;
+  PictureText text_;
+  std::vector<model::ImageInfo> shown_;
+};
+
+class StackSink : public FrameSink {
+ public:
+  StackSink(const std::string& path, const FrameSinkOptions& options)
+      : writer_(path, options.info, options.stack), z_start_mm_(options.info.z_start_mm) {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    for (const auto& frame : frames) {
+      model::ImageInfo info = about(frame);
+      info.z_mm = z_start_mm_;  // of row 0
+      writer_.write(frame.intensity, info);
+    }
+  }
+  void commit() override { writer_.commit(); }
+
+ private:
+  StackWriter writer_;
+  double z_start_mm_;
+};
+
+class VideoSink : public FrameSink {
+ public:
+  VideoSink(const std::string& path, const FrameSinkOptions& options)
+      : writer_(path, {options.info.width, options.info.height, options.bits, options.fps,
+                       join(options.info.history, "\n")}) {}
+
+  void write(std::span<const ProjectorFrame> frames) override {
+    for (const auto& frame : frames) writer_.write(frame.levels);
+  }
+  void commit() override { writer_.commit(); }
+
+ private:
+  VideoWriter writer_;
+};
+
+}  // namespace
+
+FrameOutput frame_output(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (path == "-" || extension == ".exr") return FrameOutput::stack;
+  if (extension == ".mkv" || extension == ".mp4") return FrameOutput::video;
+  if (extension.empty()) return FrameOutput::folder;
+  throw Error{Fault::usage,
+              path + ": frames go to .exr, .mkv, .mp4 or a folder (end its name in /), not to " + extension};
+}
+
+std::unique_ptr<FrameSink> open_frame_sink(const std::string& path, const FrameSinkOptions& options) {
+  switch (frame_output(path)) {
+    case FrameOutput::stack:
+      return std::make_unique<StackSink>(path, options);
+    case FrameOutput::video:
+      return std::make_unique<VideoSink>(path, options);
+    default:
+      return std::make_unique<FolderSink>(path, options);
+  }
+}
+
+}  // namespace vam::io

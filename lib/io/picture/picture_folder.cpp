@@ -1,0 +1,90 @@
+// Folders of numbered pictures, in the order of their numbers.
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "io/picture/picture.hpp"
+
+namespace vam::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_picture(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".png" || extension == ".tif" || extension == ".tiff";
+}
+
+// The last run of digits in the name: "part-2_slice0017.png" is number 17.
+long number_of(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  const std::size_t last = stem.find_last_of("0123456789");
+  if (last == std::string::npos) {
+    throw Error{Fault::data, path.string() + ": the name has no number; number the pictures of a folder"};
+  }
+  const std::size_t before = stem.find_last_not_of("0123456789", last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  long number = 0;
+  if (std::from_chars(stem.data() + first, stem.data() + last + 1, number).ec != std::errc{}) {
+    throw Error{Fault::data, path.string() + ": the number in the name is too large"};
+  }
+  return number;
+}
+
+struct Numbered {
+  long number;
+  fs::path path;
+};
+
+// A missing layer would shorten the part unseen. The step between numbers may be other than 1, but must stay the same.
+void check_gaps(const std::vector<Numbered>& pictures) {
+  for (std::size_t i = 1; i < pictures.size(); ++i) {
+    const long step = pictures[i].number - pictures[i - 1].number;
+    if (step == 0) {
+      throw Error{Fault::data,
+                  pictures[i].path.string() + ": has the same number as " + pictures[i - 1].path.filename().string()};
+    }
+    if (step != pictures[1].number - pictures[0].number) {
+      throw Error{Fault::data, pictures[i].path.string() + ": follows number " +
+                                   std::to_string(pictures[i - 1].number) + ", but the pictures before are " +
+                                   std::to_string(pictures[1].number - pictures[0].number) + " apart; one is missing"};
+    }
+  }
+}
+
+}  // namespace
+
+PictureFolder::PictureFolder(const std::string& folder) {
+  std::error_code problem;
+  std::vector<Numbered> pictures;
+  for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
+    if (is_picture(entry->path())) pictures.push_back({number_of(entry->path()), entry->path()});
+  }
+  if (problem) throw Error{Fault::no_input, folder + ": cannot read the folder: " + problem.message()};
+  if (pictures.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF picture in the folder"};
+  std::sort(pictures.begin(), pictures.end(), [](const Numbered& a, const Numbered& b) {
+    return a.number != b.number ? a.number < b.number : a.path < b.path;
+  });
+  check_gaps(pictures);
+  for (const auto& picture : pictures) paths_.push_back(picture.path.string());
+}
+
+GreyImage PictureFolder::read(int index) {
+  GreyImage image = read_picture(path(index));
+  if (width_ == 0) {
+    width_ = image.width;
+    height_ = image.height;
+  }
+  if (image.width != width_ || image.height != height_) {
+    throw Error{Fault::data, path(index) + ": has " + std::to_string(image.width) + " x " +
+                                 std::to_string(image.height) + " pixels, but those before have " +
+                                 std::to_string(width_) + " x " + std::to_string(height_)};
+  }
+  return image;
+}
+
+}  // namespace vam::io

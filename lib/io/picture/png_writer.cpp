@@ -1,0 +1,140 @@
+// PNG from the specification (W3C PNG, second edition): one filter, one zlib stream, text beside the pixels.
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/error.hpp"
+#include "io/picture/picture.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using Bytes = std::string;
+
+void put32(Bytes& bytes, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFFU);
+}
+
+void put_chunk(Bytes& png, const char* type, const Bytes& data) {
+  put32(png, static_cast<std::uint32_t>(data.size()));
+  const Bytes body = type + data;
+  png += body;
+  put32(png, static_cast<std::uint32_t>(
+                 crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()))));
+}
+
+// Section 9.4: each byte minus the one above it (filter type 2). Frames and plots repeat from row to row.
+Bytes filtered_up(const Bytes& rows, std::size_t row_bytes) {
+  const std::size_t count = rows.size() / row_bytes;
+  Bytes filtered(rows.size() + count, '\2');
+  for (std::size_t y = 0; y < count; ++y) {
+    const char* row = rows.data() + y * row_bytes;
+    char* to = filtered.data() + y * (row_bytes + 1) + 1;
+    if (y == 0) {
+      std::copy_n(row, row_bytes, to);
+      continue;
+    }
+    const char* above = row - row_bytes;
+    for (std::size_t x = 0; x < row_bytes; ++x) to[x] = static_cast<char>(row[x] - above[x]);
+  }
+  return filtered;
+}
+
+// Level 5 takes half the time of zlib's default on slices of a part and gives 4 % more bytes.
+Bytes deflated(const Bytes& plain) {
+  uLongf size = compressBound(plain.size());
+  Bytes packed(size, '\0');
+  const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                               reinterpret_cast<const Bytef*>(plain.data()), plain.size(), 5);
+  if (status != Z_OK) throw Error{Fault::bug, "PNG: zlib failed with status " + std::to_string(status)};
+  packed.resize(size);
+  return packed;
+}
+
+struct Layout {
+  int width;
+  int height;
+  int depth;
+  int colour_type;  // 0 grey, 2 RGB
+  std::size_t row_bytes;
+};
+
+Bytes assemble(const Layout& layout, const Bytes& significant_bits, const Bytes& rows, const PictureText& text) {
+  Bytes png("\x89PNG\r\n\x1a\n", 8);
+  Bytes header;
+  put32(header, static_cast<std::uint32_t>(layout.width));
+  put32(header, static_cast<std::uint32_t>(layout.height));
+  header += static_cast<char>(layout.depth);
+  header += static_cast<char>(layout.colour_type);
+  header += Bytes(3, '\0');  // deflate, adaptive filters, not interlaced
+  put_chunk(png, "IHDR", header);
+  if (!significant_bits.empty()) put_chunk(png, "sBIT", significant_bits);
+  for (const auto& [keyword, words] : text) put_chunk(png, "tEXt", keyword + '\0' + words);
+  put_chunk(png, "IDAT", deflated(filtered_up(rows, layout.row_bytes)));
+  put_chunk(png, "IEND", "");
+  return png;
+}
+
+// Several pixels share a byte, the leftmost in the highest bits; every row begins on a byte.
+Bytes packed_rows(const GreyImage& image, std::size_t row_bytes) {
+  Bytes rows(row_bytes * static_cast<std::size_t>(image.height), '\0');
+  const int per_byte = 8 / image.bits;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const int shift = 8 - image.bits * (x % per_byte + 1);
+      char& byte = rows[static_cast<std::size_t>(y) * row_bytes + static_cast<std::size_t>(x / per_byte)];
+      byte = static_cast<char>(byte | image(x, y) << shift);
+    }
+  }
+  return rows;
+}
+
+Bytes byte_rows(const GreyImage& image) {
+  Bytes rows(image.values.size(), '\0');
+  std::transform(image.values.begin(), image.values.end(), rows.begin(),
+                 [](std::uint16_t level) { return static_cast<char>(level); });
+  return rows;
+}
+
+Bytes wide_rows(const GreyImage& image) {
+  Bytes rows;
+  rows.reserve(2 * image.values.size());
+  for (const std::uint16_t level : image.values) {
+    const int value = image.bits == 10 ? level << 6 | level >> 4 : level;
+    rows += static_cast<char>(value >> 8);
+    rows += static_cast<char>(value & 0xFF);
+  }
+  return rows;
+}
+
+template <class Picture>
+void write(const std::string& path, const Picture& image, const PictureText& text) {
+  OutputFile file(path);
+  file.write(encode_png(image, text));
+  file.commit();
+}
+
+}  // namespace
+
+std::string encode_png(const GreyImage& image, const PictureText& text) {
+  const int depth = image.bits > 8 ? 16 : image.bits;
+  const auto bits = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(depth);
+  const Layout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
+  const Bytes significant(image.bits == 10 ? 1 : 0, '\x0a');
+  if (depth == 16) return assemble(layout, significant, wide_rows(image), text);
+  return assemble(layout, significant, depth == 8 ? byte_rows(image) : packed_rows(image, layout.row_bytes), text);
+}
+
+std::string encode_png(const RgbImage& image, const PictureText& text) {
+  const Layout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
+  const Bytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
+  return assemble(layout, "", rows, text);
+}
+
+void write_png(const std::string& path, const GreyImage& image, const PictureText& text) { write(path, image, text); }
+void write_png(const std::string& path, const RgbImage& image, const PictureText& text) { write(path, image, text); }
+
+}  // namespace vam::io

@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <cstring>
+#include <exception>
+
+#include "io/picture/private/av_handles.hpp"
+#include "io/picture/private/video.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr int buffer_bytes = 1 << 16;
+
+AVPixelFormat pixel_format(bool lossless, int bits) {
+  if (!lossless) return AV_PIX_FMT_YUV420P;
+  if (bits > 10) return AV_PIX_FMT_GRAY16LE;
+  return bits > 8 ? AV_PIX_FMT_GRAY10LE : AV_PIX_FMT_GRAY8;
+}
+
+// Bytes on their way from libavformat to an OutputFile, which alone knows temporary names. libavformat is C, so an
+// exception waits here until control is back.
+struct Sink {
+  OutputFile file;
+  std::uint64_t position = 0;
+  std::exception_ptr failure;
+
+  explicit Sink(const std::string& path) : file(path) {}
+
+  void put(const std::uint8_t* bytes, std::size_t size) {
+    const std::uint64_t end = file.position();
+    const std::size_t patch =
+        position < end ? static_cast<std::size_t>(std::min<std::uint64_t>(size, end - position)) : 0;
+    if (patch > 0) file.write_at(position, bytes, patch);
+    if (patch < size) file.write(bytes + patch, size - patch);
+    position += size;
+  }
+
+  static int on_write(void* self, std::uint8_t* bytes, int size) {
+    auto& sink = *static_cast<Sink*>(self);
+    try {
+      sink.put(bytes, static_cast<std::size_t>(size));
+      return size;
+    } catch (...) {
+      sink.failure = std::current_exception();
+      return AVERROR(EIO);
+    }
+  }
+
+  static std::int64_t on_seek(void* self, std::int64_t offset, int whence) {
+    auto& sink = *static_cast<Sink*>(self);
+    const auto end = static_cast<std::int64_t>(sink.file.position());
+    if (whence == AVSEEK_SIZE) return end;
+    const std::int64_t base = whence == SEEK_SET   ? 0
+                              : whence == SEEK_CUR ? static_cast<std::int64_t>(sink.position)
+                                                   : end;
+    if (base + offset < 0 || base + offset > end) return AVERROR(EINVAL);
+    sink.position = static_cast<std::uint64_t>(base + offset);
+    return base + offset;
+  }
+};
+
+// The grey level in 0..255, or itself in the wider formats.
+std::uint16_t stored_level(int level, const GreyImage& image, bool lossless) {
+  if (image.bits < 8) return static_cast<std::uint16_t>(level * 255 / image.full());
+  if (!lossless && image.bits > 8) return static_cast<std::uint16_t>(level >> (image.bits - 8));
+  return static_cast<std::uint16_t>(level);
+}
+
+}  // namespace
+
+struct VideoWriter::State {
+  VideoFormat format;
+  bool lossless;
+  Sink sink;
+  AVIOContext* io = nullptr;
+  AVFormatContext* container = nullptr;
+  AVStream* stream = nullptr;
+  av::Codec codec;
+  av::Frame frame{av_frame_alloc()};
+  av::Packet packet{av_packet_alloc()};
+  std::int64_t written = 0;
+
+  State(const std::string& path, const VideoFormat& wanted)
+      : format(wanted), lossless(path.ends_with(".mkv")), sink(path) {}
+  ~State() {
+    avformat_free_context(container);
+    if (io != nullptr) av_freep(&io->buffer);
+    avio_context_free(&io);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  int check(int status, const char* what) {
+    if (sink.failure) std::rethrow_exception(sink.failure);
+    return av::check(status, Fault::io, sink.file.name(), what);
+  }
+
+  void open_container() {
+    check(avformat_alloc_output_context2(&container, nullptr, lossless ? "matroska" : "mp4", nullptr),
+          "video container");
+    io = avio_alloc_context(static_cast<unsigned char*>(av_malloc(buffer_bytes)), buffer_bytes, 1, &sink, nullptr,
+                            Sink::on_write, sink.file.is_stream() ? nullptr : Sink::on_seek);
+    container->pb = io;
+    container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
+    av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
+  }
+
+  void open_codec() {
+    const AVCodec* encoder =
+        lossless ? avcodec_find_encoder(AV_CODEC_ID_FFV1) : avcodec_find_encoder_by_name("libx264");
+    if (encoder == nullptr)
+      throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); write .mkv"};
+    codec.reset(avcodec_alloc_context3(encoder));
+    codec->width = lossless ? format.width : format.width + format.width % 2;
+    codec->height = lossless ? format.height : format.height + format.height % 2;
+    codec->pix_fmt = pixel_format(lossless, format.bits);
+    codec->color_range = AVCOL_RANGE_JPEG;
+    codec->framerate = av_d2q(format.fps, 1000000);
+    codec->time_base = av_inv_q(codec->framerate);
+    codec->thread_count = 1;  // x264's bytes depend on it
+    codec->flags |= AV_CODEC_FLAG_BITEXACT;
+    if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    if (lossless) {
+      codec->gop_size = 1;  // every frame stands alone
+      av_opt_set_int(codec.get(), "level", 3, 0);
+      codec->slices = 4;
+      av_opt_set_int(codec->priv_data, "slicecrc", 1, 0);
+    } else {
+      av_opt_set(codec->priv_data, "preset", "veryfast", 0);
+      av_opt_set(codec->priv_data, "crf", "16", 0);
+    }
+    check(avcodec_open2(codec.get(), encoder, nullptr), "video encoder");
+  }
+
+  void open_stream() {
+    stream = avformat_new_stream(container, nullptr);
+    stream->time_base = codec->time_base;
+    stream->avg_frame_rate = codec->framerate;
+    check(avcodec_parameters_from_context(stream->codecpar, codec.get()), "video stream");
+    AVDictionary* options = nullptr;
+    // MP4 keeps its index at the end and seeks back; on a pipe it must come in fragments.
+    if (!lossless && sink.file.is_stream()) av_dict_set(&options, "movflags", "frag_keyframe+empty_moov", 0);
+    const int status = avformat_write_header(container, &options);
+    av_dict_free(&options);
+    check(status, "video header");
+    frame->format = codec->pix_fmt;
+    frame->width = codec->width;
+    frame->height = codec->height;
+    frame->color_range = codec->color_range;
+    check(av_frame_get_buffer(frame.get(), 0), "video frame");
+  }
+
+  void fill(const GreyImage& image) {
+    const bool wide = lossless && format.bits > 8;
+    for (int y = 0; y < frame->height; ++y) {
+      std::uint8_t* row = frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0];
+      const int from_y = std::min(y, image.height - 1);
+      for (int x = 0; x < frame->width; ++x) {
+        const std::uint16_t level = stored_level(image(std::min(x, image.width - 1), from_y), image, lossless);
+        if (wide) {
+          std::memcpy(row + static_cast<std::ptrdiff_t>(2) * x, &level, sizeof level);
+        } else {
+          row[x] = static_cast<std::uint8_t>(level);
+        }
+      }
+    }
+    for (int plane = 1; !lossless && plane < 3; ++plane) {  // no colour
+      std::memset(frame->data[plane], 128,
+                  static_cast<std::size_t>(frame->linesize[plane]) * static_cast<std::size_t>(frame->height / 2));
+    }
+  }
+
+  void send(const AVFrame* next) {
+    check(avcodec_send_frame(codec.get(), next), "video encoding");
+    for (;;) {
+      const int status = avcodec_receive_packet(codec.get(), packet.get());
+      if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
+      check(status, "video encoding");
+      packet->stream_index = 0;
+      packet->duration = 1;
+      av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+      check(av_interleaved_write_frame(container, packet.get()), "writing the video");
+    }
+  }
+};
+
+VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
+  if (!path.ends_with(".mkv") && !path.ends_with(".mp4")) {
+    throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (for looking at)"};
+  }
+  av_log_set_level(AV_LOG_QUIET);
+  state_ = std::make_unique<State>(path, format);
+  state_->open_container();
+  state_->open_codec();
+  state_->open_stream();
+}
+
+VideoWriter::~VideoWriter() = default;
+
+void VideoWriter::write(const GreyImage& image) {
+  State& s = *state_;
+  if (image.width != s.format.width || image.height != s.format.height || image.bits != s.format.bits) {
+    throw Error{Fault::bug, s.sink.file.name() + ": frame " + std::to_string(s.written) +
+                                " has another size or depth than the video"};
+  }
+  s.check(av_frame_make_writable(s.frame.get()), "video frame");
+  s.fill(image);
+  s.frame->pts = s.written++;
+  s.send(s.frame.get());
+}
+
+void VideoWriter::commit() {
+  State& s = *state_;
+  s.send(nullptr);
+  s.check(av_write_trailer(s.container), "ending the video");
+  avio_flush(s.io);
+  s.check(0, "ending the video");
+  s.sink.file.commit();
+}
+
+}  // namespace vam::io

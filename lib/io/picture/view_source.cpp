@@ -1,0 +1,154 @@
+#include "io/picture/view_source.hpp"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "io/exr/stack.hpp"
+#include "io/picture/capture_folder.hpp"
+#include "io/picture/picture.hpp"
+#include "io/picture/private/video.hpp"
+
+namespace vam::io {
+
+namespace {
+
+Image to_image(const GreyImage& grey) {
+  Image image(grey.width, grey.height);
+  const float scale = 1.0F / static_cast<float>(grey.full());
+  for (std::size_t i = 0; i < image.size(); ++i) image.values[i] = scale * static_cast<float>(grey.values[i]);
+  return image;
+}
+
+bool ends_in(const std::string& path, const std::string& ending) {
+  return path.size() >= ending.size() && path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+bool is_video(const std::string& path) {
+  return ends_in(path, ".mkv") || ends_in(path, ".mp4") || ends_in(path, ".avi");
+}
+
+}  // namespace
+
+bool is_picture(const std::string& path) {
+  return ends_in(path, ".png") || ends_in(path, ".tif") || ends_in(path, ".tiff");
+}
+
+struct ViewSource::State {
+  std::string path;
+  double step_deg = 0;
+  int index = 0;
+  std::unique_ptr<StackReader> stack;
+  std::unique_ptr<PictureFolder> folder;
+  std::unique_ptr<VideoReader> video;
+  std::optional<CaptureManifest> capture;
+  std::map<long, CaptureRecord>::const_iterator recorded;
+
+  // What came in part is no view.
+  void leave_out(const std::string& name) { warn(name + ": came incomplete from the camera and is left out"); }
+
+  bool next_of_stack(CameraFrame& frame) {
+    model::ImageInfo about;
+    do {
+      while (!stack->next(frame.image, about)) {
+        if (!stack->next_stack()) return false;
+      }
+      if (about.incomplete) leave_out(path + ": frame " + std::to_string(about.number));
+    } while (about.incomplete);
+    if (about.has_time) frame.time_s = about.time_s;
+    const bool known = about.has_angle || stack->info().angle_step_deg != 0;
+    frame.angle_deg = known ? about.angle_deg : index * needed_step();
+    return true;
+  }
+
+  bool next_of_capture(CameraFrame& frame) {
+    while (recorded != capture->frames.end() && !recorded->second.complete) {
+      leave_out(path + "/" + capture_file_name(recorded++->first));
+    }
+    if (recorded == capture->frames.end()) return false;
+    const CaptureRecord& record = recorded++->second;
+    frame.name = path + "/" + capture_file_name(record.place);
+    frame.image = to_image(read_picture(frame.name));
+    frame.time_s = record.t_monotonic_s;
+    frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
+    return true;
+  }
+
+  [[nodiscard]] double needed_step() const {
+    if (step_deg == 0) throw Error{Fault::usage, path + ": the frames have no angles; give their distance with --step"};
+    return step_deg;
+  }
+};
+
+ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::make_unique<State>()) {
+  state_->path = path;
+  state_->step_deg = step_deg;
+  if (path != "-" && is_capture_folder(path)) {
+    state_->capture = read_manifest(path);
+    state_->recorded = state_->capture->frames.begin();
+  } else if (path != "-" && std::filesystem::is_directory(path)) {
+    state_->folder = std::make_unique<PictureFolder>(path);
+    (void)state_->needed_step();
+  } else if (is_video(path)) {
+    state_->video = std::make_unique<VideoReader>(path);
+    (void)state_->needed_step();
+  } else {
+    state_->stack = std::make_unique<StackReader>(path);
+    require(path, state_->stack->info(), model::Kind::frames, model::Space::camera);
+  }
+}
+
+ViewSource::~ViewSource() = default;
+
+bool ViewSource::next(CameraFrame& frame) {
+  State& s = *state_;
+  frame.name = s.path + ": frame " + std::to_string(s.index);
+  if (s.capture) {
+    if (!s.next_of_capture(frame)) return false;
+  } else if (s.stack) {
+    if (!s.next_of_stack(frame)) return false;
+  } else if (s.folder) {
+    if (s.index >= s.folder->count()) return false;
+    frame.name = s.folder->path(s.index);
+    frame.image = to_image(s.folder->read(s.index));
+    frame.angle_deg = s.index * s.step_deg;
+  } else {
+    GreyImage grey;
+    if (!s.video->next(grey)) return false;
+    frame.image = to_image(grey);
+    frame.angle_deg = s.index * s.step_deg;
+  }
+  ++s.index;
+  return true;
+}
+
+double ViewSource::pixel_mm() const {
+  if (state_->capture) return state_->capture->head.value("pixel_mm", 0.0);
+  return state_->stack ? state_->stack->info().pixel_mm : 0;
+}
+
+std::vector<std::string> ViewSource::history() const {
+  return state_->stack ? state_->stack->info().history : std::vector<std::string>{};
+}
+
+Image read_field(const std::string& path) {
+  if (is_picture(path)) return to_image(read_picture(path));
+  StackReader reader(path);
+  Image sum;
+  Image image;
+  model::ImageInfo about;
+  int count = 0;
+  for (; reader.next(image, about); ++count) {
+    if (count == 0) {
+      sum = image;
+      continue;
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) sum.values[i] += image.values[i];
+  }
+  for (float& value : sum.values) value /= static_cast<float>(count);
+  return sum;
+}
+
+}  // namespace vam::io

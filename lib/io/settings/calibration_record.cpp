@@ -1,0 +1,203 @@
+#include "io/settings/calibration_record.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* schema = "vam-calibration/1";
+constexpr double clock_slack_s = 60;  // between the machines that measure and print
+
+// Only what every file system and shell takes as it is.
+std::string plain(const std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const bool good =
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_';
+    out += good ? c : '-';
+  }
+  return out.empty() ? "printer" : out;
+}
+
+std::string current_path(const model::Calibration& calibration, const std::string& scan) {
+  return (fs::path(calibration.folder) / ("current-" + scan + ".json")).string();
+}
+
+void make_current(const model::Calibration& calibration, const std::string& scan, const std::string& path) {
+  const std::string link = current_path(calibration, scan);
+  const std::string unfinished = link + "." + std::to_string(getpid());
+  std::error_code problem;
+  fs::remove(unfinished, problem);
+  fs::create_symlink(fs::path(path).filename(), unfinished, problem);
+  if (!problem) fs::rename(unfinished, link, problem);
+  if (problem) throw Error{Fault::no_output, link + ": cannot make the link (" + problem.message() + ")"};
+}
+
+std::string hours(double seconds) { return format_number(seconds / 3600, 3) + " h"; }
+
+std::string beside(const CalibrationRecord& record, const char* file) {
+  return (fs::path(record.path).parent_path() / record.json.at("files").at(file).get<std::string>()).string();
+}
+
+void take_over(model::Printer& printer, const CalibrationRecord& record) {
+  const std::string scan = record.json.at("scan");
+  if (scan == "edges") {
+    printer.projector.axis_column = record.value("axis_column");
+    printer.vial.radius_mm = record.value("radius");
+  } else if (scan == "response") {
+    printer.projector.response = beside(record, "response");
+  } else if (scan == "flat") {
+    printer.camera.flat = beside(record, "flat");
+  } else if (scan == "axis") {
+    printer.camera.axis_column = record.value("axis_column");
+    if (record.json.at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
+  } else if (scan == "latency") {
+    printer.projector.latency_ms = record.value("latency");
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& calibration_scans() {
+  static const std::vector<std::string> scans{"edges", "response", "flat", "beam", "axis", "latency"};
+  return scans;
+}
+
+double utc_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::string utc_text(double utc_s) {
+  const auto whole = static_cast<std::time_t>(std::floor(utc_s));
+  tm parts{};
+  gmtime_r(&whole, &parts);
+  std::array<char, 32> day{};
+  std::strftime(day.data(), day.size(), "%Y-%m-%dT%H:%M:%S", &parts);
+  const int ms = static_cast<int>((utc_s - static_cast<double>(whole)) * 1000);
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%s.%03dZ", day.data(), ms);
+  return text.data();
+}
+
+double parse_utc(const std::string& text, const std::string& subject) {
+  tm parts{};
+  int ms = 0;
+  int read = 0;
+  const int fields = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d.%3dZ%n", &parts.tm_year, &parts.tm_mon,
+                                 &parts.tm_mday, &parts.tm_hour, &parts.tm_min, &parts.tm_sec, &ms, &read);
+  if (fields != 7 || read != static_cast<int>(text.size())) {
+    throw Error{Fault::data, subject + ": '" + text + "' is not a time like 2026-11-21T16:58:00.123Z"};
+  }
+  parts.tm_year -= 1900;
+  parts.tm_mon -= 1;
+  return static_cast<double>(timegm(&parts)) + 1e-3 * ms;
+}
+
+std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,
+                        const std::string& ending) {
+  if (calibration.folder.empty()) {
+    throw Error{Fault::usage,
+                "no calibration.folder in the printer settings; name one, e.g. --set calibration.folder=DIR"};
+  }
+  std::error_code problem;
+  fs::create_directories(calibration.folder, problem);
+  if (problem) {
+    throw Error{Fault::no_output, calibration.folder + ": cannot make the folder (" + problem.message() + ")"};
+  }
+  std::string time;
+  for (const char c : utc_text(utc_s)) {
+    if (c != '-' && c != ':') time += c;
+  }
+  return (fs::path(calibration.folder) / ("cal-" + plain(calibration.instrument) + "-" + scan + "-" + time + ending))
+      .string();
+}
+
+std::string write_record(const model::Calibration& calibration, const std::string& scan, const Json& facts,
+                         double utc_s) {
+  std::string path = record_path(calibration, scan, utc_s, ".json");
+  if (fs::exists(path)) throw Error{Fault::no_output, path + ": a record is never written twice"};
+  Json record{{"schema", schema},
+              {"scan", scan},
+              {"utc", utc_text(utc_s)},
+              {"valid_until", utc_text(utc_s + 3600 * calibration.valid_hours)},
+              {"instrument", calibration.instrument},
+              {"vial", calibration.vial}};
+  record.update(facts);
+  OutputFile file(path, Content::text);
+  file.write(record.dump(2) + "\n");
+  file.commit();
+  if (chmod(path.c_str(), 0444) != 0) throw Error{Fault::no_output, path + ": cannot be made read-only"};
+  if (record.value("status", "pass") != "fail") make_current(calibration, scan, path);
+  return path;
+}
+
+double CalibrationRecord::value(const std::string& name) const { return json.at("values").at(name).at("value"); }
+double CalibrationRecord::sigma(const std::string& name) const { return json.at("values").at(name).at("sigma"); }
+
+std::optional<CalibrationRecord> current_record(const model::Calibration& calibration, const std::string& scan) {
+  const std::string path = current_path(calibration, scan);
+  std::error_code ignored;
+  if (calibration.folder.empty() || !fs::exists(path, ignored)) return std::nullopt;
+  constexpr std::uint64_t limit = 1U << 20U;
+  CalibrationRecord record{path, Json::parse(read_all(path, Content::text, limit), nullptr, false)};
+  if (!record.json.is_object() || record.json.value("schema", "") != schema || record.json.value("scan", "") != scan ||
+      !record.json.contains("values")) {
+    throw Error{Fault::data, path + ": is no " + schema + " record of " + scan + "; run vam-calibrate"};
+  }
+  return record;
+}
+
+std::string objection(const CalibrationRecord& record, const model::Calibration& calibration, double utc_s) {
+  const Json& json = record.json;
+  const std::string instrument = json.value("instrument", "");
+  if (instrument != calibration.instrument) {
+    return "is of instrument '" + instrument + "', this is '" + calibration.instrument + "'; run vam-calibrate";
+  }
+  const std::string scan = json.value("scan", "");
+  const std::string vial = json.value("vial", "");
+  if ((scan == "edges" || scan == "axis") && vial != calibration.vial) {
+    return "is of vial '" + vial + "', this is '" + calibration.vial + "'; run vam-calibrate";
+  }
+  if (json.value("status", "") == "fail") return "is of a scan that failed; run vam-calibrate";
+  const double made_s = parse_utc(json.value("utc", ""), record.path);
+  const double end_s = parse_utc(json.value("valid_until", ""), record.path);
+  if (utc_s > end_s) {
+    return "is " + hours(utc_s - made_s) + " old and was valid for " + hours(end_s - made_s) + "; run vam-calibrate";
+  }
+  if (utc_s < made_s - clock_slack_s) return "is " + hours(made_s - utc_s) + " ahead of this machine's clock; set it";
+  return "";
+}
+
+void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s) {
+  for (const auto& scan : calibration_scans()) {
+    const auto record = current_record(calibration, scan);
+    if (!record) continue;
+    if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {
+      throw Error{Fault::data, record->path + ": " + why + ", or do without: --set calibration.folder="};
+    }
+    try {
+      take_over(printer, *record);
+    } catch (const Json::exception&) {
+      throw Error{Fault::data, record->path + ": lacks what a record of " + scan + " holds; run vam-calibrate"};
+    }
+  }
+}
+
+}  // namespace vam::io

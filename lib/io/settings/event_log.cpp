@@ -1,0 +1,29 @@
+#include "io/settings/event_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.hpp"
+
+namespace vam::io {
+
+void CloseFile::operator()(std::FILE* file) const {
+  if (file != stdout) std::fclose(file);
+}
+
+EventLog open_log(const std::string& path) {
+  if (path.empty()) return nullptr;
+  if (path == "-") return EventLog(stdout);
+  EventLog log(std::fopen(path.c_str(), "ae"));
+  if (!log) throw Error{Fault::no_output, path + ": cannot append (" + std::strerror(errno) + ")"};
+  return log;
+}
+
+void log_line(std::FILE& log, const std::string& line) {
+  errno = 0;
+  if (std::fputs((line + "\n").c_str(), &log) < 0 || std::fflush(&log) != 0) {
+    throw Error{Fault::io, std::string("log: write failed (") + std::strerror(errno) + ")"};
+  }
+}
+
+}  // namespace vam::io

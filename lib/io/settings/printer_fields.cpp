@@ -1,0 +1,134 @@
+#include "io/settings/private/printer_fields.hpp"
+
+#include <algorithm>
+
+#include "base/text.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using namespace model;
+
+template <auto Section, auto Member>
+Slot at(Printer& printer) {
+  return &(printer.*Section.*Member);
+}
+
+constexpr double huge = 1e300;
+
+// clang-format off
+const std::vector<PrinterField> fields{
+    {"projector", "columns", at<&Printer::projector, &Projector::columns>, "pixels across", 1, 65536},
+    {"projector", "rows", at<&Printer::projector, &Projector::rows>, "pixels along the rotation axis", 1, 65536},
+    {"projector", "pixel_mm", at<&Printer::projector, &Projector::pixel_mm>, "pitch in the plane of the rotation axis", 0, 100, true},
+    {"projector", "throw_ratio", at<&Printer::projector, &Projector::throw_ratio>, "lens distance / image width", 0, 1e6, true},
+    {"projector", "lens_distance_mm", at<&Printer::projector, &Projector::lens_distance_mm>, "lens to rotation axis; replaces throw_ratio", 0, 1e9, true},
+    {"projector", "telecentric", at<&Printer::projector, &Projector::telecentric>, "parallel chief rays; replaces throw_ratio"},
+    {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "at grey 0: what leaks when black", 0, huge},
+    {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "at full grey", 0, huge, true},
+    {"projector", "response", at<&Printer::projector, &Projector::response>, "CSV file \"grey,intensity\", relative to this file; empty: linear"},
+    {"projector", "bits", at<&Printer::projector, &Projector::bits>, "grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
+    {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0, 1e6, true},
+    {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "of the rotation axis, from 0 at the left, before orientation", -65536, 131072},
+    {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "of z = 0, from 0 at the top (z is up), before orientation", -65536, 131072},
+    {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
+    {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "from a vertical blank to the light", -1000, 1000},
+    {"projector", "max_led_current", at<&Printer::projector, &Projector::max_led_current>, "of the light engine, in its own steps; more is refused", 0, 255},
+    {"vial", "radius_mm", at<&Printer::vial, &Vial::radius_mm>, "outer radius", 0, 1e6, true},
+    {"vial", "wall_mm", at<&Printer::vial, &Vial::wall_mm>, "0: glass and resin matched", 0, 1e6},
+    {"vial", "index_glass", at<&Printer::vial, &Vial::index_glass>, "refractive index", 1, 4},
+    {"bath", "index", at<&Printer::bath, &Bath::index>, "refractive index around the vial; 1: air, no bath", 1, 4},
+    {"bath", "window_mm", at<&Printer::bath, &Bath::window_mm>, "flat window, distance before the axis; 0: none", 0, 1e6},
+    {"resin", "name", at<&Printer::resin, &Resin::name>, "for people"},
+    {"resin", "index", at<&Printer::resin, &Resin::index>, "refractive index at the projector's wavelength", 1, 4},
+    {"resin", "absorption_per_mm", at<&Printer::resin, &Resin::absorption_per_mm>, "natural (base e)", 0, 1e6},
+    {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at which it gels", 0, huge, true},
+    {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 1e6},
+    {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "of the dose (radicals and inhibitor)", 0, 1e6},
+    {"stage", "device", at<&Printer::stage, &Stage::device>, "sim:, gcs:PORT, tic:SERIAL or grbl:PORT"},
+    {"stage", "speed_deg_s", at<&Printer::stage, &Stage::speed_deg_s>, "rotation speed", 0, 1e6, true},
+    {"stage", "turns", at<&Printer::stage, &Stage::turns>, "turns of one print", 1, 1e6},
+    {"stage", "direction", at<&Printer::stage, &Stage::direction>, "1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
+    {"camera", "device", at<&Printer::camera, &Camera::device>, "sim:, aravis:ID, v4l2:FILE or replay:FOLDER"},
+    {"camera", "distance_mm", at<&Printer::camera, &Camera::distance_mm>, "entrance pupil to rotation axis", 0, 1e9, true},
+    {"camera", "pixel_mm", at<&Printer::camera, &Camera::pixel_mm>, "pitch at the rotation axis", 0, 100, true},
+    {"camera", "azimuth_deg", at<&Printer::camera, &Camera::azimuth_deg>, "from the projector", -360, 360},
+    {"camera", "binning", at<&Printer::camera, &Camera::binning>, "pixels a side", 1, 64},
+    {"camera", "exposure_us", at<&Printer::camera, &Camera::exposure_us>, "exposure time", 0, 1e9, true},
+    {"camera", "fps", at<&Printer::camera, &Camera::fps>, "frames per second", 0, 1e6, true},
+    {"camera", "index_resin", at<&Printer::camera, &Camera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
+    {"camera", "axis_column", at<&Printer::camera, &Camera::axis_column>, "of the rotation axis at the middle row of its pictures; found in the views if absent", -65536, 131072},
+    {"camera", "tilt_deg", at<&Printer::camera, &Camera::tilt_deg>, "of the axis in the pictures, its lower end towards higher columns", -180, 180},
+    {"camera", "flat", at<&Printer::camera, &Camera::flat>, "flat field (EXR), relative to this file; empty: none"},
+    {"calibration", "folder", at<&Printer::calibration, &Calibration::folder>, "of the records, relative to this file; empty: none are used"},
+    {"calibration", "instrument", at<&Printer::calibration, &Calibration::instrument>, "a name of this printer; records of another are refused"},
+    {"calibration", "vial", at<&Printer::calibration, &Calibration::vial>, "the vial in it; vial edges and axes of another are refused"},
+    {"calibration", "valid_hours", at<&Printer::calibration, &Calibration::valid_hours>, "of new records", 0, 1e6, true},
+};
+// clang-format on
+
+std::string number_objection(const PrinterField& field, double value) {
+  if (value >= field.low && value <= field.high && !(field.open_low && value == field.low)) return "";
+  const std::string got = format_number(value);
+  if (field.high < huge) {
+    return got + " is not between " + format_number(field.low) + (field.open_low ? " (excluded) and " : " and ") +
+           format_number(field.high);
+  }
+  return got + (field.open_low ? " is not above " : " is below ") + format_number(field.low);
+}
+
+std::string word_objection(const PrinterField& field, const std::string& word) {
+  for (const auto& allowed : field.words) {
+    if (word == allowed) return "";
+  }
+  return "'" + word + "' is none of " + join(field.words, ", ");
+}
+
+std::string mm(double value) { return format_number(value) + " mm"; }
+
+}  // namespace
+
+std::span<const PrinterField> printer_fields() { return fields; }
+
+std::string dotted_name(const PrinterField& field) { return std::string(field.section) + "." + field.key; }
+
+std::string objection(const PrinterField& field, const Slot& slot) {
+  if (const auto* word = std::get_if<std::string*>(&slot)) {
+    return field.words.empty() ? "" : word_objection(field, **word);
+  }
+  if (const auto* whole = std::get_if<int*>(&slot)) {
+    return field.words.empty() ? number_objection(field, **whole) : word_objection(field, std::to_string(**whole));
+  }
+  if (const auto* number = std::get_if<double*>(&slot)) return number_objection(field, **number);
+  if (const auto* maybe = std::get_if<std::optional<double>*>(&slot)) {
+    return **maybe ? number_objection(field, ***maybe) : "";
+  }
+  return "";
+}
+
+std::string contradiction(const Printer& printer) {
+  const auto& [projector, vial, bath, resin, stage, camera, calibration] = printer;
+  if (vial.wall_mm >= vial.radius_mm) {
+    return "vial.wall_mm " + mm(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm(vial.radius_mm);
+  }
+  if (projector.min_intensity_mw_cm2 >= projector.max_intensity_mw_cm2) {
+    return "projector.min_intensity_mw_cm2 " + format_number(projector.min_intensity_mw_cm2) +
+           " is not below projector.max_intensity_mw_cm2 " + format_number(projector.max_intensity_mw_cm2);
+  }
+  if (bath.window_mm > 0 && bath.window_mm < vial.radius_mm) {
+    return "bath.window_mm " + mm(bath.window_mm) + " cuts into vial.radius_mm " + mm(vial.radius_mm);
+  }
+  const auto lens_mm = lens_distance_mm(projector);
+  const double obstacle_mm = std::max(vial.radius_mm, bath.window_mm);
+  if (lens_mm && *lens_mm <= obstacle_mm) {
+    return "the projector's lens, " + mm(*lens_mm) + " from the axis, is not outside " +
+           (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm(obstacle_mm);
+  }
+  if (camera.distance_mm <= vial.radius_mm) {
+    return "camera.distance_mm " + mm(camera.distance_mm) + " is not outside vial.radius_mm " + mm(vial.radius_mm);
+  }
+  return "";
+}
+
+}  // namespace vam::io

@@ -1,0 +1,239 @@
+#include "io/settings/printer_file.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "io/settings/private/printer_fields.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using model::Printer;
+
+const PrinterField* find_field(std::string_view section, std::string_view key) {
+  for (const auto& field : printer_fields()) {
+    if (section == field.section && key == field.key) return &field;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> section_names() {
+  std::vector<std::string> names;
+  for (const auto& field : printer_fields()) {
+    if (names.empty() || names.back() != field.section) names.emplace_back(field.section);
+  }
+  return names;
+}
+
+// "; did you mean radius_mm?" within the section, else the same key in another section, else all that there is.
+std::string suggestion(std::string_view section, std::string_view key) {
+  std::vector<std::string> here;
+  for (const auto& field : printer_fields()) {
+    if (section == field.section) here.emplace_back(field.key);
+    if (key == field.key) return "; did you mean " + dotted_name(field) + "?";
+  }
+  std::string close = did_you_mean(key, here);
+  if (!close.empty()) return close;
+  if (!here.empty()) return "; [" + std::string(section) + "] has " + join(here, ", ");
+  const std::string near_section = did_you_mean(section, section_names());
+  return near_section.empty() ? "; the sections are " + join(section_names(), ", ") : near_section;
+}
+
+const char* type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::string:
+      return "text";
+    case toml::node_type::integer:
+      return "a whole number";
+    case toml::node_type::floating_point:
+      return "a decimal number";
+    case toml::node_type::boolean:
+      return "true or false";
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return "a list";
+    default:
+      return "a date or time";
+  }
+}
+
+// Stores the node when its type fits; otherwise returns what was needed. Whole numbers serve as decimal ones.
+struct Store {
+  const toml::node& node;
+  const char* operator()(int* target) const {
+    const auto value = node.is_integer() ? node.value<int>() : std::nullopt;
+    if (value) *target = *value;
+    return value ? nullptr : "a whole number";
+  }
+  const char* operator()(double* target) const {
+    const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+    if (value) *target = *value;
+    return value ? nullptr : "a number";
+  }
+  const char* operator()(std::optional<double>* target) const {
+    double value = 0;
+    const char* needed = (*this)(&value);
+    if (needed == nullptr) *target = value;
+    return needed;
+  }
+  const char* operator()(bool* target) const {
+    if (node.is_boolean()) *target = *node.value<bool>();
+    return node.is_boolean() ? nullptr : "true or false";
+  }
+  const char* operator()(std::string* target) const {
+    if (node.is_string()) *target = *node.value<std::string>();
+    return node.is_string() ? nullptr : "text in quotes";
+  }
+};
+
+void assign(Printer& printer, const PrinterField& field, const toml::node& node, Fault fault,
+            const std::string& place) {
+  const Slot slot = field.slot(printer);
+  if (const char* needed = std::visit(Store{node}, slot)) {
+    throw Error{fault, place + ": " + dotted_name(field) + " must be " + needed + ", not " + type_name(node)};
+  }
+  if (const std::string why = objection(field, slot); !why.empty()) {
+    throw Error{fault, place + ": " + dotted_name(field) + ": " + why};
+  }
+}
+
+std::string place(const std::string& subject, const toml::source_region& region) {
+  return subject + ":" + std::to_string(region.begin.line);
+}
+
+void read_section(Printer& printer, const toml::table& table, std::string_view section, const std::string& subject) {
+  for (const auto& [key, node] : table) {
+    const std::string where = place(subject, key.source());
+    const PrinterField* field = find_field(section, key.str());
+    if (field == nullptr) {
+      throw Error{Fault::data, where + ": unknown key '" + std::string(key.str()) + "' in [" + std::string(section) +
+                                   "]" + suggestion(section, key.str())};
+    }
+    assign(printer, *field, node, Fault::data, where);
+  }
+}
+
+void read_table(Printer& printer, const toml::table& root, const std::string& subject) {
+  for (const auto& [key, node] : root) {
+    const std::string where = place(subject, key.source());
+    const auto names = section_names();
+    if (std::find(names.begin(), names.end(), key.str()) == names.end()) {
+      const std::string hint = node.is_table() ? suggestion(key.str(), "") : suggestion("", key.str());
+      throw Error{Fault::data, where + ": unknown " + (node.is_table() ? "section" : "key") + " '" +
+                                   std::string(key.str()) + "'" + hint};
+    }
+    if (!node.is_table()) {
+      throw Error{Fault::data, where + ": '" + std::string(key.str()) + "' must be a section, not " + type_name(node)};
+    }
+    read_section(printer, *node.as_table(), key.str(), subject);
+  }
+}
+
+// The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
+Printer read_settings(std::string_view text, const std::string& subject) {
+  const toml::table root = [&] {
+    try {
+      return toml::parse(text, subject);
+    } catch (const toml::parse_error& error) {
+      throw Error{Fault::data, place(subject, error.source()) + ": not TOML: " + std::string(error.description())};
+    }
+  }();
+  Printer printer;
+  read_table(printer, root, subject);
+  return printer;
+}
+
+void check(const Printer& printer, Fault fault, const std::string& subject) {
+  if (const std::string why = contradiction(printer); !why.empty()) throw Error{fault, subject + ": " + why};
+}
+
+// {value = ...}, or an empty table when the text is no TOML value.
+toml::table parse_value(const std::string& value) {
+  try {
+    return toml::parse("value = " + value);
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
+void override_one(Printer& printer, const std::string& set) {
+  const std::string subject = "--set " + set;
+  const std::size_t equals = set.find('=');
+  const std::string name = set.substr(0, equals);
+  const std::size_t dot = name.find('.');
+  if (equals == std::string::npos || dot == std::string::npos) {
+    throw Error{Fault::usage, subject + ": not section.key=value; for example vial.radius_mm=12"};
+  }
+  const PrinterField* field = find_field(name.substr(0, dot), name.substr(dot + 1));
+  if (field == nullptr) {
+    throw Error{Fault::usage, subject + ": unknown setting" + suggestion(name.substr(0, dot), name.substr(dot + 1))};
+  }
+  const std::string value = set.substr(equals + 1);
+  const toml::table parsed = parse_value(value);
+  const toml::node* node = parsed.get("value");
+  const toml::value<std::string> bare(value);
+  if (std::holds_alternative<std::string*>(field->slot(printer))) {  // quotes are optional around text
+    if (node == nullptr || !node->is_string()) node = &bare;
+  } else if (node == nullptr || parsed.size() != 1) {
+    throw Error{Fault::usage, subject + ": '" + value + "' is not a value"};
+  }
+  assign(printer, *field, *node, Fault::usage, subject);
+}
+
+std::string settings_file(const std::string& file) {
+  if (!file.empty()) return file;
+  if (const char* named = std::getenv("VAM_PRINTER"); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  return std::filesystem::exists("printer.toml", ignored) ? "printer.toml" : "";
+}
+
+std::string slurp(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw Error{Fault::no_input, file + ": is a folder, not a printer file"};
+  std::ifstream stream(file, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad()) {
+    throw Error{Fault::no_input, file + ": cannot read the printer file"};
+  }
+  return text;
+}
+
+}  // namespace
+
+Printer parse_printer(std::string_view toml, const std::string& subject) {
+  Printer printer = read_settings(toml, subject);
+  check(printer, Fault::data, subject);
+  return printer;
+}
+
+Printer load_printer(const std::string& file, const std::vector<std::string>& sets, Records records) {
+  const std::string path = settings_file(file);
+  Printer printer;
+  if (!path.empty()) {
+    printer = read_settings(slurp(path), path);
+    const auto beside = std::filesystem::path(path).parent_path();
+    for (std::string* file_name : {&printer.projector.response, &printer.camera.flat, &printer.calibration.folder}) {
+      if (!file_name->empty()) *file_name = (beside / *file_name).string();
+    }
+  }
+  if (records == Records::apply) {
+    Printer settled = printer;  // --set may name the records
+    for (const auto& set : sets) override_one(settled, set);
+    apply_records(printer, settled.calibration, utc_seconds());
+  }
+  for (const auto& set : sets) override_one(printer, set);
+  const bool only_sets = path.empty() && !sets.empty();
+  check(printer, sets.empty() ? Fault::data : Fault::usage, only_sets ? "--set " + sets.back() : path);
+  return printer;
+}
+
+}  // namespace vam::io

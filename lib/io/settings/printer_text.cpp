@@ -1,0 +1,64 @@
+// Printer settings as text: the whole file, and what differs from the defaults.
+#include <toml++/toml.h>
+
+#include <charconv>
+#include <sstream>
+
+#include "base/text.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/private/printer_fields.hpp"
+
+namespace vam::io {
+
+namespace {
+
+// Shortest decimal form that reads back to the same double, with the point that TOML wants in a float.
+std::string decimal(double value) {
+  char text[32];
+  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+  std::string shortest(static_cast<char*>(text), end);
+  return shortest.find_first_of(".e") == std::string::npos ? shortest + ".0" : shortest;
+}
+
+struct Print {
+  std::string operator()(const int* value) const { return std::to_string(*value); }
+  std::string operator()(const double* value) const { return decimal(*value); }
+  std::string operator()(const std::optional<double>* value) const { return *value ? decimal(**value) : ""; }
+  std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+  std::string operator()(const std::string* value) const {
+    std::ostringstream quoted;
+    quoted << toml::toml_formatter{toml::value<std::string>(*value), toml::format_flags::none};
+    return quoted.str();
+  }
+};
+
+}  // namespace
+
+std::string printer_toml(const model::Printer& given) {
+  model::Printer printer = given;
+  std::ostringstream text;
+  text << "# Printer settings of the VAM tools. Every setting is here; delete what should keep its default.\n";
+  std::string section;
+  for (const auto& field : printer_fields()) {
+    if (section != field.section) text << "\n[" << (section = field.section) << "]\n";
+    std::string value = std::visit(Print{}, field.slot(printer));
+    std::string line = value.empty() ? "# " + std::string(field.key) + " =" : std::string(field.key) + " = " + value;
+    constexpr std::size_t comment_column = 34;
+    if (line.size() < comment_column) line.append(comment_column - line.size(), ' ');
+    text << line << "  # " << field.comment << (value.empty() ? " (not set)" : "") << '\n';
+  }
+  return text.str();
+}
+
+std::string printer_settings(const model::Printer& given) {
+  model::Printer printer = given;
+  model::Printer standard;
+  std::vector<std::string> settings;
+  for (const auto& field : printer_fields()) {
+    const std::string value = std::visit(Print{}, field.slot(printer));
+    if (value != std::visit(Print{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
+  }
+  return settings.empty() ? "default" : join(settings, " ");
+}
+
+}  // namespace vam::io

@@ -1,0 +1,16 @@
+#include "io/settings/report.hpp"
+
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+void write_report(const std::string& path, const std::string& schema, const Json& figures) {
+  if (path.empty()) return;
+  Json report{{"schema", schema}};
+  report.update(figures);
+  OutputFile file(path, Content::text);
+  file.write(report.dump(2) + "\n");
+  file.commit();
+}
+
+}  // namespace vam::io

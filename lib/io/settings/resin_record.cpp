@@ -1,0 +1,24 @@
+#include "io/settings/resin_record.hpp"
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+double gelation_level(const std::string& path) {
+  double level = 0;
+  try {
+    const Json record = Json::parse(read_all(path));
+    if (record.at("schema") != "vam-resin/1")
+      throw Error{Fault::data, path + ": not a record of vam-ost threshold, its schema is " + record["schema"].dump()};
+    level = record.at("level").get<double>();
+  } catch (const Json::exception& error) {
+    throw Error{Fault::data, path + ": not a record of vam-ost threshold (" + error.what() + ")"};
+  }
+  if (!(level > 0)) throw Error{Fault::data, path + ": level is " + format_number(level) + "; it must be above 0"};
+  return level;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,70 @@
+#include "io/settings/response_file.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::io {
+
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::optional<double> cell(const std::string& text) {
+  const auto number = parse_number(trimmed(text));
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+void append(model::ResponseTable& table, double grey, double intensity, const std::string& place) {
+  if (table.grey.empty() && grey != 0) {
+    throw Error{Fault::data, place + ": the first grey is " + format_number(grey) + "; the table must begin at grey 0"};
+  }
+  if (!table.grey.empty() && grey <= table.grey.back()) {
+    throw Error{Fault::data, place + ": grey " + format_number(grey) + " does not rise above " +
+                                 format_number(table.grey.back()) + "; sort the table by grey"};
+  }
+  if (intensity < 0 || (!table.intensity.empty() && intensity < table.intensity.back())) {
+    throw Error{Fault::data, place + ": intensity " + format_number(intensity) + " at grey " + format_number(grey) +
+                                 " is below " + format_number(table.intensity.empty() ? 0 : table.intensity.back()) +
+                                 "; a response must never fall, so measure again or smooth it"};
+  }
+  table.grey.push_back(grey);
+  table.intensity.push_back(intensity);
+}
+
+}  // namespace
+
+model::ResponseTable read_response(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw Error{Fault::no_input, file + ": cannot read the response table"};
+  model::ResponseTable table;
+  table.source = file;
+  std::string line;
+  bool header_allowed = true;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    line = trimmed(line);
+    if (line.empty() || line[0] == '#') continue;
+    const std::string place = file + ":" + std::to_string(number);
+    const auto cells = split(line, ',');
+    const auto grey = cell(cells[0]);
+    const auto intensity = cells.size() == 2 ? cell(cells[1]) : std::nullopt;
+    if (grey && intensity) {
+      append(table, *grey, *intensity, place);
+    } else if (!header_allowed || grey) {
+      throw Error{Fault::data, place + ": '" + line + "' is not two numbers 'grey,intensity'"};
+    }
+    header_allowed = false;
+  }
+  if (table.grey.size() < 2 || table.intensity.back() <= 0) {
+    throw Error{Fault::data, file + ": a response needs at least two lines 'grey,intensity' and light at full grey"};
+  }
+  return table;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,80 @@
+#include "io/stream/file_type.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t look = 8;
+
+// tee(2) copies what waits in one pipe into another and leaves it where it is.
+std::string pipe_head(int descriptor) {
+  std::array<int, 2> copy{};
+  if (pipe2(copy.data(), O_CLOEXEC) != 0) return "";
+  std::string head;
+  // A writer may deliver its first bytes one by one; what is there is looked at again until it is enough or the end.
+  for (int attempt = 0; attempt < 1000 && head.size() < look; ++attempt) {
+    const ssize_t copied = tee(descriptor, copy[1], look, 0);
+    if (copied <= 0) break;
+    head.resize(static_cast<std::size_t>(copied));
+    if (read(copy[0], head.data(), head.size()) != copied) break;
+    if (head.size() < look) poll(nullptr, 0, 1);
+  }
+  close(copy[0]);
+  close(copy[1]);
+  return head;
+}
+
+std::string stdin_head() {
+  struct stat about {};
+  if (fstat(STDIN_FILENO, &about) != 0) return "";
+  if (S_ISFIFO(about.st_mode)) return pipe_head(STDIN_FILENO);
+  std::string head(look, '\0');
+  const off_t here = lseek(STDIN_FILENO, 0, SEEK_CUR);
+  const ssize_t count = here < 0 ? 0 : pread(STDIN_FILENO, head.data(), look, here);
+  head.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  return head;
+}
+
+std::string file_head(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error{Fault::no_input, path + ": cannot open the file"};
+  std::string head(look, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(look));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head;
+}
+
+std::string head_of(const std::string& path) { return path == "-" ? stdin_head() : file_head(path); }
+
+// A 64-bit number begins with these four bytes.
+bool begins_a_volume(const std::string& head) { return head.starts_with(" BDV"); }
+
+}  // namespace
+
+bool is_volume(const std::string& path) { return begins_a_volume(head_of(path)); }
+
+FileType file_type(const std::string& path) {
+  std::error_code ignored;
+  if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::pictures;
+  const std::string head = head_of(path);
+  if (begins_a_volume(head)) return FileType::volume;
+  if (head.starts_with("\x76\x2f\x31\x01")) return FileType::stack;
+  if (head.starts_with("\x1a\x45\xdf\xa3") || (head.size() >= 8 && head.substr(4, 4) == "ftyp")) return FileType::video;
+  const std::string name = path == "-" ? "stdin" : path;
+  if (head.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
+  throw Error{Fault::data,
+              name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of pictures"};
+}
+
+}  // namespace vam::io

@@ -1,0 +1,113 @@
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
+constexpr int pipe_bytes = 1 << 20;
+
+// False when there is no such file; "-" is the given standard descriptor.
+bool identify(const std::string& path, int standard, struct stat& about) {
+  return (path == "-" ? fstat(standard, &about) : stat(path.c_str(), &about)) == 0;
+}
+
+}  // namespace
+
+InputFile::InputFile(const std::string& path, Content content) : name_(path == "-" ? "stdin" : path) {
+  descriptor_ = path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  struct stat about = {};
+  if (descriptor_ < 0 || fstat(descriptor_, &about) != 0) {
+    const int problem = errno;
+    if (descriptor_ > STDIN_FILENO) close(descriptor_);
+    throw Error{Fault::no_input, name_ + ": cannot open: " + std::strerror(problem)};
+  }
+  const bool terminal = isatty(descriptor_) == 1;
+  if (S_ISDIR(about.st_mode) || (terminal && content == Content::binary)) {
+    if (descriptor_ > STDIN_FILENO) close(descriptor_);
+    if (!terminal) throw Error{Fault::no_input, name_ + ": is a directory; name a file in it"};
+    throw Error{Fault::usage, name_ + ": is a terminal and the input is binary; name a file or use a pipe"};
+  }
+  (void)fcntl(descriptor_, F_SETPIPE_SZ, pipe_bytes);  // fails on what is no pipe, and then does not matter
+  (void)posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
+  buffer_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
+}
+
+InputFile::~InputFile() {
+  if (descriptor_ > STDIN_FILENO) close(descriptor_);
+}
+
+std::size_t InputFile::receive(char* to, std::size_t size) {
+  while (true) {
+    const ssize_t got = ::read(descriptor_, to, size);
+    if (got >= 0) return static_cast<std::size_t>(got);
+    if (errno != EINTR) throw Error{Fault::io, name_ + ": cannot read: " + std::strerror(errno)};
+  }
+}
+
+std::span<const char> InputFile::peek() {
+  if (begin_ == end_) {
+    begin_ = 0;
+    end_ = receive(buffer_.get(), buffer_bytes);
+  }
+  return {buffer_.get() + begin_, end_ - begin_};
+}
+
+void InputFile::skip(std::size_t size) {
+  begin_ += size;
+  position_ += size;
+}
+
+std::size_t InputFile::read(void* to, std::size_t size) {
+  char* out = static_cast<char*>(to);
+  std::size_t done = 0;
+  while (done < size) {
+    std::size_t step = 0;
+    if (begin_ == end_ && size - done >= buffer_bytes) {  // no detour through the buffer
+      step = receive(out + done, size - done);
+      position_ += step;
+    } else {
+      const auto ready = peek();
+      step = std::min(ready.size(), size - done);
+      if (step > 0) std::memcpy(out + done, ready.data(), step);
+      skip(step);
+    }
+    if (step == 0) break;
+    done += step;
+  }
+  return done;
+}
+
+std::string read_all(const std::string& path, Content content, std::uint64_t limit) {
+  InputFile file(path, content);
+  std::string bytes;
+  for (auto ready = file.peek(); !ready.empty(); ready = file.peek()) {
+    if (bytes.size() + ready.size() > limit) {
+      throw Error{Fault::data, file.name() + ": longer than the limit of " +
+                                   format_number(static_cast<double>(limit) / (1 << 20)) + " MiB"};
+    }
+    bytes.append(ready.data(), ready.size());
+    file.skip(ready.size());
+  }
+  return bytes;
+}
+
+void refuse_same_file(const std::string& input, const std::string& output) {
+  struct stat in = {};
+  struct stat out = {};
+  if (!identify(input, STDIN_FILENO, in) || !identify(output, STDOUT_FILENO, out)) return;
+  if (!S_ISREG(in.st_mode) || in.st_dev != out.st_dev || in.st_ino != out.st_ino) return;
+  throw Error{Fault::usage, (output == "-" ? "stdout" : output) + ": is also the input; write to another file"};
+}
+
+}  // namespace vam::io

@@ -1,0 +1,85 @@
+#include "io/stream/output_folder.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "io/stream/private/temporary.hpp"
+
+namespace vam::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void check_replaceable(const fs::path& folder, bool (*like_these)(const fs::path&)) {
+  if (!fs::exists(folder)) return;
+  if (!fs::is_directory(folder)) throw Error{Fault::no_output, folder.string() + ": exists and is not a folder"};
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!like_these(entry.path())) {
+      throw Error{Fault::no_output, folder.string() + ": holds " + entry.path().filename().string() +
+                                        ", which is no frame; name another folder"};
+    }
+  }
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::string& path, bool (*like_these)(const fs::path& file))
+    : target_(fs::path(path).has_filename() ? fs::path(path) : fs::path(path).parent_path()) {
+  check_replaceable(target_, like_these);
+  if (create_temporary_folder(target_.string(), temporary_, slot_) != 0) {
+    throw Error{Fault::no_output,
+                target_.string() + ": cannot create the folder: " + std::generic_category().message(errno)};
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) fs::remove_all(temporary_, ignored);
+  forget();
+}
+
+void OutputFolder::forget() {
+  forget_temporary(slot_);
+  slot_ = -1;
+  temporary_.clear();
+}
+
+void OutputFolder::write(const std::string& name, std::string_view bytes) const {
+  std::ofstream file(fs::path(temporary_) / name, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) throw Error{Fault::io, (target_ / name).string() + ": cannot write; is the disk full?"};
+}
+
+// One call for the whole folder, in place of an fsync for each of a thousand files.
+void OutputFolder::synchronize() const {
+  const int folder = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = folder >= 0 && syncfs(folder) == 0;
+  if (folder >= 0) ::close(folder);
+  if (!done) throw Error{Fault::io, target_.string() + ": the disk did not take all files"};
+}
+
+void OutputFolder::commit() {
+  synchronize();
+  std::error_code problem;
+  const std::string old = temporary_ + "-old";
+  const bool replaces = fs::exists(target_);
+  // The old files step aside, and come back if the new ones cannot take their place.
+  if (replaces) fs::rename(target_, old, problem);
+  if (!problem) fs::rename(temporary_, target_, problem);
+  if (problem) {
+    std::error_code ignored;
+    if (replaces && !fs::exists(target_)) fs::rename(old, target_, ignored);
+    throw Error{Fault::no_output, target_.string() + ": cannot put the folder in place: " + problem.message()};
+  }
+  forget();
+  if (replaces) fs::remove_all(old, problem);
+}
+
+}  // namespace vam::io

@@ -1,0 +1,144 @@
+#include "io/stream/private/temporary.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <csignal>
+#include <cstring>
+#include <functional>
+
+namespace vam::io {
+
+namespace {
+
+// A signal handler may neither lock nor allocate, so the names live in fixed places. A name that finds no free place,
+// or is too long, is still removed by its owner's destructor, only not after a signal.
+struct Listed {
+  std::atomic<bool> taken{false};
+  std::atomic<bool> live{false};
+  char path[PATH_MAX] = {};
+};
+std::array<Listed, 64> list;  // NOLINT: one per process, like the signal dispositions it serves
+
+// Without opendir(), which allocates.
+void empty_folder(const char* path) {
+  alignas(dirent64) static char entries[1 << 15];
+  const int folder = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  long bytes = 0;
+  while ((bytes = syscall(SYS_getdents64, folder, entries, sizeof entries)) > 0) {
+    for (long at = 0; at < bytes;) {
+      const auto* entry = reinterpret_cast<const dirent64*>(entries + at);  // the kernel's linux_dirent64
+      unlinkat(folder, entry->d_name, 0);                                   // refuses "." and "..", as folders
+      at += entry->d_reclen;
+    }
+  }
+  close(folder);
+}
+
+// Other threads may go on writing into a folder until the process ends.
+void remove_listed(const char* path) {
+  if (unlink(path) == 0 || errno != EISDIR) return;
+  constexpr int attempts = 100;
+  for (int i = 0; i < attempts && rmdir(path) != 0 && errno == ENOTEMPTY; ++i) empty_folder(path);
+}
+
+extern "C" void remove_and_die(int signal_number) {
+  for (Listed& item : list) {
+    if (item.live.load()) remove_listed(item.path);
+  }
+  // The disposition is the default again (SA_RESETHAND); once the handler returns the signal ends the process, and the
+  // parent sees why.
+  raise(signal_number);
+}
+
+void install_handlers() {
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction current = {};
+    if (sigaction(number, nullptr, &current) != 0 || current.sa_handler != SIG_DFL) continue;  // nohup, a device tool
+    struct sigaction ours = {};
+    ours.sa_handler = remove_and_die;
+    ours.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigemptyset(&ours.sa_mask);
+    sigaction(number, &ours, nullptr);
+  }
+}
+
+int enlist(const std::string& path) {
+  if (path.size() >= PATH_MAX) return -1;
+  install_handlers();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list[i].taken.exchange(true)) continue;
+    std::memcpy(list[i].path, path.c_str(), path.size() + 1);
+    list[i].live = true;
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+std::string directory_of(const std::string& path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string::npos ? "" : path.substr(0, slash + 1);
+}
+
+std::string extension_of(const std::string& path) {
+  const std::string file = path.substr(directory_of(path).size());
+  const auto dot = file.rfind('.');
+  return dot == std::string::npos || dot == 0 || file.size() - dot > 16 ? "" : file.substr(dot);
+}
+
+// Tries names until `create` meets one that does not exist. The name is listed before the file exists: a signal between
+// the two then removes nothing, while the other order could leave a file behind.
+int with_new_name(const std::string& target, std::string& name, int& slot,
+                  const std::function<int(const char*)>& create) {
+  static std::atomic<unsigned> counter{0};
+  while (true) {
+    name = directory_of(target) + ".vam-" + std::to_string(getpid()) + "-" + std::to_string(counter++) +
+           extension_of(target);
+    if (faccessat(AT_FDCWD, name.c_str(), F_OK, AT_SYMLINK_NOFOLLOW) == 0) continue;  // left by a namesake; not ours
+    slot = enlist(name);
+    const int result = create(name.c_str());
+    if (result >= 0) return result;
+    const int problem = errno;
+    forget_temporary(slot);
+    slot = -1;
+    name.clear();
+    if (problem == EEXIST) continue;
+    errno = problem;
+    return -1;
+  }
+}
+
+}  // namespace
+
+int create_temporary(const std::string& target, std::string& name, int& slot) {
+  return with_new_name(target, name, slot,
+                       [](const char* path) { return open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+}
+
+int create_temporary_folder(const std::string& target, std::string& name, int& slot) {
+  return with_new_name(target, name, slot, [](const char* path) { return mkdir(path, 0777); });
+}
+
+int name_temporary(int descriptor, const std::string& target, std::string& name, int& slot) {
+  const std::string self = "/proc/self/fd/" + std::to_string(descriptor);
+  return with_new_name(target, name, slot, [&self](const char* path) {
+    return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW);
+  });
+}
+
+void forget_temporary(int slot) {
+  if (slot < 0) return;
+  Listed& item = list[static_cast<std::size_t>(slot)];
+  item.live = false;
+  item.taken = false;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,60 @@
+#include "io/vdb/private/archive.hpp"
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <iostream>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.hpp"
+#include "io/stream/stream_buffers.hpp"
+#include "io/vdb/private/head.hpp"
+
+namespace vam::io {
+
+namespace {
+
+// OpenVDB comments on std::cerr on what it meets in a damaged file; one line is enough, and it will be ours.
+struct Quiet {
+  Quiet() : saved(std::cerr.rdbuf(nullptr)) {}
+  ~Quiet() {
+    std::cerr.rdbuf(saved);
+    std::cerr.clear();
+  }
+  Quiet(const Quiet&) = delete;
+  Quiet& operator=(const Quiet&) = delete;
+  std::streambuf* saved;
+};
+
+}  // namespace
+
+void for_archives(InputFile& file, const std::function<void(std::istream&)>& archive) {
+  openvdb::initialize();  // grid and metadata types must be registered before anything is read
+  try {
+    if (file.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
+    while (!file.at_end()) {
+      check_head(file.peek());
+      const Quiet quiet;
+      InputBuffer buffer(file);
+      std::istream stream(&buffer);
+      stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
+      archive(stream);
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    // One absurd request, that is: a volume that is merely too large is killed by the system when memory runs out.
+    throw Error{Fault::data, file.name() + ": asks for more memory than there is; it is damaged"};
+  } catch (const std::ios_base::failure&) {
+    throw Error{Fault::data, file.name() + ": is cut off after " + std::to_string(file.position()) +
+                                 " bytes; the program that wrote it did not finish"};
+  } catch (const std::exception& problem) {
+    std::string line = file.name() + ": " + problem.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    throw Error{Fault::data, line};
+  }
+}
+
+}  // namespace vam::io

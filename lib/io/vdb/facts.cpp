@@ -1,0 +1,106 @@
+#include "io/vdb/private/facts.hpp"
+
+#include <openvdb/tools/Count.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+
+namespace vam::io {
+
+namespace {
+
+using openvdb::Coord;
+using openvdb::CoordBBox;
+using openvdb::FloatGrid;
+
+// Refused beyond these, before dense memory is taken.
+constexpr int max_side = 1 << 15;                          // voxels
+constexpr std::int64_t max_slice = std::int64_t{1} << 28;  // voxels: 1 GiB as float
+
+// A uniform scale along the axes, and a shift: the only transform that a stack of square pixels can follow.
+void set_transform(const FloatGrid& sparse, const Coord& first, model::Grid& grid) {
+  const std::string name = "grid '" + sparse.getName() + "'";
+  if (!sparse.transform().isLinear()) throw std::runtime_error(name + " has a transform that is not linear");
+  const openvdb::Mat4d matrix = sparse.transform().baseMap()->getAffineMap()->getMat4();
+  const double voxel = matrix(0, 0);
+  if (!(voxel > 0) || !std::isfinite(voxel)) throw std::runtime_error(name + " is rotated or mirrored");
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      const double wanted = row == column ? voxel : 0.0;
+      // Transforms are stored as double, but other programs compute theirs as float.
+      if (std::abs(matrix(row, column) - wanted) <= 1e-6 * voxel) continue;
+      throw std::runtime_error(name + " has a rotated, mirrored or non-uniform transform; resample it first");
+    }
+  }
+  const openvdb::Vec3d origin = sparse.indexToWorld(first);
+  grid.voxel_mm = sparse.voxelSize().x();  // as it was written, to the last bit
+  grid.origin_mm = {origin.x(), origin.y(), origin.z()};
+  if (!std::isfinite(origin.lengthSqr())) throw std::runtime_error(name + " lies at infinity");
+}
+
+// The box written by these tools, widened where another program has added voxels beyond it; else the active box.
+CoordBBox box_of(const FloatGrid& sparse) {
+  CoordBBox box = sparse.evalActiveVoxelBoundingBox();
+  if (const auto shape = sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
+    const openvdb::Vec3i size = shape->value();
+    const auto origin = sparse.getMetadata<openvdb::Vec3IMetadata>(first_key);
+    const openvdb::Vec3i first = origin ? origin->value() : openvdb::Vec3i(0);
+    bool sane = true;
+    for (int axis = 0; axis < 3; ++axis) {
+      sane = sane && size[axis] >= 1 && size[axis] <= max_side && std::abs(first[axis]) < (1 << 30);
+    }
+    if (!sane) throw std::runtime_error("grid '" + sparse.getName() + "' has an impossible vam:shape");
+    box.expand(CoordBBox(Coord(first), Coord(first + size) - Coord(1)));
+  }
+  if (box.empty()) throw std::runtime_error("grid '" + sparse.getName() + "' is empty");
+  const auto side = [low = box.min().asVec3i(), high = box.max().asVec3i()](int axis) {
+    return std::int64_t{high[axis]} - low[axis] + 1;
+  };
+  if (side(0) > max_side || side(1) > max_side || side(2) > max_side || side(0) * side(1) > max_slice) {
+    throw std::runtime_error("grid '" + sparse.getName() + "' spans " + std::to_string(side(0)) + " x " +
+                             std::to_string(side(1)) + " x " + std::to_string(side(2)) +
+                             " voxels; up to 32768 a side and 2^28 a slice can be read");
+  }
+  return box;
+}
+
+bool is_written_by_library(const std::string& key) {
+  static const std::array keys = {FloatGrid::META_GRID_NAME, FloatGrid::META_GRID_CLASS, FloatGrid::META_GRID_CREATOR,
+                                  FloatGrid::META_VECTOR_TYPE};
+  return key.starts_with("file_") || std::find(keys.begin(), keys.end(), key) != keys.end();
+}
+
+void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
+  for (auto it = sparse.beginMeta(); it != sparse.endMeta(); ++it) {
+    if (it->second->typeName() != openvdb::StringMetadata::staticTypeName()) continue;
+    const std::string value = it->second->str();
+    if (it->first == history_key) {
+      std::istringstream lines(value);
+      for (std::string line; std::getline(lines, line);) facts.history.push_back(line);
+    } else if (it->first == units_key) {
+      facts.units = value;
+    } else if (!is_written_by_library(it->first)) {
+      facts.metadata[it->first] = value;
+    }
+  }
+}
+
+}  // namespace
+
+VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
+  const CoordBBox box = box_of(sparse);
+  VolumeFacts facts;
+  facts.name = sparse.getName();
+  facts.grid = {box.dim().x(), box.dim().y(), box.dim().z(), 1.0, {}};
+  facts.background = sparse.background();
+  first = box.min();
+  set_transform(sparse, first, facts.grid);
+  take_metadata(sparse, facts);
+  return facts;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,82 @@
+#include "io/vdb/private/head.hpp"
+
+#include <openvdb/version.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t max_name_bytes = 4096;
+constexpr std::size_t max_value_bytes = std::size_t{1} << 26;  // a table of leaf sizes can be some MB
+constexpr std::int32_t max_count = 1 << 16;                    // of grids, of metadata
+constexpr std::size_t uuid_bytes = 36;
+
+// Moves through the bytes; past their end every size is 0 and nothing is judged any more.
+class Walk {
+ public:
+  explicit Walk(std::span<const char> bytes) : bytes_(bytes) {}
+
+  template <class Number>
+  Number number() {
+    Number value{};
+    if (sizeof value <= left()) std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  void skip(std::size_t size) { at_ += size; }
+  void sized(std::size_t limit) {
+    const auto size = number<std::uint32_t>();
+    if (size > limit) {
+      throw std::runtime_error("is damaged: byte " + std::to_string(at_) + " asks for " + std::to_string(size) +
+                               " bytes");
+    }
+    skip(size);
+  }
+  std::int32_t count() {
+    const auto value = number<std::int32_t>();
+    if (value < 0 || value > max_count) {
+      throw std::runtime_error("is damaged: byte " + std::to_string(at_) + " counts " + std::to_string(value));
+    }
+    return value;
+  }
+  void metadata() {
+    for (std::int32_t i = count(); i > 0 && left() > 0; --i) {
+      sized(max_name_bytes);   // name
+      sized(max_name_bytes);   // type
+      sized(max_value_bytes);  // value
+    }
+  }
+  [[nodiscard]] std::size_t left() const { return at_ < bytes_.size() ? bytes_.size() - at_ : 0; }
+
+ private:
+  std::span<const char> bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+void check_head(std::span<const char> bytes) {
+  Walk walk(bytes);
+  if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC) throw std::runtime_error("is not OpenVDB");
+  const auto format = walk.number<std::uint32_t>();
+  if (format > openvdb::OPENVDB_FILE_VERSION) {
+    throw std::runtime_error("is of VDB format " + std::to_string(format) + ", but " +
+                             std::to_string(openvdb::OPENVDB_FILE_VERSION) + " is the newest that can be read");
+  }
+  if (format < openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION) return;  // before 2013; the head looked different
+  walk.skip(2 * sizeof(std::uint32_t) + 1 + uuid_bytes);                     // library version, has-offsets, UUID
+  walk.metadata();
+  if (walk.count() == 0) return;
+  for (int name = 0; name < 3; ++name) walk.sized(max_name_bytes);  // of the grid, its type, its parent
+  walk.skip(3 * sizeof(std::int64_t) + sizeof(std::uint32_t));      // offsets, compression
+  walk.metadata();
+  walk.sized(max_name_bytes);  // of the transform
+}
+
+}  // namespace vam::io

@@ -1,0 +1,15 @@
+// Private to the VDB files: archives off a file or a pipe, with the errors of these tools.
+#pragma once
+
+#include <functional>
+#include <istream>
+
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+/// Calls `archive` at the start of each archive until the file ends; it must read its archive whole. Throws Fault::data
+/// for what is empty, cut off or not OpenVDB, and for any std::exception of the reader.
+void for_archives(InputFile& file, const std::function<void(std::istream&)>& archive);
+
+}  // namespace vam::io

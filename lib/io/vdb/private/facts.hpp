@@ -1,0 +1,20 @@
+// Private to the VDB files: what a grid says of itself beside its voxels.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include "io/vdb/vdb.hpp"
+
+namespace vam::io {
+
+inline constexpr const char* history_key = "vam:history";
+inline constexpr const char* units_key = "vam:units";
+inline constexpr const char* shape_key = "vam:shape";  // voxels along x, y, z: the box asked for, padding included
+inline constexpr const char* first_key = "vam:first_index";  // of that box, where it is not 0
+
+/// Name, box, place and metadata of a grid whose topology has been read; its voxels need not be. `first` becomes the
+/// index of voxel (0, 0, 0). Throws std::runtime_error: a transform that is not uniform along the axes, an impossible
+/// or empty box.
+[[nodiscard]] VolumeFacts facts_of(const openvdb::FloatGrid& sparse, openvdb::Coord& first);
+
+}  // namespace vam::io

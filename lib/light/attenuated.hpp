@@ -1,0 +1,50 @@
+// Parallel light through resin that absorbs.
+#pragma once
+
+#include <vector>
+
+#include "light/operator.hpp"
+#include "tomo/filter.hpp"
+#include "tomo/radon.hpp"
+
+namespace vam::light {
+
+/// How the first projections make up for absorption: by the exact inverse of the exponential Radon transform [TM80], or
+/// by dividing the target by the dose that a uniform disc gets [OST22 Methods], which is cheap and nearly as good where
+/// little is absorbed. A and A* are exact in both cases.
+enum class Correction { exact, disc };
+
+/// Light enters at the resin's radius R and has lost e^{-mu s}, s = sqrt(R^2 - t^2) + u, at the point (t, u) [CAL19 eq
+/// 1, physics section 4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an unknown.
+class AttenuatedOperator final : public Operator {
+ public:
+  /// mu and R in 1/px and px. Throws Fault::data when e^{mu u} overflows.
+  AttenuatedOperator(const tomo::ParallelGeometry& turn, double mu_per_px, double resin_radius_px,
+                     Correction correction = Correction::exact);
+
+  [[nodiscard]] Shape object() const override { return {dose_.nx, dose_.ny}; }
+  [[nodiscard]] Shape sinogram() const override { return image(); }
+  [[nodiscard]] Shape image() const override { return {dose_.columns, dose_.angles}; }
+  [[nodiscard]] double row_angle_rad() const override { return dose_.angle_step_rad; }
+  void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
+  void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
+  void filter(std::span<Slab> sinograms) const override;
+  void precondition(std::span<Slab> sinograms) const override;
+  void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
+  void expand(const Slab& sinogram, Slab& image) const override;
+  void collapse(const Slab& image, Slab& sinogram) const override;
+
+ private:
+  void scale_columns(std::span<Slab> sinograms, const std::vector<float>& factor, double gain = 1) const;
+  void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
+  void divide_by_disc_dose(std::span<Slab> objects) const;
+
+  tomo::ParallelGeometry dose_;  // weight e^{-mu u}
+  double radius_;
+  Correction correction_;
+  std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
+  std::vector<float> amplified_;    // 1 / transmitted
+  tomo::Filter ramp_, preconditioner_, exponential_;
+};
+
+}  // namespace vam::light

@@ -1,0 +1,46 @@
+// What beam and resin smear, inside the operator: light is then found that makes up for it.
+#pragma once
+
+#include "light/operator.hpp"
+
+namespace vam::light {
+
+/// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics section 4;
+/// optics::VolumeBlur], across the slices and from one to the next: the slices of a pass lie one above the other. What
+/// is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
+class BlurredOperator final : public Operator {
+ public:
+  /// `sharp` must outlive this. sigma in voxels; `slices` are in use.
+  BlurredOperator(const Operator& sharp, double sigma_px, int slices);
+
+  [[nodiscard]] Shape object() const override { return sharp_.object(); }
+  [[nodiscard]] Shape sinogram() const override { return sharp_.sinogram(); }
+  [[nodiscard]] Shape image() const override { return sharp_.image(); }
+  [[nodiscard]] double row_angle_rad() const override { return sharp_.row_angle_rad(); }
+  [[nodiscard]] bool couples_slices() const override { return true; }
+  /// The spans are the pass's slabs from the first on.
+  void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
+  void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
+  void filter(std::span<Slab> sinograms) const override { sharp_.filter(sinograms); }
+  void precondition(std::span<Slab> sinograms) const override { sharp_.precondition(sinograms); }
+  void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const override {
+    sharp_.invert(objects, sinograms);
+  }
+  void expand(const Slab& sinogram, Slab& image) const override { sharp_.expand(sinogram, image); }
+  void collapse(const Slab& image, Slab& sinogram) const override { sharp_.collapse(image, sinogram); }
+
+ private:
+  void blur(std::span<Slab> objects) const;
+  void blur_row(float* row, int width) const;
+  void blur_columns(Slab& slab, int first, int count) const;
+  void blur_stack(std::span<Slab> objects, int y) const;
+
+  const Operator& sharp_;
+  int slices_;
+  std::vector<float> weights_;  // middle, first neighbours, ...
+};
+
+/// How many slices on either side a slice must know: three sigma.
+[[nodiscard]] int halo_slices(double sigma_px);
+
+}  // namespace vam::light

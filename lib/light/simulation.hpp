@@ -1,0 +1,65 @@
+// What a stack of sinograms does to the resin: the chief-ray dose of a projector's, the parallel dose of a virtual one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/image.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "optics/resample_stack.hpp"
+
+namespace vam::light {
+
+/// The grid of the dose when none is given: cubes as high as a slice, a square around the axis that holds every voxel
+/// that can be lit from all sides (projector) or the detector (virtual), or of size_mm. Throws Fault::data when voxels
+/// could not be cubes.
+[[nodiscard]] model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info,
+                                    std::optional<double> size_mm);
+
+/// The slice of the grid at the first slice of the stack. Throws Fault::data, with both numbers, unless the slices of
+/// the stack are slices of the grid.
+[[nodiscard]] int first_slice(const model::Grid& grid, const model::StackInfo& info);
+
+/// The dose of slices, one turn, in units of the sinogram times radian [physics section 4]; zero outside the resin.
+/// Projector stacks: optics::Tracer. Virtual stacks: back-projection, light entering at the resin's wall:
+/// D(r) = |step| sum over theta of F(t, theta) e^{-mu (sqrt(R^2 - t^2) + u)}. Around an opaque insert (coverage nx x
+/// ny, one a slice, or none at all) light ends where its column's ray meets it [CAL19 fig 4]; the insert gets no dose.
+class Simulation {
+ public:
+  /// Throws Fault::data: angles that are not one turn, a camera stack, columns that are not the printer's, or voxels
+  /// that differ from the virtual columns.
+  Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
+             const model::Grid& grid);
+  ~Simulation();
+  void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// What a projector makes of sinogram values.
+struct Light {
+  bool clip = true;                  // no negative light
+  std::optional<double> full_scale;  // the value shown at full intensity: light is value / this, at most 1
+  double dark = 0;                   // least light, of full; only with full_scale
+};
+
+/// What there was to see in the values.
+struct LightSeen {
+  double peak = 0;
+  model::LightEfficiency efficiency;  // of the light that was left
+  double least = 0;
+  double values = 0;
+  double negative = 0;
+};
+
+/// Turns values into light, in place.
+void shine(const Light& light, std::span<Image> sinograms, LightSeen& seen);
+
+}  // namespace vam::light

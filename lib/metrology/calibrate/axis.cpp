@@ -1,0 +1,99 @@
+#include "metrology/calibrate/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/stats/curve_fit.hpp"
+#include "base/text.hpp"
+#include "metrology/calibrate/private/half_maximum.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+enum : std::size_t { axis, cos_1, sin_1, cos_2, sin_2, count };
+
+void require_full_turn(const std::vector<double>& angle_deg) {
+  std::vector<double> turned;
+  for (const double angle : angle_deg) turned.push_back(angle - 360 * std::floor(angle / 360));
+  std::sort(turned.begin(), turned.end());
+  double gap_deg = turned.empty() ? 360 : turned.front() + 360 - turned.back();
+  for (std::size_t i = 1; i < turned.size(); ++i) gap_deg = std::max(gap_deg, turned[i] - turned[i - 1]);
+  if (gap_deg > 90) {
+    throw Error{Fault::data, "axis: " + std::to_string(angle_deg.size()) + " frames leave a gap of " +
+                                 format_number(gap_deg, 4) + " degrees; capture a whole turn"};
+  }
+}
+
+stats::CurveFit fit_band(const TurnScan& scan, const std::vector<double>& middle) {
+  const auto residuals = [&](const std::vector<double>& p) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < middle.size(); ++i) {
+      if (!std::isfinite(middle[i])) continue;
+      const double theta = scan.angle_deg[i] * rad_per_deg;
+      out.push_back(middle[i] - p[axis] - p[cos_1] * std::cos(theta) - p[sin_1] * std::sin(theta) -
+                    p[cos_2] * std::cos(2 * theta) - p[sin_2] * std::sin(2 * theta));
+    }
+    return out;
+  };
+  return stats::fit_curve(residuals, std::vector<double>(count), std::vector<double>(count, 1e-3), "axis: middles");
+}
+
+// Amplitude and phase of a cos + b sin.
+void to_wobble(const stats::Measured& a, const stats::Measured& b, CameraAxis& out) {
+  const double radius = std::hypot(a.value, b.value);
+  const double phase = std::atan2(b.value, a.value) * deg_per_rad;
+  const double along = std::hypot(a.value * a.sigma, b.value * b.sigma) / radius;
+  const double across = std::hypot(b.value * a.sigma, a.value * b.sigma) / radius;
+  out.wobble_px = {radius, along, a.n};
+  out.phase_deg = {phase < 0 ? phase + 360 : phase, across / radius * deg_per_rad, a.n};
+}
+
+}  // namespace
+
+std::vector<double> bright_middles(const Image& frame, int bands) {
+  std::vector<double> middles;
+  for (int b = 0; b < bands; ++b) {
+    const auto extent =
+        half_maximum(column_profile(frame, b * frame.height / bands, std::max((b + 1) * frame.height / bands, b + 1)));
+    middles.push_back(extent ? extent->middle() : NAN);
+  }
+  return middles;
+}
+
+CameraAxis find_camera_axis(const TurnScan& scan) {
+  require_full_turn(scan.angle_deg);
+  CameraAxis out;
+  std::vector<double> row;
+  std::vector<stats::Measured> column;
+  std::vector<stats::Measured> a;
+  std::vector<stats::Measured> b;
+  const auto bands = static_cast<double>(scan.middle.size());
+  for (std::size_t i = 0; i < scan.middle.size(); ++i) {
+    const auto seen = std::count_if(scan.middle[i].begin(), scan.middle[i].end(),
+                                    [](double middle) { return std::isfinite(middle); });
+    if (4 * seen < 3 * static_cast<long>(scan.angle_deg.size())) continue;
+    const stats::CurveFit fit = fit_band(scan, scan.middle[i]);
+    row.push_back(((static_cast<double>(i) + 0.5) / bands - 0.5) * scan.rows);
+    column.push_back(fit.measured(axis));
+    a.push_back(fit.measured(cos_1));
+    b.push_back(fit.measured(sin_1));
+  }
+  if (column.empty()) {
+    throw Error{Fault::data, "axis: no height shows one bright thing between dark sides in three quarters of " +
+                                 std::to_string(scan.angle_deg.size()) + " frames"};
+  }
+  out.bands = static_cast<int>(column.size());
+  out.column = column.front();
+  if (out.bands > 1) {
+    const stats::WeightedLine line = stats::weighted_line(row, column);
+    out.column = line.at_zero;
+    out.tilt_deg = stats::lean_deg(line.slope, 1);
+  }
+  to_wobble(stats::weighted_mean(a), stats::weighted_mean(b), out);
+  return out;
+}
+
+}  // namespace vam::metrology

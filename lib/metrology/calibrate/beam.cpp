@@ -1,0 +1,159 @@
+#include "metrology/calibrate/beam.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/stats/curve_fit.hpp"
+#include "base/text.hpp"
+#include "metrology/calibrate/private/half_maximum.hpp"
+#include "metrology/ost/ost.hpp"
+#include "optics/vial.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+// A straight line between two samples stands for the flank of a line that is only a few pixels wide: up to 0.01 px at
+// either crossing for a Gaussian flank of 1.5 px.
+constexpr double interpolation_px = 0.015;
+
+const double fwhm_per_sigma = 2 * std::sqrt(2 * std::numbers::ln2);
+
+constexpr double middle_part = 0.8;  // of the resin's radius that is looked at
+constexpr int least_columns = 8;     // of a plane
+
+// Full width at half maximum of the Gaussian that, summed over each sample, fits a bright peak on even ground.
+stats::Measured gaussian_width(const std::vector<double>& profile, const std::string& subject) {
+  const auto rough = half_maximum(profile);
+  if (!rough) throw Error{Fault::data, subject + ": no bright line between two dark sides; light one row and focus"};
+  enum : std::size_t { middle, sigma, light, ground };
+  const auto upto = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
+  const auto residuals = [&](const std::vector<double>& p) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < profile.size(); ++i) {
+      const double from = static_cast<double>(i) - 0.5 - p[middle];
+      out.push_back(profile[i] - p[ground] - p[light] * (upto((from + 1) / p[sigma]) - upto(from / p[sigma])));
+    }
+    return out;
+  };
+  const double start_px = rough->width() / fwhm_per_sigma;
+  const double start_light = rough->height * rough->width();
+  const auto fit = stats::fit_curve(residuals, {rough->middle(), start_px, start_light, profile.front()},
+                                    {1e-3, 1e-3, 1e-4 * start_light, 1e-4 * rough->height}, subject);
+  const stats::Measured width = fit.measured(sigma);
+  return {std::abs(width.value) * fwhm_per_sigma, width.sigma * fwhm_per_sigma, width.n};
+}
+
+}  // namespace
+
+stats::Measured line_width_px(const Image& picture, const std::string& subject) {
+  constexpr int groups = 8;
+  if (picture.height < 2 * groups) {
+    throw Error{Fault::data, subject + ": " + std::to_string(picture.height) + " rows; at least " +
+                                 std::to_string(2 * groups) + " are needed"};
+  }
+  double mean = 0;
+  std::vector<double> widths;
+  for (int g = 0; g < groups; ++g) {
+    const auto extent =
+        half_maximum(column_profile(picture, g * picture.height / groups, (g + 1) * picture.height / groups));
+    if (!extent) {
+      throw Error{Fault::data, subject + ": no bright line between two dark sides; light one column and focus"};
+    }
+    widths.push_back(extent->width());
+    mean += extent->width() / groups;
+  }
+  double square = 0;
+  for (const double width : widths) square += (width - mean) * (width - mean);
+  const double error = std::sqrt(square / (groups - 1) / groups) * stats::few_readings_factor(groups - 1);
+  return {mean, std::hypot(error, interpolation_px), groups};
+}
+
+BeamWidths side_widths(const Image& picture, const SideView& view, const model::Printer& printer, int planes) {
+  const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
+  if (std::abs(std::cos(azimuth)) > std::sin(10 * rad_per_deg)) {
+    throw Error{Fault::data, "beam: the camera looks at " + format_number(printer.camera.azimuth_deg) +
+                                 " degrees to the light; it sees all planes apart at 90 only (camera.azimuth_deg)"};
+  }
+  const optics::View rays = optics::camera_view(printer);
+  const double along = std::sin(azimuth) > 0 ? 1 : -1;
+  const double radius_mm = optics::resin_radius_mm(rays);
+  std::vector<int> inside;  // columns of the resin's middle, the light's direction from left to right or back
+  std::vector<double> plane_mm;
+  for (int c = 0; c < picture.width; ++c) {
+    const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
+    if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
+    inside.push_back(c);
+    plane_mm.push_back(along * ray.x_v_mm * std::cos(ray.delta_rad));
+  }
+  const int count = std::min(planes, static_cast<int>(inside.size()) / least_columns);
+  if (count < 4) {
+    throw Error{Fault::data, "beam: the resin's middle is " + std::to_string(inside.size()) +
+                                 " columns wide; at least " + std::to_string(4 * least_columns) +
+                                 " are needed: a smaller --binning"};
+  }
+  const double row_mm = view.pixel_mm / image_magnification(printer);
+  BeamWidths widths;
+  for (int p = 0; p < count; ++p) {
+    const auto first = inside.size() * static_cast<std::size_t>(p) / static_cast<std::size_t>(count);
+    const auto last = inside.size() * (static_cast<std::size_t>(p) + 1) / static_cast<std::size_t>(count);
+    std::vector<double> profile(static_cast<std::size_t>(picture.height));
+    double sum_mm = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      for (int r = 0; r < picture.height; ++r) profile[static_cast<std::size_t>(r)] += picture(inside[i], r);
+      sum_mm += plane_mm[i];
+    }
+    widths.plane_mm.push_back(sum_mm / static_cast<double>(last - first));
+    const stats::Measured px = gaussian_width(profile, "plane at " + format_number(widths.plane_mm.back(), 3) + " mm");
+    widths.fwhm_mm.push_back({px.value * row_mm, px.sigma * row_mm, px.n});
+  }
+  return widths;
+}
+
+Beam measure_beam(const BeamWidths& widths) {
+  const auto narrowest =
+      std::min_element(widths.fwhm_mm.begin(), widths.fwhm_mm.end(),
+                       [](const stats::Measured& a, const stats::Measured& b) { return a.value < b.value; });
+  if (widths.fwhm_mm.size() < 4) {
+    throw Error{Fault::data, "beam: " + std::to_string(widths.fwhm_mm.size()) +
+                                 " planes; at least 4 are needed, some before and "
+                                 "some behind the focus"};
+  }
+  enum : std::size_t { waist, focus, growth };
+  const auto model_mm = [](const std::vector<double>& p, double y_mm) {
+    return std::hypot(p[waist], p[growth] * (y_mm - p[focus]));
+  };
+  const auto residuals = [&](const std::vector<double>& p) {
+    std::vector<double> out;
+    for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
+      out.push_back((widths.fwhm_mm[i].value - model_mm(p, widths.plane_mm[i])) / widths.fwhm_mm[i].sigma);
+    }
+    return out;
+  };
+  const double focus_mm = widths.plane_mm[static_cast<std::size_t>(narrowest - widths.fwhm_mm.begin())];
+  double growth_start = 0;
+  for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
+    const double away = std::abs(widths.plane_mm[i] - focus_mm);
+    if (away > 0) growth_start = std::max(growth_start, (widths.fwhm_mm[i].value - narrowest->value) / away);
+  }
+  const double scale = narrowest->value;
+  const auto fit =
+      stats::fit_curve(residuals, {scale, focus_mm, std::max(growth_start, 1e-4)}, {1e-4 * scale, 1e-3, 1e-6},
+                       "beam: widths of " + std::to_string(widths.plane_mm.size()) + " planes");
+  Beam beam{fit.measured(waist), fit.measured(focus), {}, fit.measured(growth)};
+  beam.waist_mm.value = std::abs(beam.waist_mm.value);
+  const double slope = std::abs(beam.divergence_deg.value);
+  beam.divergence_deg.value = std::atan(slope) * deg_per_rad;
+  beam.divergence_deg.sigma *= deg_per_rad / (1 + slope * slope);
+  const auto& p = fit.value;
+  const double width = model_mm(p, 0);
+  beam.axis_fwhm_mm = fit.combined(
+      {p[waist] / width, p[growth] * p[growth] * p[focus] / width, p[growth] * p[focus] * p[focus] / width});
+  beam.axis_fwhm_mm.value = width;
+  return beam;
+}
+
+}  // namespace vam::metrology

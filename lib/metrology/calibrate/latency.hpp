@@ -1,0 +1,28 @@
+// From a frame's vertical blank to its light: a blinking screen, seen by a camera whose frames have times.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "base/stats/measured.hpp"
+
+namespace vam::metrology {
+
+struct BlinkScan {
+  std::vector<std::pair<double, double>> lit_s;  // from the flip to light until the flip to black, one after the other
+  double exposure_s = 0;                         // of the camera
+  std::vector<double> begin_s;                   // of each frame's exposure, the same clock
+  std::vector<double> light;                     // mean of each frame
+};
+
+struct Latency {
+  stats::Measured ms;   // the light comes so much after its flip; the camera's own time stamps count as true
+  double contrast = 0;  // light over scatter
+};
+
+/// Fits ground + light * (part of the exposure that the delayed light was on). Frames that catch an edge carry the
+/// information, so blinking and frames must not keep step. Throws Fault::data: fewer than 8 frames, no contrast, or no
+/// frame across an edge.
+[[nodiscard]] Latency measure_latency(const BlinkScan& scan);
+
+}  // namespace vam::metrology

@@ -1,0 +1,110 @@
+#include "metrology/calibrate/response.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+constexpr std::size_t fewest_levels = 17;
+constexpr std::size_t fewest_readings = 3;
+
+void require_ramp(const ResponseScan& scan) {
+  if (scan.grey.size() < fewest_levels) {
+    throw Error{Fault::data, "response: " + std::to_string(scan.grey.size()) + " grey levels; at least " +
+                                 std::to_string(fewest_levels) + " are needed"};
+  }
+  for (std::size_t i = 0; i < scan.grey.size(); ++i) {
+    if (i == 0 ? scan.grey[0] != 0 : scan.grey[i] <= scan.grey[i - 1]) {
+      throw Error{Fault::data, "response: the grey levels must rise from 0; level " + std::to_string(i) + " is " +
+                                   format_number(scan.grey[i])};
+    }
+    if (scan.light[i].size() < fewest_readings) {
+      throw Error{Fault::data, "response: " + std::to_string(scan.light[i].size()) + " readings of grey " +
+                                   format_number(scan.grey[i]) + "; at least " + std::to_string(fewest_readings) +
+                                   " are needed to know their scatter"};
+    }
+  }
+}
+
+stats::Measured mean_of(const std::vector<double>& readings) {
+  const auto n = static_cast<double>(readings.size());
+  double mean = 0;
+  for (const double reading : readings) mean += reading / n;
+  double square = 0;
+  for (const double reading : readings) square += (reading - mean) * (reading - mean);
+  const double error = std::sqrt(square / (n - 1) / n);
+  return {mean, error * stats::few_readings_factor(static_cast<int>(readings.size()) - 1),
+          static_cast<int>(readings.size())};
+}
+
+// Neighbours that fall become their mean, again and again (Ayer et al. 1955): the nearest curve that never falls.
+std::vector<stats::Measured> monotone(const std::vector<stats::Measured>& levels) {
+  struct Block {
+    double sum = 0;
+    double variance = 0;
+    int count = 0;
+    [[nodiscard]] double mean() const { return sum / count; }
+  };
+  std::vector<Block> blocks;
+  for (const auto& level : levels) {
+    blocks.push_back({level.value, level.sigma * level.sigma, 1});
+    while (blocks.size() > 1 && blocks.back().mean() < blocks[blocks.size() - 2].mean()) {
+      const Block last = blocks.back();
+      blocks.pop_back();
+      blocks.back().sum += last.sum;
+      blocks.back().variance += last.variance;
+      blocks.back().count += last.count;
+    }
+  }
+  std::vector<stats::Measured> out;
+  for (const auto& block : blocks) {
+    for (int i = 0; i < block.count; ++i) {
+      // Pooling assumes that the true levels are equal; what a single level could still be is not known any better.
+      out.push_back({block.mean(), std::sqrt(block.variance / block.count), levels[out.size()].n});
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+ResponseCurve measure_response(const ResponseScan& scan) {
+  require_ramp(scan);
+  std::vector<stats::Measured> means;
+  for (const auto& readings : scan.light) means.push_back(mean_of(readings));
+  const std::vector<stats::Measured> risen = monotone(means);
+  const stats::Measured full = risen.back();
+  if (!(full.value > 3 * full.sigma) || full.value <= risen.front().value) {
+    throw Error{Fault::data, "response: full grey reads " + format_number(full.value) + " and black " +
+                                 format_number(risen.front().value) + "; no light reaches the camera"};
+  }
+  ResponseCurve curve;
+  curve.grey = scan.grey;
+  for (std::size_t i = 0; i < risen.size(); ++i) {
+    if (std::abs(means[i].value - risen[i].value) > std::max(5 * means[i].sigma, 0.005 * full.value)) {
+      throw Error{Fault::data, "response: the light falls by " +
+                                   format_number(100 * std::abs(means[i].value - risen[i].value) / full.value, 3) +
+                                   " % of full around grey " + format_number(scan.grey[i]) +
+                                   "; let the lamp warm up, or the camera saturates"};
+    }
+    const bool last = risen[i].value >= full.value;
+    const double part = std::max(risen[i].value, 0.0) / full.value;
+    curve.intensity.push_back(
+        {part, last ? 0 : std::hypot(risen[i].sigma, part * full.sigma) / full.value, risen[i].n});
+  }
+  return curve;
+}
+
+model::ResponseTable to_table(const ResponseCurve& curve) {
+  model::ResponseTable table;
+  table.source = "response scan";
+  table.grey = curve.grey;
+  for (const auto& intensity : curve.intensity) table.intensity.push_back(intensity.value);
+  return table;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,57 @@
+#include "metrology/calibrate/private/sight_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/constants.hpp"
+
+namespace vam::metrology {
+
+namespace {
+constexpr int columns = 1200;
+}
+
+SightLines::SightLines(const model::Printer& printer) : absorption_per_mm_(printer.resin.absorption_per_mm) {
+  const optics::View view = optics::camera_view(printer);
+  radius_mm_ = optics::resin_radius_mm(view);
+  const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
+  const double edge_mm = optics::column_of(view, optics::reach_mm(view) * (1 - 1e-9)).value_or(radius_mm_);
+  const auto column_mm = [&](double i) { return -edge_mm * std::cos(std::numbers::pi * i / columns); };
+  for (int i = 0; i <= columns; ++i) {  // denser towards the edges, where they turn fast
+    const auto ray = optics::chief_ray(view, column_mm(i));
+    const double part = (column_mm(i + 1) - column_mm(i)) / (2 * radius_mm_);
+    const double turn = ray.delta_rad + azimuth;
+    const double passed = optics::chief_ray(view, column_mm(i + 0.5)).transmittance;
+    sights_.push_back({ray.x_v_mm, std::cos(turn), std::sin(turn), part * passed});
+  }
+}
+
+double SightLines::seen(const optics::ChiefRay& ray) const {
+  if (!ray.hits) return 0;
+  const double half_mm = std::sqrt(radius_mm_ * radius_mm_ - ray.x_v_mm * ray.x_v_mm);
+  const double cosine = std::cos(ray.delta_rad);
+  const double sine = std::sin(ray.delta_rad);
+  const auto across = [&](const Sight& sight) { return sight.sine * cosine - sight.cosine * sine; };
+  const auto crossing_mm = [&](const Sight& sight) {  // along the sheet
+    return (ray.x_v_mm * (sight.cosine * cosine + sight.sine * sine) - sight.offset_mm) / across(sight);
+  };
+  double sum = 0;
+  double after_mm = crossing_mm(sights_.front());
+  for (std::size_t i = 0; i + 1 < sights_.size(); ++i) {
+    const double before_mm = std::exchange(after_mm, crossing_mm(sights_[i + 1]));
+    const auto [first_mm, last_mm] = std::minmax(before_mm, after_mm);
+    const double from_mm = std::max(first_mm, -half_mm);
+    const double to_mm = std::min(last_mm, half_mm);
+    const double slant = across(sights_[i]);
+    const double next_slant = across(sights_[i + 1]);
+    if (!(to_mm > from_mm) || slant * next_slant <= 0) continue;
+    // The sheet carries its light however slanted it is crossed.
+    sum += sights_[i].weight * (to_mm - from_mm) / (last_mm - first_mm) / (0.5 * std::abs(slant + next_slant)) *
+           std::exp(-absorption_per_mm_ * (half_mm + 0.5 * (from_mm + to_mm)));
+  }
+  return ray.transmittance * sum;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,49 @@
+// How far a print is from its design: statistics of signed distances [OST22 section 3, Table S1].
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/json.hpp"
+#include "model/mesh.hpp"
+#include "solid/mesh/surface.hpp"
+
+namespace vam::metrology {
+
+/// Statistics of signed distances in mm, positive where the print stands outside the reference. Of samples of equal
+/// area: vertices would weight a surface by how finely it is meshed.
+struct Deviation {
+  std::size_t samples = 0;
+  double rms_mm = 0;
+  double mean_mm = 0;
+  double sigma_mm = 0;  // standard deviation about the mean
+  double mad_mm = 0;    // median absolute deviation from the median
+  double min_mm = 0;
+  double max_mm = 0;
+  double max_abs_mm = 0;                                  // one-sided Hausdorff distance of the samples
+  std::vector<std::pair<double, double>> percentiles_mm;  // (per cent, mm)
+};
+
+/// Throws Fault::data when there are no distances.
+[[nodiscard]] Deviation deviation(std::span<const float> distances_mm);
+
+/// Both directions: print to reference, and reference to print with the sign turned so that positive still means
+/// "print outside the reference"; what is missing in the print shows only in the second.
+struct Comparison {
+  Deviation print_to_reference;
+  Deviation reference_to_print;
+  double hausdorff_mm = 0;
+  double largest_dimension_mm = 0;  // of the reference; percentages refer to it
+  std::vector<float> samples_mm;    // print to reference, for the histogram
+};
+[[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
+                                 const solid::Surface& reference, int samples);
+
+/// Blue (inside, -limit) over white (0) to red (outside, +limit), as CloudCompare's and [OST22 fig 6]'s scale.
+[[nodiscard]] std::array<std::uint8_t, 3> blue_white_red(double distance_mm, double limit_mm);
+
+[[nodiscard]] Json to_json(const Comparison& comparison);
+
+}  // namespace vam::metrology

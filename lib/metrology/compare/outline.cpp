@@ -1,0 +1,118 @@
+#include "metrology/compare/private/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+namespace vam::metrology::outline {
+
+Point middle_of(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
+
+float bilinear(const Image& image, double column, double row) {
+  const double x = std::clamp(column, 0.0, image.width - 1.001);
+  const double y = std::clamp(row, 0.0, image.height - 1.001);
+  const int i = static_cast<int>(x);
+  const int j = static_cast<int>(y);
+  const auto fx = static_cast<float>(x - i);
+  const auto fy = static_cast<float>(y - j);
+  return (1 - fy) * ((1 - fx) * image(i, j) + fx * image(i + 1, j)) +
+         fy * ((1 - fx) * image(i, j + 1) + fx * image(i + 1, j + 1));
+}
+
+Image distance_to(const Image& image, float level) {
+  cv::Mat above(image.height, image.width, CV_8U);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) above.at<unsigned char>(j, i) = image(i, j) >= level ? 1 : 0;
+  }
+  cv::Mat inside;
+  cv::Mat outside;
+  cv::distanceTransform(above, inside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  cv::distanceTransform(1 - above, outside, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  Image distance(image.width, image.height);
+  for (int j = 0; j < image.height; ++j) {
+    for (int i = 0; i < image.width; ++i) {
+      distance(i, j) = image(i, j) >= level ? 0.5F - inside.at<float>(j, i) : outside.at<float>(j, i) - 0.5F;
+    }
+  }
+  return distance;
+}
+
+namespace {
+
+// 1 where the outline may be judged.
+Image judged(const Relief& print) {
+  cv::Mat gaps(print.measured.height, print.measured.width, CV_8U);
+  for (int j = 0; j < gaps.rows; ++j) {
+    for (int i = 0; i < gaps.cols; ++i) gaps.at<unsigned char>(j, i) = print.measured(i, j) == 0 ? 1 : 0;
+  }
+  cv::erode(gaps, gaps, cv::Mat::ones(5, 5, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
+  cv::dilate(gaps, gaps, cv::Mat::ones(13, 13, CV_8U), {-1, -1}, 1, cv::BORDER_REPLICATE);
+  Image known(gaps.cols, gaps.rows);
+  for (int j = 0; j < gaps.rows; ++j) {
+    for (int i = 0; i < gaps.cols; ++i) known(i, j) = gaps.at<unsigned char>(j, i) == 0 ? 1.0F : 0.0F;
+  }
+  return known;
+}
+
+}  // namespace
+
+Outline::Outline(const Relief& print)
+    : distance_(distance_to(print.heights_mm, static_cast<float>(0.5 * print.plateau_mm))),
+      judged_(judged(print)),
+      pixel_mm_(print.pixel_mm),
+      middle_(middle_of(distance_)) {}
+
+double Outline::distance(const Point& p) const {
+  return pixel_mm_ * static_cast<double>(bilinear(distance_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_));
+}
+
+bool Outline::judges(const Point& p) const {
+  return bilinear(judged_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_) > 0.999F;
+}
+
+Point Outline::gradient(const Point& p) const {
+  const double h = pixel_mm_;
+  return {(distance({p.x + h, p.y}) - distance({p.x - h, p.y})) / (2 * h),
+          (distance({p.x, p.y + h}) - distance({p.x, p.y - h})) / (2 * h)};
+}
+
+double Outline::rms(const std::vector<Point>& points, const Similar& pose) const {
+  double sum = 0;
+  double count = 0;
+  for (const Point& p : points) {
+    if (!judges(pose(p))) continue;
+    sum += std::pow(distance(pose(p)), 2);
+    count += 1;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 1e300;
+}
+
+Similar fit(const std::vector<Point>& points, const Outline& outline, Similar pose, int steps) {
+  double reach = 1e-9;
+  for (const Point& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
+  for (int step = 0; step < steps; ++step) {
+    const double bound = 2.5 * outline.rms(points, pose) + 1e-9;
+    cv::Matx44d normal = cv::Matx44d::zeros();
+    cv::Vec4d right = cv::Vec4d::zeros();
+    for (const Point& p : points) {
+      const Point at = pose(p);
+      if (!outline.judges(at)) continue;
+      const double r = outline.distance(at);
+      const Point g = outline.gradient(at);
+      const cv::Vec4d row((g.x * p.x + g.y * p.y) / reach, (g.y * p.x - g.x * p.y) / reach, g.x, g.y);
+      const double weight = std::min(1.0, bound / (std::abs(r) + 1e-300));
+      normal += weight * row * row.t();
+      right -= weight * r * row;
+    }
+    for (int d = 0; d < 4; ++d) normal(d, d) += 1e-9 * normal(d, d) + 1e-12;  // a ring may turn freely
+    const cv::Vec4d x = normal.solve(right, cv::DECOMP_CHOLESKY);
+    pose.a += x[0] / reach;
+    pose.b += x[1] / reach;
+    pose.x += x[2];
+    pose.y += x[3];
+    if (std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]) + std::abs(x[3]) < 1e-6) break;
+  }
+  return pose;
+}
+
+}  // namespace vam::metrology::outline

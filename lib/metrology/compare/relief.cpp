@@ -1,0 +1,175 @@
+// Levelling a profilometer's picture.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/stats/median.hpp"
+#include "base/text.hpp"
+#include "metrology/compare/emboss.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+struct Plane {
+  double at_middle = 0;
+  double per_column = 0;
+  double per_row = 0;
+};
+
+// Otsu's threshold: the split into two classes with the largest variance between them.
+double otsu(const std::vector<float>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  constexpr int bins = 512;
+  std::array<double, bins> counts{};
+  const double width = (static_cast<double>(*high) - static_cast<double>(*low)) / bins;
+  if (!(width > 0)) return static_cast<double>(*low);
+  for (const float v : values) {
+    const int bin = static_cast<int>((static_cast<double>(v) - static_cast<double>(*low)) / width);
+    ++counts[static_cast<std::size_t>(std::clamp(bin, 0, bins - 1))];
+  }
+  double all = 0;
+  for (std::size_t b = 0; b < bins; ++b) all += counts[b] * static_cast<double>(b);
+  const auto total = static_cast<double>(values.size());
+  double below = 0;
+  double below_sum = 0;
+  double best = -1;
+  std::size_t first = 0;  // the threshold is in the middle of the bins that do equally well
+  std::size_t last = 0;
+  for (std::size_t b = 0; b + 1 < bins; ++b) {
+    below += counts[b];
+    below_sum += counts[b] * static_cast<double>(b);
+    if (below == 0 || below == total) continue;
+    const double apart = below_sum / below - (all - below_sum) / (total - below);
+    const double between = below * (total - below) * apart * apart;
+    if (between > best * (1 + 1e-12)) {
+      best = between;
+      first = b;
+    }
+    if (between >= best * (1 - 1e-12)) last = b;
+  }
+  return static_cast<double>(*low) + width * (0.5 * static_cast<double>(first + last) + 1);
+}
+
+// Least squares over the pixels with a reading for which use(pixel, height) holds.
+template <class Use>
+Plane fit_plane(const Image& heights, const Use& use) {
+  std::array<double, 6> s{};  // 1, x, y, xx, xy, yy
+  std::array<double, 3> r{};
+  const double mx = 0.5 * (heights.width - 1);
+  const double my = 0.5 * (heights.height - 1);
+  for (int j = 0; j < heights.height; ++j) {
+    for (int i = 0; i < heights.width; ++i) {
+      const auto h = static_cast<double>(heights(i, j));
+      if (!std::isfinite(h) || !use(i, j, h)) continue;
+      const double x = i - mx;
+      const double y = j - my;
+      s[0] += 1, s[1] += x, s[2] += y, s[3] += x * x, s[4] += x * y, s[5] += y * y;
+      r[0] += h, r[1] += x * h, r[2] += y * h;
+    }
+  }
+  // Cramer's rule on the 3 x 3 normal equations.
+  const double c0 = s[3] * s[5] - s[4] * s[4];
+  const double c1 = s[1] * s[5] - s[4] * s[2];
+  const double c2 = s[1] * s[4] - s[3] * s[2];
+  const double determinant = s[0] * c0 - s[1] * c1 + s[2] * c2;
+  if (!(std::abs(determinant) > 0)) return {};
+  const double d0 = s[0] * s[5] - s[2] * s[2];
+  const double d1 = s[0] * s[4] - s[1] * s[2];
+  const double d2 = s[0] * s[3] - s[1] * s[1];
+  return {(r[0] * c0 - r[1] * c1 + r[2] * c2) / determinant, (-r[0] * c1 + r[1] * d0 - r[2] * d1) / determinant,
+          (r[0] * c2 - r[1] * d1 + r[2] * d2) / determinant};
+}
+
+double plane_at(const Plane& plane, const Image& image, int i, int j) {
+  return plane.at_middle + plane.per_column * (i - 0.5 * (image.width - 1)) +
+         plane.per_row * (j - 0.5 * (image.height - 1));
+}
+
+std::vector<float> readings(const Image& image) {
+  std::vector<float> values;
+  std::copy_if(image.values.begin(), image.values.end(), std::back_inserter(values),
+               [](float v) { return std::isfinite(v); });
+  return values;
+}
+
+Image without(const Plane& plane, const Image& heights) {
+  Image flat = heights;
+  for (int j = 0; j < flat.height; ++j) {
+    for (int i = 0; i < flat.width; ++i) flat(i, j) -= static_cast<float>(plane_at(plane, heights, i, j));
+  }
+  return flat;
+}
+
+// Gaps become the mean of their neighbours, from the rim inwards; what is deeper than `rounds` pixels becomes base.
+void fill_gaps(Image& heights) {
+  constexpr int rounds = 3;
+  bool gaps = true;
+  for (int round = 0; gaps && round < rounds; ++round) {
+    gaps = false;
+    const Image before = heights;
+    for (int j = 0; j < heights.height; ++j) {
+      for (int i = 0; i < heights.width; ++i) {
+        if (std::isfinite(before(i, j))) continue;
+        float sum = 0;
+        int count = 0;
+        for (int y = std::max(0, j - 1); y <= std::min(heights.height - 1, j + 1); ++y) {
+          for (int x = std::max(0, i - 1); x <= std::min(heights.width - 1, i + 1); ++x) {
+            if (!std::isfinite(before(x, y))) continue;
+            sum += before(x, y);
+            ++count;
+          }
+        }
+        if (count > 0) heights(i, j) = sum / static_cast<float>(count);
+        gaps = true;
+      }
+    }
+  }
+  for (float& height : heights.values) height = std::isfinite(height) ? height : 0.0F;
+}
+
+}  // namespace
+
+std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
+  if (heights.empty()) return std::nullopt;
+  const double limit = otsu(heights);
+  std::vector<float> base;
+  std::vector<float> above;
+  for (const float h : heights) (static_cast<double>(h) < limit ? base : above).push_back(h);
+  if (base.empty() || above.empty()) return std::nullopt;
+  const Plateaus found{stats::median(base), stats::median(above)};
+  for (float& h : base) h = std::fabs(h - static_cast<float>(found.base_mm));
+  const double apart = found.top_mm - found.base_mm;
+  if (!(apart > 4 * 1.4826 * stats::median(base) && apart > 1e-5)) return std::nullopt;
+  return found;
+}
+
+Relief levelled(const Image& heights_mm, double pixel_mm) {
+  const std::vector<float> values = readings(heights_mm);
+  if (static_cast<double>(values.size()) < 0.1 * static_cast<double>(heights_mm.size())) {
+    throw Error{Fault::data, "height picture: only " + std::to_string(values.size()) + " of " +
+                                 std::to_string(heights_mm.size()) + " pixels are readings"};
+  }
+  Plane base = fit_plane(heights_mm, [](int, int, double) { return true; });
+  for (int round = 0; round < 12; ++round) {
+    const double limit = otsu(readings(without(base, heights_mm)));
+    base = fit_plane(heights_mm, [&](int i, int j, double h) { return h - plane_at(base, heights_mm, i, j) < limit; });
+  }
+  Relief relief;
+  relief.heights_mm = without(base, heights_mm);
+  relief.pixel_mm = pixel_mm;
+  relief.tilt_deg = std::atan(std::hypot(base.per_column, base.per_row) / pixel_mm) * deg_per_rad;
+  relief.measured = Image(heights_mm.width, heights_mm.height, 1.0F);
+  for (std::size_t i = 0; i < heights_mm.size(); ++i) {
+    if (!std::isfinite(heights_mm.values[i])) relief.measured.values[i] = 0;
+  }
+  const auto found = plateaus(readings(relief.heights_mm));
+  if (!found) throw Error{Fault::data, "height picture: flat, nothing stands out from its base"};
+  relief.plateau_mm = found->top_mm;
+  fill_gaps(relief.heights_mm);
+  return relief;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,92 @@
+#include "metrology/ost/private/angle_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/stats/median.hpp"
+#include "base/text.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+double wrapped(double angle_deg) {
+  const double turn = std::fmod(angle_deg, 360.0);
+  return turn < 0 ? turn + 360 : turn;
+}
+
+// Frames at one angle.
+struct Cluster {
+  double angle_deg;
+  std::vector<int> frames;
+};
+
+std::vector<Cluster> clusters_of(std::span<const double> angles_deg, double closer_deg) {
+  std::vector<int> order(angles_deg.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto angle = [&](int i) { return wrapped(angles_deg[static_cast<std::size_t>(i)]); };
+  std::sort(order.begin(), order.end(), [&](int a, int b) { return angle(a) < angle(b); });
+  std::vector<Cluster> clusters;
+  for (const int i : order) {
+    if (clusters.empty() || angle(i) - clusters.back().angle_deg > closer_deg) clusters.push_back({angle(i), {}});
+    clusters.back().frames.push_back(i);
+  }
+  for (auto& cluster : clusters) {
+    double sum = 0;
+    for (const int i : cluster.frames) sum += angle(i);
+    cluster.angle_deg = sum / static_cast<double>(cluster.frames.size());
+  }
+  return clusters;
+}
+
+std::vector<double> gaps_of(const std::vector<Cluster>& clusters) {
+  std::vector<double> gaps;
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
+    const double next = i + 1 < clusters.size() ? clusters[i + 1].angle_deg : clusters[0].angle_deg + 360;
+    gaps.push_back(next - clusters[i].angle_deg);
+  }
+  return gaps;
+}
+
+}  // namespace
+
+AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_gap_deg) {
+  constexpr int fewest = 8;
+  std::vector<Cluster> clusters = clusters_of(angles_deg, 1e-6);
+  if (static_cast<int>(clusters.size()) < fewest) {
+    throw Error{Fault::data, "views: " + std::to_string(clusters.size()) + " different angles; a turn needs at least " +
+                                 std::to_string(fewest)};
+  }
+  if (angles == 0) angles = std::max(fewest, 2 * static_cast<int>(std::lround(180 / stats::median(gaps_of(clusters)))));
+  clusters = clusters_of(angles_deg, 36.0 / angles);
+  const std::vector<double> gaps = gaps_of(clusters);
+  const auto widest = static_cast<std::size_t>(std::max_element(gaps.begin(), gaps.end()) - gaps.begin());
+  if (gaps[widest] > max_gap_deg) {
+    throw Error{Fault::data, "views: the turn is incomplete, no frame for " + format_number(gaps[widest], 4) +
+                                 " deg after " + format_number(clusters[widest].angle_deg, 4) + " deg (" +
+                                 format_number(max_gap_deg, 4) + " deg are bridged at most)"};
+  }
+  summary_ = {angles, static_cast<int>(angles_deg.size()),
+              static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size()), gaps[widest]};
+  taps_.resize(static_cast<std::size_t>(angles));
+  for (int a = 0; a < angles; ++a) {
+    const double angle = 360.0 * a / angles;
+    // The last cluster at or below the angle; before the first one that is the last of all, over the circle.
+    const auto above = std::upper_bound(clusters.begin(), clusters.end(), angle,
+                                        [](double value, const Cluster& cluster) { return value < cluster.angle_deg; });
+    const std::size_t before =
+        (static_cast<std::size_t>(above - clusters.begin()) + clusters.size() - 1) % clusters.size();
+    const Cluster& low = clusters[before];
+    const Cluster& high = clusters[(before + 1) % clusters.size()];
+    const double part = wrapped(angle - low.angle_deg) / gaps[before];
+    auto& taps = taps_[static_cast<std::size_t>(a)];
+    for (const int i : low.frames)
+      taps.push_back({i, static_cast<float>((1 - part) / static_cast<double>(low.frames.size()))});
+    for (const int i : high.frames)
+      taps.push_back({i, static_cast<float>(part / static_cast<double>(high.frames.size()))});
+  }
+}
+
+}  // namespace vam::metrology

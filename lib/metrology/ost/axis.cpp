@@ -1,0 +1,155 @@
+#include "metrology/ost/axis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/stats/median.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+// White noise between pixels has less variance than on them, so that its energy would draw the axis to where it is
+// least; blurred by this, it is nearly the same everywhere.
+constexpr double blur_px = 2;
+
+Image blurred(const Image& image) {
+  Image out = image;
+  cv::Mat pixels(out.height, out.width, CV_32F, out.values.data());
+  cv::GaussianBlur(pixels, pixels, {}, blur_px, blur_px, cv::BORDER_REPLICATE);
+  return out;
+}
+
+// Variance that white noise of variance 1 leaves in the difference of two central differences, once blurred.
+double blurred_slope_variance() {
+  return (1 - std::exp(-1 / (blur_px * blur_px))) / (4 * std::numbers::pi * blur_px * blur_px);
+}
+
+// Standard deviation of the noise of a pixel, from second differences along the rows: smooth contents leave little.
+double noise_of(const Image& image) {
+  std::vector<double> second;
+  for (int y = 0; y < image.height; ++y) {
+    const float* row = image.row(y);
+    for (int x = 1; x + 1 < image.width; ++x)
+      second.push_back(static_cast<double>(std::abs(row[x - 1] - 2 * row[x] + row[x + 1])));
+  }
+  return second.empty() ? 0.0 : stats::median(second) / (0.6745 * std::sqrt(6.0));
+}
+
+// Centre of mass of what stands above the median: right where all of the body is in the picture, near it elsewhere.
+double start_column(const Image& image) {
+  std::vector<double> values(image.values.begin(), image.values.end());
+  const double floor = stats::median(values);
+  const double high = static_cast<double>(*std::max_element(image.values.begin(), image.values.end()));
+  const double least = floor + 0.2 * (high - floor);
+  double mass = 0;
+  double moment = 0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const auto v = static_cast<double>(image(x, y));
+      if (v <= least) continue;
+      mass += v - floor;
+      moment += (v - floor) * x;
+    }
+  }
+  return mass > 0 ? moment / mass : 0.5 * (image.width - 1);
+}
+
+// A row between its pixels.
+double at(const float* row, int width, double x) {
+  const double inside = std::clamp(x, 0.0, width - 1.0);
+  const int low = std::min(static_cast<int>(inside), width - 2);
+  const double f = inside - low;
+  return (1 - f) * static_cast<double>(row[low]) + f * static_cast<double>(row[low + 1]);
+}
+
+// Normal equations of the residuals r = M(c + x, y) - M(c - x, y) in column and tilt. A change of the tilt moves the
+// point (x, y) by (y, -x): without the second part a wide body would seem to lean the other way.
+struct Normal {
+  double cc = 0, ct = 0, tt = 0;
+  double cr = 0, tr = 0, rr = 0;
+  double noise_cc = 0, noise_tt = 0;  // what slopes of variance 1 add to cc and tt
+  long count = 0;
+
+  void add(double by_column, double by_tilt, double r, double weight) {
+    cc += weight * by_column * by_column;
+    ct += weight * by_column * by_tilt;
+    tt += weight * by_tilt * by_tilt;
+    cr += weight * by_column * r;
+    tr += weight * by_tilt * r;
+    rr += weight * r * r;
+  }
+};
+
+Normal normal_of(const Image& image, double column, double bound) {
+  Normal normal;
+  const double reach = std::min(column, image.width - 1 - column) - 3 * blur_px;
+  const double middle = 0.5 * (image.height - 1);
+  for (int y = 1; y + 1 < image.height; ++y) {
+    const float* rows[3] = {image.row(y - 1), image.row(y), image.row(y + 1)};
+    const double along = y - middle;
+    for (int pixel = 0; pixel + 0.5 < reach; ++pixel) {
+      const double x = pixel + 0.5;
+      const double right = column + x;
+      const double left = column - x;
+      const auto m = [&](int row, double where) { return at(rows[row], image.width, where); };
+      const double r = m(1, right) - m(1, left);
+      const double by_column = 0.5 * (m(1, right + 1) - m(1, right - 1)) - 0.5 * (m(1, left + 1) - m(1, left - 1));
+      const double by_row = 0.5 * (m(2, right) - m(0, right)) + 0.5 * (m(2, left) - m(0, left));
+      normal.add(by_column, along * by_column - x * by_row, r, std::min(1.0, bound / (std::abs(r) + 1e-300)));
+      normal.noise_cc += 1;
+      normal.noise_tt += along * along + x * x;
+      ++normal.count;
+    }
+  }
+  return normal;
+}
+
+[[noreturn]] void refuse(const Image& image) {
+  throw Error{Fault::data, "views: no rotation axis found, the mean view of " + std::to_string(image.width) + " x " +
+                               std::to_string(image.height) +
+                               " pixels has no contrast that is symmetric about a column"};
+}
+
+}  // namespace
+
+AxisEstimate find_axis(const Image& mean_view) {
+  if (mean_view.width < 20 || mean_view.height < 3) refuse(mean_view);
+  AxisEstimate estimate;
+  AxisPose& pose = estimate.pose;
+  pose.column = start_column(mean_view);
+  const double noise2 = std::pow(noise_of(mean_view), 2) * blurred_slope_variance();
+  const Image smooth = blurred(mean_view);
+  constexpr int steps = 60;
+  constexpr double farthest_rad = 30 * rad_per_deg;
+  double bound = 1e300;
+  for (int step = 0; step < steps; ++step) {
+    const Normal n = normal_of(straightened(smooth, pose), pose.column, bound);
+    constexpr double more_than_noise = 1.5;
+    if (n.count == 0 || !(n.cc > more_than_noise * noise2 * n.noise_cc)) refuse(mean_view);
+    const double determinant = n.cc * n.tt - n.ct * n.ct;
+    if (!(determinant > 0)) refuse(mean_view);
+    const double column = std::clamp((n.ct * n.tr - n.tt * n.cr) / determinant, -5.0, 5.0);
+    const double tilt = std::clamp((n.ct * n.cr - n.cc * n.tr) / determinant, -0.05, 0.05);
+    pose.column += column;
+    pose.tilt_rad += tilt;
+    if (std::abs(pose.tilt_rad) > farthest_rad) refuse(mean_view);
+    bound = 2.5 * std::sqrt(n.rr / static_cast<double>(n.count)) + 1e-30;  // Huber: dirt pulls with constant force
+    // The slopes of the noise are no knowledge of the axis, and blurred pixels do not err one by one.
+    const double cc = n.cc - noise2 * n.noise_cc;
+    const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);
+    const double left = std::max(cc * tt - n.ct * n.ct, 1e-6 * cc * tt);
+    const double variance = 4 * std::numbers::pi * blur_px * blur_px * n.rr / static_cast<double>(n.count);
+    estimate.column_sigma = std::sqrt(variance * tt / left);
+    estimate.tilt_sigma_rad = std::sqrt(variance * cc / left);
+    if (std::abs(column) < 1e-3 && std::abs(tilt) < 1e-5) break;
+  }
+  return estimate;
+}
+
+}  // namespace vam::metrology

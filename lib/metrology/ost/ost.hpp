@@ -1,0 +1,52 @@
+// Optical scattering tomography: camera views of one turn to the scattering density in the vial [OST22 section 2].
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "metrology/ost/axis.hpp"
+#include "metrology/ost/views.hpp"
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+
+namespace vam::metrology {
+
+struct OstOptions {
+  double voxel_mm = 0;            // 0: the binned camera pixel
+  std::string window = "cosine";  // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
+  bool refraction = true;         // false: columns taken as parallel rays (for comparison)
+  bool non_negative = true;       // negative densities become 0
+  int statistical = 0;            // iterations of MLEM (Shepp & Vardi 1982) after FBP, for noisy views
+  double radius_mm = 0;           // of the reconstructed cylinder; 0: all that the camera sees through the vial
+};
+
+/// Everything that depends on the rig and not on the data of a turn, made once and used for every turn. Frames are
+/// corrected and binned; image rows run downwards, z upwards; the middle row is z = 0.
+class OstReconstructor {
+ public:
+  /// `pixel_mm` is the pitch of the binned frames at the axis. Throws Fault::data where camera, vial and frames cannot
+  /// belong together.
+  OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows, const AxisPose& axis,
+                   const OstOptions& options);
+  ~OstReconstructor();
+
+  [[nodiscard]] const model::Grid& grid() const;
+
+  /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
+  /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.
+  [[nodiscard]] model::Volume reconstruct(std::span<const View> views) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// M_vi = 1 / (1 - R (1 - 1/n) / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis.
+[[nodiscard]] double image_magnification(const model::Printer& printer);
+
+/// The mean over even angles of one turn: what find_axis wants.
+[[nodiscard]] Image mean_view(std::span<const View> views);
+
+}  // namespace vam::metrology

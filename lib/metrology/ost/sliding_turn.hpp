@@ -1,0 +1,37 @@
+// Live views: the last full turn, and when a new volume is due.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "metrology/ost/views.hpp"
+
+namespace vam::metrology {
+
+/// Keeps the views of the last 360 degrees. Angles may be given modulo a turn and in either sense; a step of more than
+/// half a turn between two frames cannot be told from one the other way.
+class SlidingTurn {
+ public:
+  /// A volume is due every `every_deg`, first after one full turn.
+  explicit SlidingTurn(double every_deg) : every_deg_(every_deg) {}
+
+  /// Takes a view; true when the last turn is complete and a volume is due.
+  bool push(View view);
+
+  /// The views of the last turn, oldest first.
+  [[nodiscard]] std::vector<View> views() const { return {views_.begin(), views_.end()}; }
+  /// Degrees turned since the first view.
+  [[nodiscard]] double turned_deg() const { return turned_deg_; }
+  [[nodiscard]] double turns() const { return turned_deg_ / 360; }
+
+ private:
+  double every_deg_;
+  double turned_deg_ = 0;
+  double last_angle_deg_ = 0;
+  double next_due_deg_ = 360;
+  bool started_ = false;
+  std::deque<View> views_;
+  std::deque<double> at_deg_;  // turned_deg_ of each view
+};
+
+}  // namespace vam::metrology

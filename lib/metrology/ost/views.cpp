@@ -1,0 +1,145 @@
+#include "metrology/ost/views.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.hpp"
+#include "base/stats/median.hpp"
+#include "base/text.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+std::string size_text(const Image& image) { return std::to_string(image.width) + " x " + std::to_string(image.height); }
+
+void require_same_size(const Image& image, const Image& field, const std::string& subject, const char* name) {
+  if (field.values.empty() || (field.width == image.width && field.height == image.height)) return;
+  throw Error{Fault::data,
+              subject + ": " + size_text(image) + " pixels, but the " + name + " field has " + size_text(field)};
+}
+
+Image binned(const Image& image, int binning) {
+  if (binning == 1) return image;
+  Image small(image.width / binning, image.height / binning);
+  const float share = 1.0F / static_cast<float>(binning * binning);
+  for (int y = 0; y < small.height * binning; ++y) {
+    float* out = small.row(y / binning);
+    const float* in = image.row(y);
+    for (int x = 0; x < small.width * binning; ++x) out[x / binning] += share * in[x];
+  }
+  return small;
+}
+
+// Keys' cubic convolution with a = -1/2: weights of the pixels -1, 0, 1, 2 about the fraction f.
+std::array<float, 4> cubic_weights(float f) {
+  const float g = 1 - f;
+  return {-0.5F * f * g * g, 1 - 2.5F * f * f + 1.5F * f * f * f, 1 - 2.5F * g * g + 1.5F * g * g * g,
+          -0.5F * g * f * f};
+}
+
+float cubic_at(const Image& image, double x, double y) {
+  const double fx = std::floor(x);
+  const double fy = std::floor(y);
+  const auto wx = cubic_weights(static_cast<float>(x - fx));
+  const auto wy = cubic_weights(static_cast<float>(y - fy));
+  float sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    const int row = std::clamp(static_cast<int>(fy) + j - 1, 0, image.height - 1);
+    float line = 0;
+    for (int i = 0; i < 4; ++i) {
+      const int column = std::clamp(static_cast<int>(fx) + i - 1, 0, image.width - 1);
+      line += wx[static_cast<std::size_t>(i)] * image(column, row);
+    }
+    sum += wy[static_cast<std::size_t>(j)] * line;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Image corrected(const Image& raw, const CameraFields& fields, int binning, const std::string& subject) {
+  require_same_size(raw, fields.dark, subject, "dark");
+  require_same_size(raw, fields.flat, subject, "flat");
+  Image image = raw;
+  if (!fields.dark.values.empty()) {
+    for (std::size_t i = 0; i < image.size(); ++i) image.values[i] -= fields.dark.values[i];
+  }
+  if (!fields.flat.values.empty()) {
+    const double sum = std::accumulate(fields.flat.values.begin(), fields.flat.values.end(), 0.0);
+    const auto mean = static_cast<float>(sum / static_cast<double>(fields.flat.size()));
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const float flat = fields.flat.values[i];
+      if (!(flat > 0)) {
+        throw Error{Fault::data, "flat field: pixel " + std::to_string(i % static_cast<std::size_t>(raw.width)) + ", " +
+                                     std::to_string(i / static_cast<std::size_t>(raw.width)) + " is " +
+                                     format_number(static_cast<double>(flat)) + "; every pixel must be above 0"};
+      }
+      image.values[i] *= mean / flat;
+    }
+  }
+  return binned(image, binning);
+}
+
+std::string exposure_problem(const Image& raw) {
+  const auto [low, high] = std::minmax_element(raw.values.begin(), raw.values.end());
+  if (!(*high > *low)) {
+    return std::string(*low > 0 ? "without contrast" : "dark") + ", every pixel is " +
+           format_number(static_cast<double>(*low)) + "; check light and exposure";
+  }
+  const auto full = std::count(raw.values.begin(), raw.values.end(), *high);
+  constexpr double allowed = 0.02;
+  const double part = static_cast<double>(full) / static_cast<double>(raw.size());
+  if (part <= allowed) return "";
+  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " +
+         format_number(static_cast<double>(*high)) + "; shorten the exposure";
+}
+
+void require_exposed(const Image& raw, const std::string& subject) {
+  const std::string problem = exposure_problem(raw);
+  if (!problem.empty()) throw Error{Fault::data, subject + ": " + problem};
+}
+
+void require_alike(std::span<const View> views) {
+  std::vector<double> contrast;
+  for (const View& view : views) {
+    double sum = 0;
+    double squares = 0;
+    for (const float v : view.image.values) {
+      sum += static_cast<double>(v);
+      squares += static_cast<double>(v) * static_cast<double>(v);
+    }
+    const auto n = static_cast<double>(view.image.size());
+    contrast.push_back(std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n))));
+  }
+  if (contrast.empty()) return;
+  constexpr double least = 0.2;
+  const double usual = stats::median(contrast);
+  for (std::size_t i = 0; i < contrast.size(); ++i) {
+    if (contrast[i] >= least * usual) continue;
+    throw Error{Fault::data, "views: the frame at " + format_number(views[i].angle_deg, 5) +
+                                 " deg is dark, its contrast is " + format_number(contrast[i], 3) +
+                                 " and the others' " + format_number(usual, 3) + "; leave it out or take it again"};
+  }
+}
+
+Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {
+  if (axis.tilt_rad == 0 && row_stretch == 1) return image;
+  Image out(image.width, std::max(1, static_cast<int>(std::floor(image.height * row_stretch))));
+  const double middle_in = 0.5 * (image.height - 1);
+  const double middle_out = 0.5 * (out.height - 1);
+  const double c = std::cos(axis.tilt_rad);
+  const double s = std::sin(axis.tilt_rad);
+  for (int y = 0; y < out.height; ++y) {
+    for (int x = 0; x < out.width; ++x) {
+      const double across = x - axis.column;
+      const double along = (y - middle_out) / row_stretch;
+      out(x, y) = cubic_at(image, axis.column + c * across + s * along, middle_in - s * across + c * along);
+    }
+  }
+  return out;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,64 @@
+// State out and in again: one list of fields serves both ways.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/slab.hpp"
+
+namespace vam::optimize {
+
+/// archive(a); archive(b); ... writes a and b, or reads them in the same order. Bytes are those of this machine.
+/// Reading throws Fault::data for numbers that are not finite and sizes beyond all reason, so that a damaged file is
+/// noticed.
+class Archive {
+ public:
+  enum class Way { out, in };
+  using Move = std::function<void(void* bytes, std::size_t size)>;  // takes bytes away, or fills them
+
+  /// `name` is what errors call it.
+  Archive(Way way, std::string name, Move move) : way_(way), name_(std::move(name)), move_(std::move(move)) {}
+
+  [[nodiscard]] bool reading() const { return way_ == Way::in; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  void operator()(float& value) { numbers(&value, 1); }
+  void operator()(double& value);
+  void operator()(int& value) { move(&value, sizeof value); }
+  void operator()(std::int64_t& value) { move(&value, sizeof value); }
+  void operator()(std::uint64_t& value) { move(&value, sizeof value); }
+  void operator()(Slab& slab);
+  void operator()(std::string& text);
+  /// A checksum of everything up to here, written or compared.
+  void seal();
+
+  template <class T, std::size_t N>
+  void operator()(std::array<T, N>& values) {
+    for (T& value : values) (*this)(value);
+  }
+  template <class T>
+  void operator()(std::vector<T>& values) {
+    values.resize(count(values.size()));
+    for (T& value : values) (*this)(value);
+  }
+  void operator()(std::vector<float>& values) {
+    values.resize(count(values.size()));
+    numbers(values.data(), values.size());
+  }
+
+ private:
+  void move(void* bytes, std::size_t size);
+  std::size_t count(std::size_t size);
+  void numbers(float* values, std::size_t size);
+  Way way_;
+  std::string name_;
+  Move move_;
+  std::uint64_t sum_ = 0;
+};
+
+}  // namespace vam::optimize

@@ -1,0 +1,50 @@
+// Band-constraint Lp norm: Li, Toombs, Taylor and Wallin, Tomographic projection optimization for volumetric additive
+// manufacturing with general band constraint Lp-norm minimization, 2024 [BCLP24].
+#include <cmath>
+
+#include "optimize/methods/private/descent.hpp"
+#include "optimize/methods/private/loss.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// Sum of w (|M(D) - f| - epsilon)_+^p [BCLP24, the general band-constraint loss], M the response curve, weight w and
+/// tolerance epsilon those of the voxel. Within the band nothing is asked. A step has no slope to follow; there D
+/// itself is measured from the doses with the right response.
+class Bclp final : public Descent {
+ public:
+  using Descent::Descent;
+
+ protected:
+  [[nodiscard]] float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
+    const float over = std::abs(excess(problem, s, i, dose));
+    return over > 0 ? problem.weight_at(s, i) * std::pow(over, static_cast<float>(options_.power)) : 0.0F;
+  }
+  [[nodiscard]] float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
+    const auto p = static_cast<float>(options_.power);
+    const float over = excess(problem, s, i, dose);
+    if (over == 0) return 0.0F;
+    const CureCurve& curve = problem.demands.curve;
+    const float steepness = curve.is_step() ? 1.0F : curve.slope(dose);  // dM/dD
+    return problem.weight_at(s, i) * std::copysign(p * std::pow(std::abs(over), p - 1) * steepness, over);
+  }
+
+ private:
+  /// (|M(D) - f| - epsilon)_+, negative where M(D) is below f.
+  static float excess(const Problem& problem, std::size_t s, std::size_t i, float dose) {
+    if (!asked(problem.labels[s][i])) return 0.0F;
+    const CureCurve& curve = problem.demands.curve;
+    const float target = problem.target[s].values[i];
+    const float tolerance = problem.tolerance_at(s, i);
+    if (curve.is_step()) return curve.doses(target, tolerance).miss(dose);
+    const float error = curve.response(dose) - target;
+    return std::abs(error) <= tolerance ? 0.0F : error - std::copysign(tolerance, error);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_bclp(const MethodOptions& options) { return std::make_unique<Bclp>(options); }
+
+}  // namespace vam::optimize

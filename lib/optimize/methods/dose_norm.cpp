@@ -1,0 +1,80 @@
+// Background and dose normalisation of Orth et al. 2022 [OST22 Methods, fig S6].
+#include <algorithm>
+
+#include "optimize/methods/method.hpp"
+#include "optimize/methods/metrics.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+// Dose below this part of what is asked for is taken as this: a void that gets no light at all would otherwise ask for
+// an infinite correction.
+constexpr float least_ratio = 0.05F;
+
+class DoseNorm final : public Method {
+ public:
+  using Method::Method;
+
+  /// I_0 = max(f, B) inside the writable circle; S_0 = filter(A I_0), floored; D_0 = A* S_0.
+  void start(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
+    asked_ = problem.target;
+    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) asked_[s].values[i] = goal(problem, s, i);
+    });
+    goal_sums_ = sums(asked_, problem);
+    project(problem, light, iterate);
+  }
+
+  void resume(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
+    std::vector<Slab> given = std::move(iterate.g);
+    start(problem, light, iterate);
+    iterate.g = std::move(given);
+    light.adjoint(iterate.g, iterate.dose);
+  }
+
+  /// D scaled to the mean of I_0; N = D / I_0; I_{k+1} = I_k / N. One step is the paper's I_1 = I_0 / N_0; repeated,
+  /// the correction accumulates, so that it settles where D is proportional to I_0.
+  void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
+    const PerSlice dose_sums = sums(iterate.dose, problem);
+    for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        const float sum = dose_sums[s][i % lanes];
+        const float wanted = goal(problem, s, i);
+        if (sum <= 0 || wanted <= 0) continue;
+        const float ratio = iterate.dose[s].values[i] * (goal_sums_[s][i % lanes] / sum) / wanted;
+        asked_[s].values[i] /= std::max(ratio, least_ratio);
+      }
+    });
+    project(problem, light, iterate);
+  }
+
+  void exchange(Archive& archive) override {
+    archive(asked_);
+    archive(goal_sums_);
+  }
+
+  [[nodiscard]] int usual_iterations() const override { return 1; }
+
+ private:
+  /// I_0 = max(f, B).
+  [[nodiscard]] float goal(const Problem& problem, std::size_t s, std::size_t i) const {
+    const float target = problem.target[s].values[i];
+    return problem.labels[s][i] == Label::outside ? target : std::max(target, static_cast<float>(options_.background));
+  }
+
+  void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
+    filtered_projections(light, asked_, iterate.g);
+    clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
+    Method::resume(problem, light, iterate);
+  }
+
+  std::vector<Slab> asked_;  // I_k
+  PerSlice goal_sums_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_dose_norm(const MethodOptions& options) { return std::make_unique<DoseNorm>(options); }
+
+}  // namespace vam::optimize

@@ -1,0 +1,42 @@
+// Filtered back-projection with what light cannot do taken out: the start of [CAL17], and the yardstick.
+#include <algorithm>
+
+#include "optimize/methods/method.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+class Fbp final : public Method {
+ public:
+  using Method::Method;
+
+  /// g = filter(A f), then negative values set to 0 or raised by the minimum [CAL17, the two ways below eq 3].
+  void start(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
+    filtered_projections(light, problem.target, iterate.g);
+    if (options_.offset) {
+      raise_by_minimum(iterate.g);
+    } else {
+      clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
+    }
+    resume(problem, light, iterate);
+  }
+
+  void step(const Problem& /*problem*/, const light::Operator& /*light*/, Iterate& /*iterate*/) override {}
+  void exchange(Archive& /*archive*/) override {}
+  [[nodiscard]] int usual_iterations() const override { return 0; }
+
+ private:
+  static void raise_by_minimum(std::vector<Slab>& g) {
+    PerSlice lowest = minima(g);
+    for_values(g, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) g[s].values[i] -= std::min(0.0F, lowest[s][i % lanes]);
+    });
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_fbp(const MethodOptions& options) { return std::make_unique<Fbp>(options); }
+
+}  // namespace vam::optimize

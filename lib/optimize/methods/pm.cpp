@@ -1,0 +1,38 @@
+// Penalty minimisation, Bhattacharya et al. 2021 [PM21].
+#include <cmath>
+
+#include "optimize/methods/private/descent.hpp"
+#include "optimize/methods/private/loss.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// Sum over V of max(0, D - d_l)^p + sum over G of max(0, d_h - D)^p [PM21, the penalty function], weights rho those of
+/// the voxels.
+class Pm final : public Descent {
+ public:
+  using Descent::Descent;
+
+ protected:
+  [[nodiscard]] float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
+    const float d = std::abs(miss(problem, s, i, dose));
+    return d > 0 ? problem.weight_at(s, i) * std::pow(d, static_cast<float>(options_.power)) : 0.0F;
+  }
+  [[nodiscard]] float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
+    const auto p = static_cast<float>(options_.power);
+    const float d = miss(problem, s, i, dose);
+    return d == 0 ? 0.0F : problem.weight_at(s, i) * std::copysign(p * std::pow(std::abs(d), p - 1), d);
+  }
+
+ private:
+  static float miss(const Problem& problem, std::size_t s, std::size_t i, float dose) {
+    return bounds(problem, problem.demands.window, s, i).miss(dose);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> make_pm(const MethodOptions& options) { return std::make_unique<Pm>(options); }
+
+}  // namespace vam::optimize

@@ -1,0 +1,37 @@
+// The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics section 6].
+#pragma once
+
+#include <limits>
+
+#include "optimize/target/problem.hpp"
+
+namespace vam::optimize {
+
+/// How much of its band a grey voxel is asked to stay in: a penalty leaves most misses just outside of what it asks.
+inline constexpr float aim = 0.8F;
+
+/// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
+/// response is well within its tolerance of the target.
+inline Bounds bounds(const Problem& problem, const Window& window, std::size_t s, std::size_t i) {
+  constexpr float without_limit = std::numeric_limits<float>::infinity();
+  const Label label = problem.labels[s][i];
+  if (!asked(label)) return {-without_limit, without_limit};
+  if (problem.demands.grey) {
+    return problem.demands.curve.doses(problem.target[s].values[i], aim * problem.tolerance_at(s, i));
+  }
+  if (label == Label::void_) return {-without_limit, static_cast<float>(window.low)};
+  return {static_cast<float>(window.high), without_limit};
+}
+
+/// Slope of (w/2) miss(D)^2, w the voxel's weight.
+inline float slope(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+  return problem.weight_at(s, i) * bounds(problem, window, s, i).miss(dose);
+}
+
+/// The loss of a voxel, (w/2) miss(D)^2.
+inline float loss(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+  const float miss = bounds(problem, window, s, i).miss(dose);
+  return 0.5F * problem.weight_at(s, i) * miss * miss;
+}
+
+}  // namespace vam::optimize

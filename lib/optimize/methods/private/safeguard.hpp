@@ -1,0 +1,23 @@
+// What keeps a loss from rising.
+#pragma once
+
+#include <vector>
+
+#include "optimize/methods/method.hpp"
+
+namespace vam::optimize {
+
+/// Slices whose loss rose go back to where they were before; the loss of the others becomes the new one. Returns 1 for
+/// those that went back, 0 for the others.
+PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now);
+
+/// The sum over all slices for each of them where light couples slices, so that they decide together; else unchanged.
+[[nodiscard]] PerSlice pooled(PerSlice values, const light::Operator& light);
+
+/// The same number for every slice of so many slabs.
+[[nodiscard]] PerSlice constant(std::size_t slabs, float value);
+
+/// Largest value that light may take: options.peak as a sinogram value, or no limit when that is 0.
+[[nodiscard]] float largest_light(const MethodOptions& options, const light::Operator& light);
+
+}  // namespace vam::optimize

@@ -1,0 +1,47 @@
+#include "optimize/methods/private/safeguard.hpp"
+
+#include <limits>
+
+namespace vam::optimize {
+
+PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now) {
+  PerSlice back = constant(loss.size(), 0.0F);
+  bool any = false;
+  for (std::size_t s = 0; s < loss.size(); ++s) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (loss_now[s][lane] <= loss[s][lane]) {
+        loss[s][lane] = loss_now[s][lane];
+      } else {
+        back[s][lane] = 1.0F;
+        any = true;
+      }
+    }
+  }
+  if (any) {
+    restore(now.g, before.g, back);
+    restore(now.dose, before.dose, back);
+  }
+  return back;
+}
+
+PerSlice pooled(PerSlice values, const light::Operator& light) {
+  if (!light.couples_slices()) return values;
+  double sum = 0;
+  for (const auto& lane : values) {
+    for (const float v : lane) sum += static_cast<double>(v);
+  }
+  return constant(values.size(), static_cast<float>(sum));
+}
+
+PerSlice constant(std::size_t slabs, float value) {
+  PerSlice result(slabs);
+  for (auto& lane : result) lane.fill(value);
+  return result;
+}
+
+float largest_light(const MethodOptions& options, const light::Operator& light) {
+  if (options.peak <= 0) return std::numeric_limits<float>::max();
+  return static_cast<float>(options.peak * light.row_angle_rad());
+}
+
+}  // namespace vam::optimize

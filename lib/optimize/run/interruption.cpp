@@ -1,0 +1,64 @@
+#include "optimize/run/interruption.hpp"
+
+#include "base/error.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+enum class Record { finished = 1, open = 2 };
+
+void begin(Archive& to, Record record) {
+  auto tag = static_cast<int>(record);
+  to(tag);
+}
+
+[[noreturn]] void damaged(const Archive& from) {
+  throw Error{Fault::data, from.name() + ": damaged; remove it and start afresh"};
+}
+
+}  // namespace
+
+void exchange(Archive& archive, const RunMark& mark) {
+  constexpr int magic = 0x564D4F31;
+  int given_magic = magic;
+  archive(given_magic);
+  if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a state that vam-optimize kept"};
+  std::string job = mark.job;
+  Digest target = mark.target;
+  int watched = mark.watched ? 1 : 0;
+  archive(job);
+  archive(target);
+  archive(watched);
+  if (job == mark.job && target == mark.target && (watched != 0) == mark.watched) return;
+  throw Error{Fault::data, archive.name() +
+                               ": is the state of another job; remove it, or give the same target and options as "
+                               "then"};
+}
+
+void keep_finished(Archive& to, std::vector<Image>& images) {
+  begin(to, Record::finished);
+  auto count = static_cast<int>(images.size());
+  to(count);
+  for (Image& image : images) to(image.values);
+}
+
+void begin_open(Archive& to) { begin(to, Record::open); }
+
+std::optional<std::vector<Image>> next_finished(Archive& from, light::Shape image, int most) {
+  int tag = 0;
+  from(tag);
+  if (tag == static_cast<int>(Record::open)) return std::nullopt;
+  int count = 0;
+  from(count);
+  if (tag != static_cast<int>(Record::finished) || count < 1 || count > most) damaged(from);
+  std::vector<Image> images(static_cast<std::size_t>(count), Image(image.width, image.height));
+  for (Image& each : images) {
+    const std::size_t pixels = each.size();
+    from(each.values);
+    if (each.values.size() != pixels) damaged(from);
+  }
+  return images;
+}
+
+}  // namespace vam::optimize

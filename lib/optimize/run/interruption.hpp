@@ -1,0 +1,44 @@
+// How a run is broken off and goes on: the projections of finished passes, one record each, then the open pass.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "light/operator.hpp"
+#include "optimize/methods/archive.hpp"
+#include "optimize/run/iterate.hpp"
+#include "optimize/target/schedule.hpp"
+
+namespace vam::optimize {
+
+/// What goes out through `to` is all that `from` needs to go on as if nothing had happened; a finished run leaves
+/// nothing of use there.
+struct Interruption {
+  Pause pause;              // may be empty
+  Archive* to = nullptr;    // where the state goes; none: nothing is kept
+  Archive* from = nullptr;  // the state to go on from; none: from the start
+  std::string job;          // what the state must be of: method, options, light
+};
+
+/// Which run a state is of.
+struct RunMark {
+  std::string job;
+  Digest target{};       // of all slices
+  bool watched = false;  // the trace is part of the state
+};
+
+/// The mark out, or in: then throws Fault::data when it is another run's.
+void exchange(Archive& archive, const RunMark& mark);
+
+/// The projections of a pass that is finished.
+void keep_finished(Archive& to, std::vector<Image>& images);
+/// The open pass follows; its state is the caller's.
+void begin_open(Archive& to);
+/// The next record: projections of 1...most jobs, or nothing when the open pass follows. Throws Fault::data for what is
+/// neither.
+[[nodiscard]] std::optional<std::vector<Image>> next_finished(Archive& from, light::Shape image, int most);
+
+}  // namespace vam::optimize

@@ -1,0 +1,47 @@
+// The one loop: step, look, stop.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "model/conditions.hpp"
+#include "optimize/methods/method.hpp"
+
+namespace vam::optimize {
+
+struct Limits {
+  int iterations = 0;
+  std::vector<model::Condition> until;  // stop when all hold; names as in SliceFigures::names()
+  int at_least = 0;                     // iterations before they count
+  int patience = 10;                    // stop when nothing improved in so many iterations; 0 = never
+  double least_gain = 1e-4;             // an improvement of the mean of IoU + PW smaller than this is none
+};
+
+struct Outcome {
+  int iterations = 0;
+  std::string reason;  // "iterations", "goal", "no progress" or "interrupted"
+};
+
+/// Called with iteration 0 (the start) and after every step; one entry per slice of the pass.
+using Watch = std::function<void(int iteration, const std::vector<model::DoseMetrics>& slices)>;
+/// Asked after every complete iterate whether to break off there.
+using Pause = std::function<bool()>;
+
+/// Where a run stands: after `iteration` complete steps, the best merit so far and when it was reached.
+struct Course {
+  int iteration = -1;  // not begun
+  double best = std::numeric_limits<double>::lowest();
+  int best_at = 0;
+};
+
+/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a course that has begun
+/// goes on from where it was broken off (method and iterate as they were), as if it never had been.
+Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                Iterate& iterate, Course& course, const Watch& watch = {}, const Pause& pause = {});
+/// From the start to the end.
+Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                Iterate& iterate);
+
+}  // namespace vam::optimize

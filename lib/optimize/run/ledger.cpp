@@ -1,0 +1,63 @@
+#include "optimize/run/private/ledger.hpp"
+
+namespace vam::optimize {
+
+void Ledger::note(int iteration, const SliceFigures& figures) {
+  const auto i = static_cast<std::size_t>(iteration);
+  if (rows_.size() <= i) {
+    rows_.resize(i + 1);
+    ends_.resize(i + 1);
+  }
+  rows_[i].add(figures);
+  last_ = figures;
+  seen_ = iteration;
+}
+
+void Ledger::end(const Outcome& outcome) {
+  if (seen_ >= 0) ends_[static_cast<std::size_t>(seen_)].add(last_);
+  seen_ = -1;
+  if (outcome.iterations < iterations_) return;
+  iterations_ = outcome.iterations;
+  reason_ = outcome.reason;
+}
+
+void Ledger::add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times) {
+  total_.merge(statistics, times);
+  figures_.add(figures, times);
+}
+
+void Ledger::exchange(Archive& archive) {
+  const auto list = [&](std::vector<SliceFigures>& figures) {
+    auto size = static_cast<int>(figures.size());
+    archive(size);
+    figures.resize(static_cast<std::size_t>(size));
+    for (SliceFigures& each : figures) each.exchange(archive);
+  };
+  list(rows_);
+  list(ends_);
+  last_.exchange(archive);
+  archive(seen_);
+  total_.exchange(archive);
+  figures_.exchange(archive);
+  archive(reason_);
+  archive(iterations_);
+  archive(dark_part_voxels_);
+}
+
+VolumeOutcome Ledger::outcome(bool grey) const {
+  VolumeOutcome outcome;
+  SliceFigures ended;  // passes that stopped earlier count with their last state
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    SliceFigures all = rows_[i];
+    all.add(ended);
+    outcome.trace.push_back(all.mean());
+    ended.add(ends_[i]);
+  }
+  outcome.metrics = grey ? figures_.mean() : total_.metrics();
+  outcome.iterations = iterations_;
+  outcome.reason = reason_;
+  outcome.dark_part_voxels = dark_part_voxels_;
+  return outcome;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,68 @@
+#include "optimize/run/private/pass.hpp"
+
+#include <algorithm>
+
+namespace vam::optimize {
+
+PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, const SliceReader& reader,
+                    light::Shape object, const Circle& circle, const Demands& demands) {
+  check(demands);
+  PassInput input;
+  input.problem.demands = demands;
+  for (int first = pass.low; first < pass.high; first += lanes) {
+    const int used = std::min(lanes, pass.high - first);
+    SliceData all;
+    for (int job = first; job < first + used; ++job) {
+      const SliceData one = reader.read(slice(job));
+      for (auto field : {&SliceData::target, &SliceData::insert, &SliceData::weight, &SliceData::tolerance}) {
+        (all.*field).insert((all.*field).end(), (one.*field).begin(), (one.*field).end());
+      }
+    }
+    const auto values = [](const std::vector<float>& v) { return v.empty() ? nullptr : v.data(); };
+    append(input.problem, {values(all.target), values(all.weight), values(all.tolerance)}, used, object.width,
+           object.height, circle);
+    if (all.insert.empty()) continue;
+    input.inserts.emplace_back(object.width, object.height);
+    pack(all.insert.data(), used, input.inserts.back());
+  }
+  return input;
+}
+
+std::vector<Slab> collapse_images(const Pass& pass, const std::function<Image(int job)>& image,
+                                  const light::Operator& light) {
+  std::vector<Slab> sinograms;
+  Slab packed(light.image().width, light.image().height);
+  for (int first = pass.low; first < pass.high; first += lanes) {
+    const int used = std::min(lanes, pass.high - first);
+    std::vector<float> images;
+    for (int job = first; job < first + used; ++job) {
+      const Image one = image(job);
+      images.insert(images.end(), one.values.begin(), one.values.end());
+    }
+    pack(images.data(), used, packed);
+    sinograms.emplace_back(light.sinogram().width, light.sinogram().height);
+    light.collapse(packed, sinograms.back());
+  }
+  return sinograms;
+}
+
+std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinograms, const light::Operator& light) {
+  const light::Shape shape = light.image();
+  std::vector<Image> images;
+  Slab packed(shape.width, shape.height);
+  Image one(shape.width, shape.height);
+  std::vector<float> values(one.size() * lanes);
+  for (int first = pass.low; first < pass.high; first += lanes) {
+    const int used = std::min(lanes, pass.high - first);
+    light.expand(sinograms[static_cast<std::size_t>((first - pass.low) / lanes)], packed);
+    unpack(packed, used, values.data());
+    for (int job = std::max(first, pass.first); job < std::min(first + used, pass.last); ++job) {
+      const auto lane = static_cast<std::size_t>(job - first);
+      std::copy_n(values.data() + lane * one.size(), one.size(), one.values.begin());
+      images.push_back(one);
+    }
+  }
+  return images;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,37 @@
+// The projections of finished jobs, handed out slice by slice.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "base/image.hpp"
+#include "model/dose_metrics.hpp"
+#include "optimize/target/schedule.hpp"
+
+namespace vam::optimize {
+
+/// Keeps the projections of a job until the last slice that it stands for has been written.
+class Finished {
+ public:
+  using Write = std::function<void(int k, const Image& image)>;  // takes slices 0, 1, 2 ...
+
+  Finished(const Schedule& schedule, const Write& write) : schedule_(schedule), write_(write) {}
+
+  /// The projections of the jobs that follow those already taken; every slice whose turn has come is written.
+  void take(std::vector<Image> images);
+  /// How many have been taken.
+  [[nodiscard]] int jobs() const { return jobs_; }
+  /// Of all that has been written.
+  [[nodiscard]] double efficiency() const { return efficiency_.value(); }
+
+ private:
+  const Schedule& schedule_;
+  const Write& write_;
+  std::map<int, Image> held_;
+  int jobs_ = 0;
+  int slices_ = 0;  // written
+  model::LightEfficiency efficiency_;
+};
+
+}  // namespace vam::optimize

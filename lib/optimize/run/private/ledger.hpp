@@ -1,0 +1,37 @@
+// What a run adds up over its passes.
+#pragma once
+
+#include <vector>
+
+#include "model/dose_metrics.hpp"
+#include "optimize/methods/archive.hpp"
+#include "optimize/run/slice_figures.hpp"
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+class Ledger {
+ public:
+  /// Figures of one pass after so many iterations.
+  void note(int iteration, const SliceFigures& figures);
+  /// A pass has ended with the figures it noted last.
+  void end(const Outcome& outcome);
+  void add_dark(std::int64_t voxels) { dark_part_voxels_ += voxels; }
+  /// A slice as it leaves the optimiser, and how often it occurs.
+  void add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times);
+  void exchange(Archive& archive);
+  /// Everything but efficiency and jobs.
+  [[nodiscard]] VolumeOutcome outcome(bool grey) const;
+
+ private:
+  std::vector<SliceFigures> rows_, ends_;  // per iteration: of passes that got there, of passes that ended there
+  SliceFigures last_;
+  int seen_ = -1;
+  model::DoseStatistics total_;
+  SliceFigures figures_;
+  std::string reason_;
+  int iterations_ = 0;
+  std::int64_t dark_part_voxels_ = 0;
+};
+
+}  // namespace vam::optimize

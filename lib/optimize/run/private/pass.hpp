@@ -1,0 +1,37 @@
+// A pass of a volume: the jobs whose slices are optimised together, packed 16 to a slab.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "base/image.hpp"
+#include "light/operator.hpp"
+#include "optimize/target/problem.hpp"
+#include "optimize/target/slice_reader.hpp"
+
+namespace vam::optimize {
+
+/// The jobs [first, last) are the pass's own, [low, high) it knows, because they share dose with its own.
+struct Pass {
+  int first, last, low, high;
+  [[nodiscard]] int slices() const { return high - low; }
+};
+
+/// What is asked of a pass, and what stands in its light.
+struct PassInput {
+  Problem problem;
+  std::vector<Slab> inserts;  // coverage, a slab for every slab of the problem; empty without any
+};
+
+/// slice(job): the slice of the volume that the job computes.
+[[nodiscard]] PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, const SliceReader& reader,
+                                  light::Shape object, const Circle& circle, const Demands& demands);
+
+/// The sinograms whose images are image(job), fluence.
+[[nodiscard]] std::vector<Slab> collapse_images(const Pass& pass, const std::function<Image(int job)>& image,
+                                                const light::Operator& light);
+/// The images of sinograms; of the pass's own jobs only.
+[[nodiscard]] std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinograms,
+                                               const light::Operator& light);
+
+}  // namespace vam::optimize

@@ -1,0 +1,218 @@
+#include "optimize/run/volume.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+#include "light/blurred.hpp"
+#include "optimize/methods/metrics.hpp"
+#include "optimize/run/private/finished.hpp"
+#include "optimize/run/private/ledger.hpp"
+#include "optimize/run/private/pass.hpp"
+#include "optimize/target/exclusions.hpp"
+#include "optimize/target/schedule.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// A pass while it is worked on.
+struct Work {
+  Iterate state;
+  Course course;
+  std::unique_ptr<Method> method;
+  void exchange(Archive& archive) {
+    archive(course.iteration);
+    archive(course.best);
+    archive(course.best_at);
+    archive(state.g);
+    archive(state.dose);
+    method->exchange(archive);
+  }
+};
+
+Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, light::Shape image, int halo) {
+  // Slices that share dose with their neighbours are not alike because they look alike.
+  if (halo > 0) return make_schedule(digests, -1);
+  const std::size_t bytes =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * sizeof(float);
+  return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
+}
+
+/// One pass after the other.
+class Run {
+ public:
+  Run(const VolumeTask& task, const light::Operator& light)
+      : task_(task),
+        light_(light),
+        reader_(task.source, light.object()),
+        halo_(task.blur_px > 0 ? light::halo_slices(task.blur_px) : 0) {
+    const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
+    mark_ = {task.interruption.job, {}, task.watch};
+    for (const Digest& slice : digests) {
+      mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
+    }
+    schedule_ = scheduled(task, digests, light.image(), halo_);
+    times_.assign(schedule_.slice_of_job.size(), 0);
+    for (const int job : schedule_.job_of_slice) ++times_[static_cast<std::size_t>(job)];
+  }
+
+  VolumeOutcome operator()() {
+    Work work;
+    if (task_.interruption.to != nullptr) exchange(*task_.interruption.to, mark_);
+    if (task_.interruption.from != nullptr) go_on(*task_.interruption.from, work);
+    while (finished_.jobs() < jobs()) {
+      if (!optimise(next_pass(), work)) return broken_off();
+      work = {};
+    }
+    VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
+    outcome.jobs = jobs();
+    outcome.efficiency = finished_.efficiency();
+    return outcome;
+  }
+
+ private:
+  [[nodiscard]] int jobs() const { return static_cast<int>(schedule_.slice_of_job.size()); }
+  [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[static_cast<std::size_t>(job)]; }
+
+  static VolumeOutcome broken_off() {
+    VolumeOutcome outcome;
+    outcome.reason = "interrupted";
+    return outcome;
+  }
+
+  [[nodiscard]] Pass next_pass() const {
+    const int first = finished_.jobs();
+    const int last = std::min(jobs(), first + slices_per_pass - 2 * halo_);
+    return {first, last, std::max(0, first - halo_), std::min(jobs(), last + halo_)};
+  }
+
+  /// False when the pass was broken off.
+  bool optimise(const Pass& pass, Work& work) {
+    auto [problem, inserts] = read_pass(
+        pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
+    const light::Operator* light = &light_;
+    std::unique_ptr<light::Operator> around;
+    if (!inserts.empty()) light = (around = go_around(problem, pass, inserts, work)).get();
+    const light::Operator& sharp =
+        *light;  // whose rows are the iterate's: fewer than the image's where half a turn is enough
+    std::unique_ptr<light::Operator> blurred;
+    if (halo_ > 0)
+      light = (blurred = std::make_unique<light::BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
+    if (!work.method) {
+      work.method = task_.make();
+      if (task_.initial) {
+        work.state.g = collapse_images(
+            pass, [&](int job) { return task_.initial(slice(job)); }, sharp);
+      }
+    }
+    Watch watch;
+    if (task_.watch) {
+      watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
+    }
+    const Outcome outcome =
+        iterate(*work.method, problem, *light, task_.limits, work.state, work.course, watch, task_.interruption.pause);
+    if (outcome.reason == "interrupted") {
+      if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
+      return false;
+    }
+    ledger_.end(outcome);
+    finish(problem, work.state, pass, sharp);
+    return true;
+  }
+
+  /// The operator around these inserts; the problem loses what the inserts fill and hide.
+  std::unique_ptr<light::Operator> go_around(Problem& problem, const Pass& pass, std::span<const Slab> inserts,
+                                             const Work& work) {
+    exclude(problem, inserts);
+    auto light = task_.around(inserts);
+    const auto dark = exclude_dark(problem, *light);
+    for (int job = pass.first; job < pass.last && !work.method; ++job) {  // once, also when broken off
+      ledger_.add_dark(dark[static_cast<std::size_t>(job - pass.low)] * times_[static_cast<std::size_t>(job)]);
+    }
+    return light;
+  }
+
+  void note(const Pass& pass, int iteration, const std::vector<model::DoseMetrics>& slices) {
+    SliceFigures figures;
+    for (int job = pass.first; job < pass.last; ++job) {
+      figures.add(slices[static_cast<std::size_t>(job - pass.low)], times_[static_cast<std::size_t>(job)]);
+    }
+    ledger_.note(iteration, figures);
+  }
+
+  /// Brings the slices to the common threshold, but never beyond the largest light.
+  void bring_to_threshold(const Problem& problem, Iterate& state, const light::Operator& light) const {
+    if (halo_ > 0) return;  // slices that share dose are to scale already
+    PerSlice factor = to_common_threshold(metrics(state.dose, problem), problem);
+    if (task_.max_light > 0) {
+      const PerSlice brightest = largest(state.g);
+      const auto most = static_cast<float>(task_.max_light * light.row_angle_rad());
+      for (std::size_t s = 0; s < factor.size(); ++s) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
+        }
+      }
+    }
+    scale(state.g, factor);
+    scale(state.dose, factor);
+  }
+
+  /// Takes the finished slices out of the pass.
+  void finish(const Problem& problem, Iterate& state, const Pass& pass, const light::Operator& light) {
+    bring_to_threshold(problem, state, light);
+    const auto doses = statistics(state.dose, problem);
+    const auto figures = metrics(state.dose, problem);
+    for (int job = pass.first; job < pass.last; ++job) {
+      const auto i = static_cast<std::size_t>(job - pass.low);
+      ledger_.add(doses[i], figures[i], times_[static_cast<std::size_t>(job)]);
+    }
+    std::vector<Image> images = expand_images(pass, state.g, light);
+    if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, images);
+    finished_.take(std::move(images));
+  }
+
+  void keep(Archive& to, Work& work) {
+    begin_open(to);
+    ledger_.exchange(to);
+    work.exchange(to);
+    to.seal();
+  }
+
+  /// Finished passes are handed on as if they had just been computed; the open one is taken up.
+  void go_on(Archive& from, Work& work) {
+    exchange(from, mark_);
+    while (auto images = next_finished(from, light_.image(), jobs() - finished_.jobs())) {
+      if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, *images);
+      finished_.take(std::move(*images));
+    }
+    ledger_.exchange(from);
+    work.method = task_.make();
+    work.exchange(from);
+    from.seal();
+  }
+
+  const VolumeTask& task_;
+  const light::Operator& light_;
+  SliceReader reader_;
+  int halo_;
+  RunMark mark_;
+  Schedule schedule_;
+  std::vector<int> times_;  // slices that a job stands for
+  Ledger ledger_;
+  Finished finished_{schedule_, task_.write};
+};
+
+}  // namespace
+
+VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
+  if (task.blur_px > 0 && !task.make()->keeps_scale()) {
+    throw Error{
+        Fault::usage,
+        "this method scales each slice by itself and cannot make up for a blur from slice to slice; use apg, cal, "
+        "pm or bclp, or leave the blur out (--no-blur)"};
+  }
+  return Run(task, light)();
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,57 @@
+// A whole volume, pass by pass in constant memory: distinct slices are packed, optimised, brought to one printing
+// threshold, and handed out in ascending order.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "optimize/run/interruption.hpp"
+#include "optimize/run/iterate.hpp"
+#include "optimize/target/slice_reader.hpp"
+
+namespace vam::optimize {
+
+struct VolumeTask {
+  VolumeSource source;
+  Circle circle;
+  Demands demands;
+  Limits limits;
+  double max_light = 0;  // largest fluence; 0 = any
+  double blur_px = 0;    // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
+  bool watch = false;    // fill the trace
+  std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
+  std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
+      around;                           // the operator of a pass with these inserts
+  std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
+  std::function<std::unique_ptr<Method>()> make;
+  std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
+  Interruption interruption;
+};
+
+struct VolumeOutcome {
+  int jobs = 0;                           // distinct slices computed
+  int iterations = 0;                     // most of any pass
+  std::string reason;                     // of the pass with most iterations; "interrupted": there is no result
+  std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
+  model::DoseMetrics metrics;             // of the result, at the common threshold
+  double efficiency = 0;
+  std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere
+};
+
+/// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
+/// the circle, and when the state to go on from is of another job; Fault::usage when a blur is to be made up for by a
+/// method that does not keep doses to scale.
+VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light);
+
+/// The fewest columns that see the circle, odd or even as nx, so that the columns of angle 0 are voxels.
+[[nodiscard]] int columns_for(const Circle& circle, int nx);
+
+/// For --report and --trace.
+[[nodiscard]] Json report(const VolumeOutcome& outcome);
+[[nodiscard]] std::string trace_csv(const std::vector<model::DoseMetrics>& trace);
+
+}  // namespace vam::optimize

@@ -1,0 +1,40 @@
+#include <cmath>
+#include <sstream>
+
+#include "base/text.hpp"
+#include "model/figures.hpp"
+#include "optimize/run/slice_figures.hpp"
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+int columns_for(const Circle& circle, int nx) {
+  const int least = 2 * static_cast<int>(std::ceil(circle.radius + 0.5)) + 1;
+  return least + (least + nx) % 2;
+}
+
+Json report(const VolumeOutcome& outcome) {
+  Json json;
+  json["distinct_slices"] = outcome.jobs;
+  json["iterations"] = outcome.iterations;
+  json["stopped_by"] = outcome.reason;
+  for (const auto& name : model::figure_names()) json[name] = model::figure(outcome.metrics, name);
+  json["efficiency"] = outcome.efficiency;
+  json["dark_part_voxels"] = outcome.dark_part_voxels;
+  return json;
+}
+
+std::string trace_csv(const std::vector<model::DoseMetrics>& trace) {
+  std::ostringstream csv;
+  csv << "iteration";
+  for (const auto& name : SliceFigures::names()) csv << "," << name;
+  csv << "\n";
+  for (std::size_t i = 0; i < trace.size(); ++i) {
+    csv << i;
+    for (const auto& name : SliceFigures::names()) csv << "," << format_number(model::figure(trace[i], name));
+    csv << "\n";
+  }
+  return csv.str();
+}
+
+}  // namespace vam::optimize

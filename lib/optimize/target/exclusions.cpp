@@ -1,0 +1,35 @@
+#include "optimize/target/exclusions.hpp"
+
+#include <algorithm>
+
+namespace vam::optimize {
+
+void exclude(Problem& problem, std::span<const Slab> inserts) {
+  constexpr float filled = 0.5F;
+  for_values(problem.target, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      if (inserts[s].values[i] < filled) continue;
+      problem.labels[s][i] = Label::outside;
+      problem.target[s].values[i] = 0.0F;
+    }
+  });
+}
+
+std::vector<std::int64_t> exclude_dark(Problem& problem, const light::Operator& light) {
+  std::vector<Slab> all = slabs(problem.target.size(), light.sinogram().width, light.sinogram().height);
+  for (Slab& slab : all) std::fill(slab.values.begin(), slab.values.end(), 1.0F);
+  std::vector<Slab> dose = slabs(problem.target.size(), light.object().width, light.object().height);
+  light.adjoint(all, dose);
+  std::vector<std::int64_t> dark(dose.size() * lanes, 0);
+  for (std::size_t s = 0; s < dose.size(); ++s) {
+    for (std::size_t i = 0; i < dose[s].values.size(); ++i) {
+      Label& label = problem.labels[s][i];
+      if (label == Label::outside || dose[s].values[i] > 0) continue;
+      if (label == Label::part) ++dark[s * lanes + i % lanes];
+      label = Label::outside;
+    }
+  }
+  return dark;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,20 @@
+// What inserts take out of a problem.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "light/operator.hpp"
+#include "optimize/target/problem.hpp"
+
+namespace vam::optimize {
+
+/// Voxels that an insert fills to a half or more are neither part nor void.
+void exclude(Problem& problem, std::span<const Slab> inserts);
+
+/// Voxels of part or void that no light can reach are left out too; returns how many of the part's there were in each
+/// slice.
+[[nodiscard]] std::vector<std::int64_t> exclude_dark(Problem& problem, const light::Operator& light);
+
+}  // namespace vam::optimize

@@ -1,0 +1,110 @@
+#include "optimize/target/problem.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// A slice without a whole part voxel, such as a thin wall's or one that the part's flat end cuts.
+void settle_thin(Slab& slab, std::size_t lane, std::vector<Label>& labels) {
+  constexpr float half = 0.5F;
+  float most = 0;
+  for (std::size_t i = lane; i < labels.size(); i += lanes) {
+    if (labels[i] == Label::part) return;
+    most = std::max(most, slab.values[i]);
+  }
+  const float gain = most >= half ? 1.0F / most : 0.0F;
+  for (std::size_t i = lane; i < labels.size(); i += lanes) {
+    slab.values[i] *= gain;
+    if (labels[i] == Label::surface && slab.values[i] >= half) labels[i] = Label::part;
+  }
+}
+
+Label label_of(float value, const Demands& demands) {
+  const Label label = model::label_of(value);
+  if (demands.grey) return label == Label::surface ? Label::part : label;
+  if (demands.surface && label == Label::surface) return value >= 0.5F ? Label::part : Label::void_;
+  return label;
+}
+
+/// The labels of a slab, whose values outside the circle become 0.
+std::vector<Label> labelled(Slab& slab, int used, const Circle& circle, const Demands& demands) {
+  std::vector<Label> labels(slab.values.size(), Label::outside);
+  parallel_for(slab.height, [&](int y) {
+    for (int x = 0; x < slab.width; ++x) {
+      const auto at = static_cast<std::size_t>(slab.at(x, y) - slab.values.data());
+      if (!circle.contains(x, y)) {
+        std::fill_n(slab.at(x, y), lanes, 0.0F);
+        continue;
+      }
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
+        labels[at + lane] = label_of(slab.values[at + lane], demands);
+      }
+    }
+  });
+  if (!demands.grey) {
+    parallel_for(used, [&](int lane) { settle_thin(slab, static_cast<std::size_t>(lane), labels); });
+  }
+  return labels;
+}
+
+/// Weights relative to the slice's largest; voxels without any are asked for nothing.
+void free_weightless(Slab& weight, std::vector<Label>& labels) {
+  std::array<float, lanes> most{};
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (asked(labels[i])) most[i % lanes] = std::max(most[i % lanes], weight.values[i]);
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    float& w = weight.values[i];
+    w = most[i % lanes] > 0 ? w / most[i % lanes] : 0.0F;
+    if (w <= 0 && asked(labels[i])) labels[i] = Label::surface;
+  }
+}
+
+}  // namespace
+
+void check(const Demands& demands) {
+  const Window& w = demands.window;
+  if (w.low >= 0 && w.low < w.high) return;
+  throw Error{Fault::usage, "--dose-low " + format_number(w.low) + " is not below --dose-high " +
+                                format_number(w.high) + "; the void's limit must lie below the part's"};
+}
+
+void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle) {
+  const auto packed = [&](const float* images) {
+    Slab slab(width, height);
+    pack(images, count, slab);
+    return slab;
+  };
+  problem.slices += count;
+  problem.target.push_back(packed(slices.target));
+  problem.labels.push_back(labelled(problem.target.back(), count, circle, problem.demands));
+  if (slices.weight != nullptr) {
+    problem.weight.push_back(packed(slices.weight));
+    free_weightless(problem.weight.back(), problem.labels.back());
+  }
+  if (slices.tolerance != nullptr) problem.tolerance.push_back(packed(slices.tolerance));
+}
+
+Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
+                     const Demands& demands, const float* weight, const float* tolerance) {
+  check(demands);
+  Problem problem{.slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
+  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const auto from = [&](const float* images, int first) {
+    return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
+  };
+  for (int first = 0; first < count; first += lanes) {
+    append(problem, {from(slices, first), from(weight, first), from(tolerance, first)}, std::min(lanes, count - first),
+           width, height, circle);
+  }
+  return problem;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,75 @@
+// What the voxels of a pass must become.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/per_slice.hpp"
+#include "model/circle.hpp"
+#include "model/dose_metrics.hpp"
+#include "optimize/target/cure_curve.hpp"
+
+namespace vam::optimize {
+
+using model::Circle;
+using model::Label;
+
+/// The doses between which the print's threshold may lie: void below low, part above high. The printing threshold is
+/// in the middle, the same number for every slice.
+struct Window {
+  double low = 0.75;
+  double high = 0.85;
+  [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
+};
+
+/// What is asked of all slices.
+struct Demands {
+  Window window;
+  bool surface = false;  // voxels that the part's surface cuts are asked too: part from half coverage on, else void
+  bool grey = false;     // the target is a response for every voxel, to be met within its tolerance
+  CureCurve curve = CureCurve::logistic(Window{}.threshold(), 0.05);  // of the losses that look at the response
+  double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
+};
+
+/// Throws Fault::usage for contradictory thresholds.
+void check(const Demands& demands);
+
+/// Whether anything is asked of such a voxel.
+[[nodiscard]] constexpr bool asked(Label label) { return label == Label::part || label == Label::void_; }
+
+struct Problem {
+  int slices = 0;                          // lanes in use, from the first
+  std::vector<Slab> target;                // coverage 0...1 or response, zero outside the circle
+  std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values; grey: part where the target is not 0
+  Demands demands;
+  std::vector<Slab> weight;     // what an error of this voxel costs, the largest of a slice 1; empty: all 1
+  std::vector<Slab> tolerance;  // epsilon of this voxel; empty: demands.band
+
+  [[nodiscard]] float weight_at(std::size_t s, std::size_t i) const {
+    return weight.empty() ? 1.0F : weight[s].values[i];
+  }
+  [[nodiscard]] float tolerance_at(std::size_t s, std::size_t i) const {
+    return tolerance.empty() ? static_cast<float>(demands.band) : tolerance[s].values[i];
+  }
+};
+
+/// Row-major slices, one after the other, in every array. Nullptr: none.
+struct Slices {
+  const float* target;
+  const float* weight = nullptr;     // >= 0, relative to each other; a voxel of weight 0 is asked for nothing
+  const float* tolerance = nullptr;  // >= 0
+};
+
+/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out (check with reach()). A slice
+/// without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its largest
+/// coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it for
+/// part; otherwise it stays dark.
+void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
+
+/// `count` row-major slices of width x height, one after the other, and weights and tolerances for them if there are
+/// any. Throws Fault::usage for contradictory thresholds.
+[[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
+                                   const Demands& demands, const float* weight = nullptr,
+                                   const float* tolerance = nullptr);
+
+}  // namespace vam::optimize

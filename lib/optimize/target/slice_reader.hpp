@@ -1,0 +1,49 @@
+// The slices of a volume as the optimiser reads them, and the checks at its door.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "light/operator.hpp"
+#include "model/circle.hpp"
+#include "optimize/target/schedule.hpp"
+#include "optimize/target/surface_band.hpp"
+
+namespace vam::optimize {
+
+/// Functions that read `count` row-major slices from k on.
+struct VolumeSource {
+  using Read = std::function<void(int k, int count, float* out)>;
+  int slices = 0;
+  Read target;         // coverage, or response when grey
+  Read insert;         // coverage of an opaque insert; may be empty
+  Read weight;         // what a voxel's error costs, >= 0; may be empty
+  Read tolerance;      // how far a voxel's response may be from the target, >= 0; may be empty
+  double band_px = 0;  // half width of the band around the surface where nothing is asked
+};
+
+/// What one slice holds.
+struct SliceData {
+  std::vector<float> target, insert, weight, tolerance;  // the last three empty where the volume has none
+};
+
+class SliceReader {
+ public:
+  SliceReader(const VolumeSource& source, light::Shape shape);
+  [[nodiscard]] std::vector<SliceData> read(int k, int count) const;
+  [[nodiscard]] SliceData read(int k) const { return read(k, 1).front(); }
+
+ private:
+  const VolumeSource& source_;
+  std::size_t pixels_;
+  std::optional<SurfaceBand> band_;
+};
+
+/// Digests of all slices, everything that they hold included. Throws Fault::data for a target that is empty, or full,
+/// or reaches beyond the circle, one that shares voxels with the insert, and weights or tolerances below 0; `grey`:
+/// values are doses, so a full target is as good as any.
+[[nodiscard]] std::vector<Digest> check(const VolumeSource& source, light::Shape shape, const model::Circle& circle,
+                                        bool grey);
+
+}  // namespace vam::optimize

@@ -1,0 +1,20 @@
+// Lines of equal value in a picture.
+#pragma once
+
+#include <vector>
+
+#include "base/image.hpp"
+#include "plot/canvas.hpp"
+
+namespace vam::plot {
+
+/// A straight piece of a contour; (0, 0) is the middle of the first pixel.
+struct ContourPiece {
+  Spot from;
+  Spot to;
+};
+
+/// Where the bilinear picture crosses `level`, by marching squares; at a saddle the mean of the four pixels decides.
+[[nodiscard]] std::vector<ContourPiece> contour(const Image& image, float level);
+
+}  // namespace vam::plot

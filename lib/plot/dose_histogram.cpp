@@ -1,0 +1,92 @@
+// The doses inside and outside the part.
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "model/dose_metrics.hpp"
+#include "plot/private/view_parts.hpp"
+#include "plot/view.hpp"
+
+namespace vam::plot {
+
+namespace {
+
+using model::Label;
+
+/// One pass over both volumes, slab by slab; visit(dose, label) for part and void inside the circle.
+template <class Visit>
+void for_each_voxel(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
+                    const Visit& visit) {
+  const model::Grid& grid = dose.grid();
+  constexpr int slab = 8;
+  std::vector<float> doses(grid.slice_size() * slab);
+  std::vector<float> covered(grid.slice_size() * slab);
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    dose.read_slices(k, count, doses.data());
+    target.read_slices(k, count, covered.data());
+    for (std::size_t i = 0; i < grid.slice_size() * static_cast<std::size_t>(count); ++i) {
+      const Label label = model::label_of(covered[i]);
+      const auto in_slice = static_cast<int>(i % grid.slice_size());
+      const bool counts =
+          label == Label::part || (label == Label::void_ && circle.contains(in_slice % grid.nx, in_slice / grid.nx));
+      if (counts) visit(doses[i], label);
+    }
+  }
+}
+
+void check_same_size(const model::Grid& grid, const model::Grid& other, const std::string& name) {
+  if (grid.nx == other.nx && grid.ny == other.ny && grid.nz == other.nz) return;
+  const auto text = [](const model::Grid& g) {
+    return std::to_string(g.nx) + " x " + std::to_string(g.ny) + " x " + std::to_string(g.nz);
+  };
+  throw Error{Fault::data, name + ": the dose has " + text(grid) + " voxels, but the target has " + text(other) +
+                               "; make the dose for this target"};
+}
+
+struct Sides {
+  views::Extremes inside, outside;
+};
+
+Sides extremes_of(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
+                  const std::string& name) {
+  Sides sides;
+  for_each_voxel(dose, target, circle,
+                 [&](float value, Label label) { (label == Label::part ? sides.inside : sides.outside).add(value); });
+  if (!(sides.inside.high >= sides.inside.low)) {
+    throw Error{Fault::data, name + ": the target has no whole voxel inside the part"};
+  }
+  if (!(sides.outside.high >= sides.outside.low)) {
+    throw Error{Fault::data, name + ": the target has no voxel outside the part"};
+  }
+  return sides;
+}
+
+}  // namespace
+
+Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
+                    const ViewOptions& options) {
+  check_same_size(dose.grid(), target.grid(), options.name);
+  const auto [inner, outer] = extremes_of(dose, target, circle, options.name);
+  const double low = options.low.value_or(std::min({0.0, inner.low, outer.low}));
+  const double high = options.high.value_or(std::max(inner.high, outer.high));
+  constexpr int bins = 120;
+  HistogramBuilder inside(low, high, bins);
+  HistogramBuilder outside(low, high, bins);
+  for_each_voxel(dose, target, circle, [&](float value, Label label) {
+    (label == Label::part ? inside : outside).add(static_cast<double>(value));
+  });
+  Plot plot;
+  plot.title = options.name + ": dose inside and outside the part";
+  plot.x = {views::with_unit("dose", dose.units), low, high, false};
+  plot.y = {"share of the voxels of each side (%)", 0, 0, false};
+  const auto bars_out = outside.done();
+  const auto bars_in = inside.done();
+  plot.series = {{"outside the part", bars_out.edges, bars_out.percent, paint::blue, SeriesStyle::bars},
+                 {"inside the part", bars_in.edges, bars_in.percent, paint::vermilion, SeriesStyle::bars}};
+  plot.markers = {{inner.low, "lowest inside " + format_number(inner.low, 4), paint::vermilion},
+                  {outer.high, "highest outside " + format_number(outer.high, 4), paint::blue}};
+  return plot;
+}
+
+}  // namespace vam::plot

@@ -1,0 +1,41 @@
+// What vam-view shows of each kind of file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "io/picture/any_frames.hpp"
+#include "io/vdb/vdb.hpp"
+#include "model/circle.hpp"
+#include "plot/image_figure.hpp"
+#include "plot/planes.hpp"
+#include "plot/plot.hpp"
+
+namespace vam::plot {
+
+struct ViewOptions {
+  std::string name;  // of the file, for titles
+  Plane plane = Plane::axial;
+  std::optional<double> at;   // mm across the plane; z of a slice in mm or stage angle of a frame in degrees
+  int sheet = 1;              // number of pictures, evenly spread
+  std::optional<double> low;  // values of the ends of the colours
+  std::optional<double> high;
+  std::string colours = "auto";  // auto, grey, viridis, diverging
+  int size = 720;
+};
+
+/// Sections of a volume: the middle one, the one at `at`, or a sheet. With a target its outline is drawn.
+[[nodiscard]] ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target,
+                                      const ViewOptions& options);
+
+/// Images of a stack: the middle slice of sinograms, the first frame of frames, the nearest to `at`, or a sheet. Throws
+/// Fault::data when `at` is given and the images have no such coordinate.
+[[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
+
+/// Shares of the voxels inside and outside the part over the dose [OST22 fig S6 c, f, i], with the lowest dose inside
+/// and the highest outside. Voxels that the surface cuts, and those outside the writable circle, are left out. Throws
+/// Fault::data when the grids differ, or there is no voxel inside or outside.
+[[nodiscard]] Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                  const model::Circle& circle, const ViewOptions& options);
+
+}  // namespace vam::plot

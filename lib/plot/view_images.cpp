@@ -1,0 +1,114 @@
+// Sinograms, frames and pictures.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "plot/private/view_parts.hpp"
+#include "plot/view.hpp"
+
+namespace vam::plot {
+
+namespace {
+
+using views::mm;
+
+double angle_of(const model::StackInfo& info, const model::ImageInfo& about, int index) {
+  return about.has_angle ? about.angle_deg : info.angle_start_deg + index * info.angle_step_deg;
+}
+
+double coordinate(const model::StackInfo& info, const model::ImageInfo& about, int index) {
+  return info.kind == model::Kind::sinogram ? about.z_mm : angle_of(info, about, index);
+}
+
+std::string caption_of(const model::StackInfo& info, const model::ImageInfo& about, int index) {
+  if (info.kind == model::Kind::sinogram) return "z = " + mm(about.z_mm);
+  if (about.has_angle || info.angle_step_deg != 0) return format_number(angle_of(info, about, index), 5) + " deg";
+  return about.has_time ? format_number(about.time_s, 5) + " s" : "frame " + std::to_string(index);
+}
+
+void set_axes(ImageFigure& figure, const model::StackInfo& info) {
+  const bool sinogram = info.kind == model::Kind::sinogram;
+  const double half = 0.5 * info.width * info.pixel_mm;
+  figure.x = info.pixel_mm > 0 ? Axis{"column, from the middle (mm)", -half, half, false}
+                               : Axis{"column", -0.5, info.width - 0.5, false};
+  const double start = sinogram ? info.angle_start_deg : info.z_start_mm;
+  const double step = sinogram ? info.angle_step_deg : info.row_mm;
+  const char* label = sinogram ? "stage angle (deg)" : "z (mm)";
+  // Row 0 is at the top, so the axis runs downwards with the rows.
+  figure.y = step != 0 ? Axis{label, start + (info.height - 0.5) * step, start - 0.5 * step, false}
+                       : Axis{"row", info.height - 0.5, -0.5, false};
+  constexpr double turn_ticks_deg = 45;
+  if (sinogram && std::abs(step) * info.height > 180) figure.y.step = turn_ticks_deg;
+  figure.square_pixels = !sinogram;
+  if (!sinogram && info.pixel_mm > 0) figure.pixel_mm = info.pixel_mm;
+}
+
+// Keeps what is to be shown while the stack goes by.
+class Selection {
+ public:
+  Selection(const model::StackInfo& info, const ViewOptions& options)
+      : info_(info), at_(options.at), indices_(views::spread(info.count, options.sheet)) {
+    if (options.sheet <= 1 && info.kind == model::Kind::frames) indices_ = {0};
+  }
+
+  void offer(Image&& image, const model::ImageInfo& about, int index) {
+    if (at_) {
+      const double away = std::abs(coordinate(info_, about, index) - *at_);
+      if (index > 0 && away >= nearest_) return;
+      nearest_ = away;
+      panels = {{std::move(image), caption_of(info_, about, index), {}}};
+    } else if (std::find(indices_.begin(), indices_.end(), index) != indices_.end()) {
+      panels.push_back({std::move(image), caption_of(info_, about, index), {}});
+    }
+  }
+
+  // How far the picture shown is from the place wanted.
+  [[nodiscard]] double away() const { return nearest_; }
+
+  std::vector<Panel> panels;
+
+ private:
+  model::StackInfo info_;
+  std::optional<double> at_;
+  std::vector<int> indices_;
+  double nearest_ = 0;
+};
+
+}  // namespace
+
+ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
+  const model::StackInfo info = images.info();
+  const bool sinogram = info.kind == model::Kind::sinogram;
+  if (options.at && !sinogram && info.angle_step_deg == 0) {
+    throw Error{Fault::data, options.name + ": its pictures have no angles; show one by a sheet, or use the EXR stack"};
+  }
+  Selection selection(info, options);
+  Image image;
+  model::ImageInfo about;
+  for (int index = 0; images.next(image, about); ++index) selection.offer(std::move(image), about, index);
+  if (selection.panels.empty()) throw Error{Fault::data, options.name + ": has no picture"};
+  const double pitch = std::abs(sinogram ? info.row_mm : info.angle_step_deg);
+  if (selection.away() > 0.51 * pitch + 1e-6) {
+    throw Error{Fault::data, options.name + ": has none at " + format_number(*options.at) + "; the nearest is " +
+                                 selection.panels[0].caption};
+  }
+  ImageFigure figure;
+  figure.panels = std::move(selection.panels);
+  views::Extremes found;
+  for (const auto& panel : figure.panels) found.add(panel.values);
+  if (info.units.starts_with("fraction")) found.high = 1;
+  views::choose_colours(figure, options, found, !sinogram);
+  set_axes(figure, info);
+  figure.value_label = views::with_unit(sinogram ? "sinogram" : "light", info.units);
+  figure.size = options.size;
+  figure.title = options.name + (sinogram ? ": sinogram" : ": frame");
+  figure.title += figure.panels.size() == 1
+                      ? (sinogram ? " at " : ", ") + figure.panels[0].caption
+                      : std::string(sinogram ? "s, columns to the right, angles down" : "s, upright as in the file");
+  return figure;
+}
+
+}  // namespace vam::plot

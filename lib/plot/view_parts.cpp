@@ -1,0 +1,34 @@
+#include "plot/private/view_parts.hpp"
+
+#include <cmath>
+
+#include "base/text.hpp"
+
+namespace vam::plot::views {
+
+std::vector<int> spread(int count, int wanted) {
+  std::vector<int> indices;
+  const int shown = std::clamp(wanted, 1, count);
+  for (int n = 0; n < shown; ++n) indices.push_back(static_cast<int>((n + 0.5) * count / shown));
+  return indices;
+}
+
+void choose_colours(ImageFigure& figure, const ViewOptions& options, Extremes found, bool grey) {
+  const bool is_signed = found.low < -1e-3 * std::abs(found.high);
+  std::string colours = options.colours;
+  if (colours == "auto") colours = is_signed ? "diverging" : grey ? "grey" : "viridis";
+  figure.colours = colours == "diverging" ? ColourMap::diverging
+                   : colours == "grey"    ? ColourMap::grey
+                                          : ColourMap::viridis;
+  const double reach = std::max(std::abs(found.low), std::abs(found.high));
+  const bool diverging = figure.colours == ColourMap::diverging;
+  figure.low = options.low.value_or(diverging ? -reach : std::min(0.0, found.low));
+  figure.high = options.high.value_or(diverging ? reach : found.high);
+  if (!(figure.high > figure.low)) figure.high = figure.low + 1;
+}
+
+std::string with_unit(const std::string& what, const std::string& unit) { return what + " (" + unit + ")"; }
+
+std::string mm(double value) { return format_number(std::abs(value) < 1e-9 ? 0 : value, 4) + " mm"; }
+
+}  // namespace vam::plot::views

@@ -1,0 +1,157 @@
+#include "resin/curethrough/target_dose.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::resin {
+
+namespace {
+
+constexpr double unreachable = 1e300;
+
+// A run of equal nodes.
+struct Run {
+  int first;
+  int last;
+  bool inside;
+};
+
+std::vector<Run> runs_of(std::span<const std::uint8_t> nodes) {
+  std::vector<Run> runs;
+  for (int n = 0; n < static_cast<int>(nodes.size()); ++n) {
+    const bool inside = nodes[static_cast<std::size_t>(n)] != 0;
+    if (runs.empty() || runs.back().inside != inside) runs.push_back({n, n, inside});
+    runs.back().last = n;
+  }
+  return runs;
+}
+
+// Target at every node of the column, by the look-up rule of TargetDose.
+std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose) {
+  std::vector<double> target(static_cast<std::size_t>(dose.slices()) + 1);
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const Run& run = runs[r];
+    int below = 0;
+    int above = 0;
+    if (run.inside) {
+      below = dose.below_inside(run.first, run.last);
+      above = dose.above_inside(run.first);
+    } else {
+      below = r + 1 < runs.size() ? dose.below_outside(runs[r + 1].first) : dose.below_dark();
+      above = r > 0 ? dose.above_outside(runs[r - 1].last) : dose.above_none();
+    }
+    for (int n = run.first; n <= run.last; ++n) {
+      target[static_cast<std::size_t>(n)] = std::fabs(std::min(dose.table()[below - n], dose.table()[above + n]));
+    }
+  }
+  return target;
+}
+
+// The largest violation of constraints i-iii by the doses really reached.
+double excess(const std::vector<Run>& runs, const std::vector<double>& omega, const DoseLimit& limit) {
+  double worst = 0;
+  for (const Run& run : runs) {
+    const bool unlimited = limit.strong_base && run.first == 0;
+    const double omega_max = unlimited ? unreachable : limit.omega_max;
+    for (int n = run.first; n <= run.last; ++n) {
+      const double dose = omega[static_cast<std::size_t>(n)];
+      worst = std::max(worst, run.inside ? std::max(1 - dose, dose - omega_max) : dose - 1);
+    }
+    if (!run.inside) continue;
+    worst = std::max(worst, omega[static_cast<std::size_t>(run.last)] - 1);  // Omega = 1 at both edges;
+    if (run.first > 0) worst = std::max(worst, omega[static_cast<std::size_t>(run.first)] - 1);  // the platform is none
+  }
+  return worst;
+}
+
+int single_slice_gaps(std::span<const std::uint8_t> part) {
+  int count = 0;
+  for (std::size_t n = 1; n + 1 < part.size(); ++n) count += part[n - 1] != 0 && part[n] == 0 && part[n + 1] != 0;
+  return count;
+}
+
+}  // namespace
+
+TargetDose::TargetDose(const Limits& limits, const DoseLimit& limit, int slices)
+    : slices_(slices), strong_base_(limit.strong_base) {
+  const double omega_max = limit.omega_max;
+  if (!(omega_max >= 1)) {
+    throw Error{Fault::usage, "omega-max: " + format_number(omega_max) +
+                                  " is below 1, the dose that cures; give 1, more than 1, or inf"};
+  }
+  const double lowest = limits.settled(limits.phi_min);
+  const double highest = limits.settled(limits.phi_max);
+  values_.resize(static_cast<std::size_t>(sections) * static_cast<std::size_t>(slices + 1));
+  for (int d = 0; d <= slices; ++d) {
+    const double power = std::pow(limits.q, d);
+    const auto put = [&](Section s, double value) {
+      values_[static_cast<std::size_t>(section(s)) + static_cast<std::size_t>(d)] = value;
+    };
+    const double drained = (1 - lowest * (1 - power)) / power;  // may overflow to inf: no limit
+    const double filled = std::max(1.0, highest * (1 - power) + power);
+    put(fill, std::min(filled, omega_max));
+    put(strong, filled);
+    put(drain, std::clamp(drained, 1.0, unreachable));
+    put(open, unreachable);
+    put(fall, -std::min(lowest + (1 - lowest) * power, 1.0));
+    put(rise, std::clamp((highest * (1 - power) - 1) / power, -1.0, unreachable));
+    put(dark, -lowest * (1 - power));
+    put(none, unreachable);
+  }
+}
+
+Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
+                      int extra_slices) {
+  const int slices = static_cast<int>(part.size()) + extra_slices;
+  const TargetDose dose(limits, limit, slices);
+  std::vector<std::uint8_t> nodes = nodes_of(part, limits.exposure);
+  nodes.resize(static_cast<std::size_t>(slices) + 1, 0);
+  if (limits.exposure == Exposure::continuous && extra_slices == 0 && !part.empty()) nodes.back() = part.back();
+  const std::vector<Run> runs = runs_of(nodes);
+  const std::vector<double> target = targets(runs, dose);
+
+  Column column;
+  column.phi.resize(static_cast<std::size_t>(slices));
+  column.omega.resize(static_cast<std::size_t>(slices) + 1, 0.0);
+  for (std::size_t n = column.phi.size(); n-- > 0;) {
+    const double carried = limits.q * column.omega[n + 1];
+    column.phi[n] = std::clamp((target[n] - carried) / limits.gain, limits.phi_min, limits.phi_max);
+    column.omega[n] = limits.gain * column.phi[n] + carried;  // [CURE19 eq 5]
+  }
+  column.worst_excess = excess(runs, column.omega, limit);
+  column.fused_gaps = limits.exposure == Exposure::continuous ? single_slice_gaps(part) : 0;
+  return column;
+}
+
+int extra_slices(int last_slice, int slices, const Limits& limits) {
+  if (last_slice < 0) return 0;
+  const int last_node = last_slice + (limits.exposure == Exposure::continuous ? 1 : 0);
+  return std::max(0, last_node + burst_slices(limits) - slices);
+}
+
+int extra_slices(std::span<const std::uint8_t> part, const Limits& limits) {
+  int last = static_cast<int>(part.size()) - 1;
+  while (last >= 0 && part[static_cast<std::size_t>(last)] == 0) --last;
+  return extra_slices(last, static_cast<int>(part.size()), limits);
+}
+
+std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits) {
+  std::vector<double> phi(part.size());
+  for (std::size_t n = 0; n < part.size(); ++n) phi[n] = part[n] != 0 ? limits.phi_max : limits.phi_min;
+  return phi;
+}
+
+std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, Exposure exposure) {
+  std::vector<std::uint8_t> nodes(part.begin(), part.end());
+  if (exposure == Exposure::layered) return nodes;
+  nodes.push_back(0);
+  for (std::size_t n = part.size(); n-- > 0;) {
+    if (part[n] != 0) nodes[n + 1] = 1;
+  }
+  return nodes;
+}
+
+}  // namespace vam::resin

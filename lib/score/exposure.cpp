@@ -1,0 +1,73 @@
+#include "score/exposure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+
+namespace vam::score {
+
+namespace {
+
+constexpr double mm_per_cm = 10;
+constexpr double whole = 1 - 1e-4;  // coverage of a voxel that is inside; less is a surface
+
+// Turns of this dose until the critical dose, and their time; null when no turn adds anything.
+void add_exposure(Json& figures, const std::string& of, double dose, const model::Printer& printer) {
+  const double turns = std::ceil(*printer.resin.critical_dose_mj_cm3 / dose);
+  const bool possible = dose > 0 && std::isfinite(turns);
+  figures["turns_to_critical_" + of] = possible ? Json(turns) : Json(nullptr);
+  figures["seconds_to_critical_" + of] = possible ? Json(turns * 360 / printer.stage.speed_deg_s) : Json(nullptr);
+}
+
+}  // namespace
+
+std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer) {
+  const double mu_per_cm = printer.resin.absorption_per_mm * mm_per_cm;
+  if (!printer.resin.critical_dose_mj_cm3 || !(mu_per_cm > 0)) return std::nullopt;
+  const double omega_rad_s = printer.stage.speed_deg_s * rad_per_deg;
+  return mu_per_cm / omega_rad_s * printer.projector.max_intensity_mw_cm2;
+}
+
+void DoseRange::add(const Image& dose, const Image& target) {
+  if (target.size() != 0 && target.size() != dose.size()) {
+    throw Error{Fault::data, "target: " + std::to_string(target.width) + " x " + std::to_string(target.height) +
+                                 " voxels, the dose " + std::to_string(dose.width) + " x " +
+                                 std::to_string(dose.height)};
+  }
+  for (std::size_t i = 0; i < dose.size(); ++i) {
+    const double value = dose.values[i];
+    largest_ = std::max(largest_, value);
+    sum_ += value;
+    if (target.size() == 0 || target.values[i] < whole) continue;
+    part_least_ = part_count_ == 0 ? value : std::min(part_least_, value);
+    part_sum_ += value;
+    ++part_count_;
+  }
+  count_ += static_cast<double>(dose.size());
+}
+
+Json DoseRange::figures(const model::Printer& printer, bool absolute, double scale) const {
+  const std::string unit = absolute ? "_mj_cm3" : "_relative";
+  Json figures;
+  figures["dose_per_turn_max" + unit] = scale * largest_;
+  figures["dose_per_turn_mean" + unit] = count_ > 0 ? scale * sum_ / count_ : 0;
+  if (part_count_ > 0) {
+    figures["part_voxels"] = part_count_;
+    figures["part_dose_per_turn_min" + unit] = scale * part_least_;
+    figures["part_dose_per_turn_mean" + unit] = scale * part_sum_ / part_count_;
+  }
+  if (!absolute) return figures;
+  figures["critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3;
+  if (part_count_ > 0) {
+    add_exposure(figures, "mean", scale * part_sum_ / part_count_, printer);
+    add_exposure(figures, "all", scale * part_least_, printer);
+  } else {
+    add_exposure(figures, "max", scale * largest_, printer);
+  }
+  return figures;
+}
+
+}  // namespace vam::score

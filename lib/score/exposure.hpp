@@ -1,0 +1,37 @@
+// How long to print: from the dose of one turn to turns and seconds [CAL19 eq 1].
+#pragma once
+
+#include <optional>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "model/printer.hpp"
+
+namespace vam::score {
+
+/// Dose in mJ/cm3 of one turn in full light from everywhere, per radian: (mu / Omega) I, mu in 1/cm, I in mW/cm2, Omega
+/// in rad/s. Empty unless the resin has a critical dose and absorbs: then doses stay relative.
+[[nodiscard]] std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer);
+
+/// Doses of one turn, gathered slice by slice: of everything, and of the voxels that are wholly inside the part.
+class DoseRange {
+ public:
+  /// target: coverage 0..1 of the same voxels, or empty. Throws Fault::data for other sizes.
+  void add(const Image& dose, const Image& target);
+  [[nodiscard]] double largest() const { return largest_; }
+
+  /// What a report says. With a target also part_dose_min and part_dose_mean; with a critical dose the turns and
+  /// seconds until the mean of the part, and until all of it, has reached it. Without a target the largest dose stands
+  /// for the part.
+  [[nodiscard]] Json figures(const model::Printer& printer, bool absolute, double scale) const;
+
+ private:
+  double largest_ = 0;
+  double sum_ = 0;
+  double count_ = 0;
+  double part_sum_ = 0;
+  double part_count_ = 0;
+  double part_least_ = 0;
+};
+
+}  // namespace vam::score

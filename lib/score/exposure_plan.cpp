@@ -1,0 +1,41 @@
+#include "score/exposure_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::score {
+
+double window_middle(const model::DoseMetrics& doses) {
+  return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
+}
+
+ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer) {
+  constexpr double most_turns = 1e6;
+  constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns gets 3
+  const double critical = *printer.resin.critical_dose_mj_cm3;
+  const double full_turns = critical / middle_mj_cm3;
+  if (!(middle_mj_cm3 > 0) || !(full_turns <= most_turns)) {
+    throw Error{Fault::data, "exposure: a turn in full light gives the middle of the process window " +
+                                 format_number(middle_mj_cm3) + " mJ/cm3 of the critical " + format_number(critical) +
+                                 "; the part cannot be printed with this light"};
+  }
+  ExposurePlan plan;
+  plan.turns = static_cast<int>(std::max(1.0, std::ceil(full_turns * (1 - rounding))));
+  plan.multiplier = std::min(1.0, full_turns / plan.turns);
+  plan.seconds = plan.turns * 360 / printer.stage.speed_deg_s;
+  plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
+  return plan;
+}
+
+void add_to(Json& figures, const ExposurePlan& plan) {
+  figures["turns"] = plan.turns;
+  figures["seconds"] = plan.seconds;
+  figures["multiplier"] = plan.multiplier;
+  figures["peak_intensity_mw_cm2"] = plan.peak_intensity_mw_cm2;
+}
+
+}  // namespace vam::score

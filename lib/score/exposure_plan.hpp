@@ -1,0 +1,32 @@
+// How bright and how long to print: whole turns, and light that puts the resin's critical dose in the middle of the
+// process window.
+#pragma once
+
+#include <optional>
+
+#include "base/json.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/printer.hpp"
+
+namespace vam::score {
+
+struct ExposurePlan {
+  int turns = 0;
+  double multiplier = 0;  // of full light, 0...1
+  double seconds = 0;
+  double peak_intensity_mw_cm2 = 0;  // of the brightest pixel
+};
+
+/// The dose half way between the void's largest and the part's least; where void takes more than part, the middle of
+/// the thresholds that print best. `doses` are absolute (DoseStatistics::metrics(false)), in any unit.
+[[nodiscard]] double window_middle(const model::DoseMetrics& doses);
+
+/// The fewest whole turns in which full light gives the middle its critical dose, and the fraction of full light that
+/// gives exactly that. `middle_mj_cm3` is the middle's dose of one turn in full light. Throws Fault::data when it is
+/// not positive, or when the turns are more than a million. The printer must have a critical dose.
+[[nodiscard]] ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer);
+
+/// turns, seconds, multiplier and peak_intensity_mw_cm2, into a report.
+void add_to(Json& figures, const ExposurePlan& plan);
+
+}  // namespace vam::score

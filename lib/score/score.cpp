@@ -1,0 +1,151 @@
+#include "score/score.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "base/text.hpp"
+#include "model/figures.hpp"
+#include "score/exposure_plan.hpp"
+
+namespace vam::score {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+struct Figure {
+  std::string name;
+  std::string meaning;
+};
+
+const std::vector<Figure>& figure_list() {
+  static const std::vector<Figure> all{
+      {"ver", "voxel error rate: void voxels with at least the part's least dose, of all"},
+      {"pw", "process window: least part dose - largest void dose (> 0: a threshold prints it exactly)"},
+      {"ipdr", "in-part dose range: largest - least part dose"},
+      {"cv", "coefficient of variation of the part's dose"},
+      {"iou", "|print and part| / |print or part| at the best threshold"},
+      {"threshold", "that threshold"},
+      {"min_part", "least dose in the part"},
+      {"mean_part", "mean dose in the part"},
+      {"max_part", "largest dose in the part"},
+      {"max_void", "largest dose in the void"},
+      {"max_dose", "largest dose of both"},
+      {"trimmed_ver", "ver with the extremes trimmed"},
+      {"trimmed_pw", "pw with the extremes trimmed"},
+      {"cured_part", "at the critical dose: fraction of the part that cures"},
+      {"cured_void", "at the critical dose: fraction of the void that cures"},
+      {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
+      {"cured_wrong", "at the critical dose: wrong voxels, of all"},
+      {"turns", "whole turns that put the critical dose in the middle of the process window"},
+      {"seconds", "the time they take"},
+      {"multiplier", "of full light, with which they do"},
+      {"peak_intensity", "of the brightest pixel then, mW/cm2"},
+      {"efficiency", "mean / largest value of the projections"}};
+  return all;
+}
+
+}  // namespace
+
+Score::Score(const ScoreOptions& options, int width, int height) : options_(options), statistics_(options.threshold) {
+  inside_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      inside_.push_back(options.circle.contains(x, y));
+    }
+  }
+}
+
+void Score::add(const float* dose, const float* target, int count) {
+  std::vector<model::DoseStatistics> slices;
+  for (int s = 0; s < count; ++s) slices.emplace_back(options_.threshold);
+  std::vector<std::int64_t> surface(static_cast<std::size_t>(count), 0);
+  parallel_for(count, [&](int s) {
+    const std::size_t first = static_cast<std::size_t>(s) * inside_.size();
+    for (std::size_t i = 0; i < inside_.size(); ++i) {
+      const float d = dose[first + i];
+      const float f = target[first + i];
+      if (!std::isfinite(d)) throw Error{Fault::data, "the dose is not a number in places; compute it again"};
+      auto label = model::label_of(f);
+      if (!inside_[i] && label == model::Label::void_) continue;
+      if (label == model::Label::surface) {
+        ++surface[static_cast<std::size_t>(s)];
+        if (options_.surface) label = f >= 0.5F ? model::Label::part : model::Label::void_;
+      }
+      slices[static_cast<std::size_t>(s)].add(d, label);
+    }
+  });
+  for (int s = 0; s < count; ++s) {
+    statistics_.merge(slices[static_cast<std::size_t>(s)]);
+    surface_ += surface[static_cast<std::size_t>(s)];
+  }
+}
+
+const std::vector<std::string>& Score::names() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> list;
+    for (const auto& figure : figure_list()) list.push_back(figure.name);
+    return list;
+  }();
+  return all;
+}
+
+double Score::figure(const std::string& name) const {
+  if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
+  if (name == "trimmed_ver") return statistics_.trimmed(options_.trim, !options_.absolute).ver;
+  if (name == "trimmed_pw") return statistics_.trimmed(options_.trim, !options_.absolute).pw;
+  if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_intensity") {
+    if (!options_.exposure) return none;
+    const double middle = window_middle(statistics_.metrics(false)) / options_.exposure->full_light_turns;
+    if (!(middle > 0)) return none;
+    const ExposurePlan plan = plan_exposure(middle, options_.exposure->printer);
+    if (name == "turns") return plan.turns;
+    if (name == "seconds") return plan.seconds;
+    return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
+  }
+  if (name.starts_with("cured_")) {
+    const auto at = statistics_.at_threshold();
+    if (!at) return none;
+    if (name == "cured_part") return at->part_cured;
+    if (name == "cured_void") return at->void_cured;
+    return name == "cured_iou" ? at->iou : at->wrong;
+  }
+  return model::figure(statistics_.metrics(!options_.absolute), name);
+}
+
+Json Score::figures() const {
+  const auto m = statistics_.metrics(!options_.absolute);
+  if (m.part == 0) throw Error{Fault::data, "the target has no voxel wholly inside the part; use smaller voxels"};
+  if (m.void_ == 0)
+    throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to tell apart"};
+  Json json;
+  json["part_voxels"] = m.part;
+  json["void_voxels"] = m.void_;
+  json["surface_voxels"] = surface_;
+  for (const auto& name : names()) {
+    const double value = figure(name);
+    if (std::isfinite(value)) json[name] = value;
+  }
+  json["trim"] = options_.trim;
+  if (options_.threshold) json["critical_dose"] = *options_.threshold;
+  json["relative"] = !options_.absolute;
+  return json;
+}
+
+std::string Score::table() const {
+  const Json values = figures();
+  std::string text;
+  for (const auto& [name, meaning] : figure_list()) {
+    if (!values.contains(name)) continue;
+    char line[200];
+    std::snprintf(line, sizeof line, "%-12s %12s  %s\n", name.c_str(),
+                  format_number(values[name].get<double>()).c_str(), meaning.c_str());
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace vam::score

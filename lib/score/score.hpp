@@ -1,0 +1,57 @@
+// Is a dose printable? The field's figures of merit of a dose against its target, as table and JSON.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "model/circle.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/printer.hpp"
+
+namespace vam::score {
+
+/// What the dose was given with.
+struct Exposure {
+  model::Printer printer;       // with a critical dose
+  double full_light_turns = 1;  // turns of full light that give the dose
+};
+
+struct ScoreOptions {
+  model::Circle circle;              // the writable one; void outside it is not judged
+  bool surface = false;              // surface voxels count too: part when at least half covered, else void
+  bool absolute = false;             // PW and IPDR in the dose's unit instead of fractions of the largest dose
+  double trim = 0.02;                // alpha: extremes are also given at the alpha/2 percentiles
+  std::optional<double> threshold;   // the resin's critical dose, in the dose's unit
+  std::optional<Exposure> exposure;  // known when the dose is in mJ/cm3
+};
+
+/// Gathers slices in ascending order; each is judged on a thread of its own.
+class Score {
+ public:
+  Score(const ScoreOptions& options, int width, int height);
+
+  /// `count` row-major slices of dose and of target coverage. Throws Fault::data for a dose that is not finite.
+  void add(const float* dose, const float* target, int count);
+  /// The projections that gave the dose, for the efficiency of light.
+  void add_projection(std::span<const float> values) { light_.add(values); }
+
+  /// Throws Fault::data when the target has no part voxel or no void voxel was judged.
+  [[nodiscard]] Json figures() const;
+
+  /// The figures by name (for --require), in the order of the table.
+  [[nodiscard]] static const std::vector<std::string>& names();
+  [[nodiscard]] double figure(const std::string& name) const;
+  /// Aligned lines "figure value meaning".
+  [[nodiscard]] std::string table() const;
+
+ private:
+  ScoreOptions options_;
+  std::vector<bool> inside_;  // of a slice, whether the circle has it
+  model::DoseStatistics statistics_;
+  model::LightEfficiency light_;
+  std::int64_t surface_ = 0;
+};
+
+}  // namespace vam::score

@@ -1,0 +1,114 @@
+#include "sim/bench/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vam::sim {
+
+namespace {
+constexpr double kept_s = 5;  // of the logs, for a camera that looks back
+constexpr double finest_turn_deg = 0.5;
+constexpr int most_parts = 8;
+}  // namespace
+
+std::vector<Json> LogTail::fresh() {
+  std::vector<Json> lines;
+  if (path_.empty()) return lines;
+  if (!file_.is_open()) file_.open(path_);
+  if (!file_.is_open()) return lines;
+  file_.clear();  // past the end of the file that there was
+  for (std::string line; std::getline(file_, line);) {
+    rest_ += line;
+    if (file_.eof()) break;  // no line end yet
+    Json event = Json::parse(rest_, nullptr, false);
+    if (event.is_object()) lines.push_back(std::move(event));
+    rest_.clear();
+  }
+  return lines;
+}
+
+SimWorld::SimWorld(SimSources sources, double start_s)
+    : sources_(std::move(sources)), start_s_(start_s), angles_(sources_.angles), shown_(sources_.shown) {}
+
+// What the camera sees of it; with a filter that lets no projector light through (no pictures), nothing.
+const GreyImage* SimWorld::picture(int frame) const {
+  if (frame < 0 || sources_.pictures.empty()) return nullptr;
+  return &sources_.pictures[std::min(static_cast<std::size_t>(frame), sources_.pictures.size() - 1)];
+}
+
+void SimWorld::read_logs() {
+  for (const Json& line : angles_.fresh()) {
+    const std::string event = line.value("event", "");
+    const double t_s = line.value("t_monotonic_s", 0.0);
+    if (event == "angle") {
+      table_.push_back({t_s, line.value("angle_deg", 0.0), line.value("speed_deg_s", 0.0)});
+    } else if (event == "zeroed" || event == "standing") {
+      table_.push_back({t_s, line.value("angle_deg", table_.empty() ? 0.0 : table_.back().angle_deg), 0});
+    }
+  }
+  for (const Json& line : shown_.fresh()) {
+    if (line.value("event", "") == "pattern" && sources_.draw) sources_.pictures = sources_.draw(line);
+    if (line.value("event", "") != "flip") continue;
+    const double t_s = line.value("t_monotonic_s", 0.0);
+    double lit_s = 0;
+    if (!flips_.empty()) {
+      lit_s = flips_.back().lit_before_s;
+      if (flips_.back().frame >= 0) lit_s += t_s - flips_.back().t_s;
+    }
+    flips_.push_back({t_s, line.value("frame", -1), lit_s});
+  }
+  while (table_.size() > 2 && table_[1].t_s < table_.back().t_s - kept_s) table_.pop_front();
+  while (flips_.size() > 2 && flips_[1].t_s < flips_.back().t_s - kept_s) flips_.pop_front();
+}
+
+double SimWorld::angle_deg(double t_s) const {
+  if (sources_.angles.empty()) return sources_.speed_deg_s * (t_s - start_s_);
+  const auto after =
+      std::find_if(table_.begin(), table_.end(), [&](const TableSample& sample) { return sample.t_s > t_s; });
+  if (after == table_.begin()) return table_.empty() ? 0 : table_.front().angle_deg;
+  const TableSample& before = *(after - 1);
+  const double later_s = std::min(t_s - before.t_s, 0.1);  // longer than any silence of a table that moves
+  return before.angle_deg + before.speed_deg_s * later_s;
+}
+
+SimMoment SimWorld::moment(double t_s) const {
+  SimMoment moment;
+  moment.angle_deg = angle_deg(t_s);
+  if (sources_.shown.empty()) {
+    moment.picture = picture(0);
+    moment.lit_s = std::max(0.0, t_s - start_s_);
+    return moment;
+  }
+  const auto after = std::find_if(flips_.begin(), flips_.end(), [&](const Shown& flip) { return flip.t_s > t_s; });
+  if (after == flips_.begin()) return moment;
+  const Shown& now = *(after - 1);
+  moment.lit_s = now.lit_before_s;
+  if (now.frame >= 0) moment.lit_s += t_s - now.t_s;
+  moment.picture = picture(now.frame);
+  return moment;
+}
+
+SimMoment SimWorld::at(double t_s) {
+  read_logs();
+  return moment(t_s);
+}
+
+std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
+  read_logs();
+  const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
+  const int parts = std::clamp(static_cast<int>(std::ceil(turn_deg / finest_turn_deg)), 1, most_parts);
+  std::vector<double> cuts;
+  for (int i = 0; i <= parts; ++i) cuts.push_back(from_s + (to_s - from_s) * i / parts);
+  for (const Shown& flip : flips_) {
+    if (flip.t_s > from_s && flip.t_s < to_s) cuts.push_back(flip.t_s);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<SimMoment> exposure;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    exposure.push_back(moment(0.5 * (cuts[i] + cuts[i + 1])));
+    exposure.back().share = (cuts[i + 1] - cuts[i]) / (to_s - from_s);
+  }
+  return exposure;
+}
+
+}  // namespace vam::sim

@@ -1,0 +1,68 @@
+// What happens on the simulated bench, out of the logs that the other simulators and tools write meanwhile.
+#pragma once
+
+#include <deque>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/json.hpp"
+#include "sim/bench/scene.hpp"
+
+namespace vam::sim {
+
+/// The lines that have come to a log since the last look; a log that does not exist yet has none.
+class LogTail {
+ public:
+  explicit LogTail(std::string path) : path_(std::move(path)) {}
+  std::vector<Json> fresh();
+
+ private:
+  std::string path_;
+  std::ifstream file_;
+  std::string rest_;
+};
+
+struct SimSources {
+  double speed_deg_s = 0;           // of the table when there is no log of its angles; 0 deg at the start
+  std::string angles;               // log of vam-sim-stage (or of sim: of vam-stage): the true angle
+  std::string shown;                // log of vam-project: which frame was on when; without it the first is always on
+  std::vector<GreyImage> pictures;  // that glow in the resin, by frame index; none: the print alone is seen
+  std::function<std::vector<GreyImage>(const Json& event)> draw;  // of the test pattern that `shown` says comes next
+};
+
+/// Times are on CLOCK_MONOTONIC, as in the logs.
+class SimWorld {
+ public:
+  SimWorld(SimSources sources, double start_s);
+  /// The moment t_s; times must not fall by more than a second from call to call.
+  SimMoment at(double t_s);
+  /// What an exposure sees: cut where the picture changes, and so finely that the table turns by half a degree at most
+  /// in a part (but into no more than eight).
+  std::vector<SimMoment> during(double from_s, double to_s);
+
+ private:
+  struct TableSample {
+    double t_s, angle_deg, speed_deg_s;
+  };
+  struct Shown {
+    double t_s;
+    int frame;
+    double lit_before_s;  // light there had been until then
+  };
+  void read_logs();
+  [[nodiscard]] const GreyImage* picture(int frame) const;
+  [[nodiscard]] double angle_deg(double t_s) const;
+  [[nodiscard]] SimMoment moment(double t_s) const;
+
+  SimSources sources_;
+  double start_s_;
+  LogTail angles_;
+  LogTail shown_;
+  std::deque<TableSample> table_;
+  std::deque<Shown> flips_;
+};
+
+}  // namespace vam::sim

@@ -1,0 +1,34 @@
+// What simulated cameras have in common, in this process (sim:) or behind a network (vam-sim-camera).
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "device/camera/camera.hpp"
+#include "sim/bench/world.hpp"
+#include "sim/controllers/device.hpp"
+
+namespace vam::sim {
+
+struct SimCameraSettings {
+  SimBench bench;
+  SimSources sources;
+  double fps = 25;
+  double exposure_us = 20000;
+  int bits = 8;
+  double lag_s = 0;     // from what a frame shows to its time stamp
+  std::set<long> lose;  // numbers of frames that never arrive
+  std::set<long> cut;   // and of those whose lower half does not
+  long vanish = -1;     // the camera is unplugged before this frame
+  long shrink = -1;     // from this frame on, one after the first, pictures are half as high
+};
+
+/// "3,7" to numbers of frames. Throws Fault::usage.
+[[nodiscard]] std::set<long> parse_frames(const std::string& text);
+
+/// 16 hexadecimal digits that tell pictures apart (FNV-1a of the levels, low byte first), for logs and manifests.
+[[nodiscard]] std::string fingerprint(const GreyImage& levels);
+
+}  // namespace vam::sim

@@ -1,0 +1,29 @@
+// A simulated DLPC350 or DLPC900, with what may be wrong with one.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "device/port/usb_link.hpp"
+#include "sim/controllers/options.hpp"
+
+namespace vam::sim {
+
+struct SimDlpSettings {
+  bool dlpc900 = false;
+  int slow_reads = 0;  // so often it says that it still sleeps, has no picture yet, is in its old mode
+  int current = 40;
+  bool stuck_grey = false;  // keeps its gamma on (DLPC350), its video mode (DLPC900), whatever it is told
+  bool no_picture = false;  // at its input
+  int refuse = 0;           // command (CMD2 << 8 | CMD3) that gets a NACK
+  // What spoils every answer from the n-th report (from 0) on: silent · late (the answer comes with the next question)
+  // · garbage · truncated (three bytes) · wrong-sender (an answer to another question) · error (NACK) · unplug.
+  std::string fault{};
+  int fault_after = 0;
+};
+
+/// Its log has a line for every change of what shines: {"event": "leds", "bits": 4, "linear": true, "current": [40, 40,
+/// 40]}, and {"event": "asleep"}.
+[[nodiscard]] std::unique_ptr<device::UsbLink> make_sim_dlp(const SimDlpSettings& settings, SimLog log);
+
+}  // namespace vam::sim

@@ -1,0 +1,237 @@
+#include "sim/controllers/gcs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "sim/controllers/private/controller.hpp"
+
+namespace vam::sim {
+
+namespace {
+
+const char* const help_lines[] = {"#5 - Request motion status",
+                                  "#7 - Request controller ready",
+                                  "#24 - Stop all motion",
+                                  "*IDN? - Get identity",
+                                  "ACC - Set acceleration",
+                                  "ACC? - Get acceleration",
+                                  "CSV? - Get syntax version",
+                                  "ERR? - Get error number",
+                                  "FRF - Reference move",
+                                  "FRF? - Get reference result",
+                                  "HLP? - Get help",
+                                  "HLT - Halt smoothly",
+                                  "MOV - Move absolute",
+                                  "MOV? - Get target",
+                                  "MVR - Move relative",
+                                  "ONT? - Get on-target state",
+                                  "POS - Set position",
+                                  "POS? - Get position",
+                                  "PUN? - Get position unit",
+                                  "RON - Set reference mode",
+                                  "RON? - Get reference mode",
+                                  "SAI? - Get axis names",
+                                  "SPA? - Get parameter",
+                                  "STP - Stop all motion",
+                                  "SVO - Set servo",
+                                  "SVO? - Get servo",
+                                  "TMN? - Get lower limit",
+                                  "TMX? - Get upper limit",
+                                  "VEL - Set velocity",
+                                  "VEL? - Get velocity"};
+
+constexpr double homing_speed_deg_s = 30;
+
+std::string decimal(double value, const char* format = "%.5f") {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), format, value);
+  return text.data();
+}
+
+class SimGcs final : public SimController {
+ public:
+  using SimController::SimController;
+
+  void receive(std::string_view bytes, double now_s) override {
+    advance(now_s);
+    for (const char c : bytes) {
+      if (silent()) return;
+      if (c == 5 || c == 7 || c == 24) {
+        handle(std::string("#") + std::to_string(static_cast<int>(c)));
+      } else if (c == '\n') {
+        handle(std::exchange(line_, ""));
+      } else {
+        line_ += c;
+      }
+    }
+  }
+
+ private:
+  void on_standing() override {
+    if (homing_) referenced_ = motor_.target_deg() == 0;
+    homing_ = false;
+  }
+
+  // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us.
+  void handle(const std::string& line) {
+    auto words = split(line, ' ');
+    std::erase(words, "");
+    if (words.empty()) return;
+    addressed_ = !words.front().empty() && words.front().find_first_not_of("0123456789") == std::string::npos;
+    if (addressed_) {
+      if (words.front() != std::to_string(settings_.address)) return;
+      words.erase(words.begin());
+      if (words.empty()) return;
+    } else if (settings_.address != 1 && line.front() != '#') {
+      return;
+    }
+    const std::string command = words.front();
+    words.erase(words.begin());
+    const std::string fault = arrive(line, command);
+    if (silent()) return;
+    if (fault == "error") {
+      error_ = 17;
+      return;
+    }
+    const std::string text = reply(command, words);
+    if (text.empty()) return;
+    answer_spoilt(fault, text, addressed_ ? "0 " + std::to_string(settings_.address) + " " : "");
+  }
+
+  // The whole answer with its LF; empty for an order.
+  std::string reply(const std::string& command, const std::vector<std::string>& words) {
+    if (command == "#5") return decimal(motor_.moving() ? 1 : 0, "%.0f") + "\n";
+    if (command == "#7") return std::string(1, homing_ ? '\xB0' : '\xB1') + "\n";
+    if (command == "*IDN?") return "(c)2016 Physik Instrumente (PI) GmbH & Co. KG, C-863.11, 0116012345, 1.2.1.0\n";
+    if (command == "CSV?") return "2.0\n";
+    if (command == "HLP?") return help();
+    if (command == "SAI?") return "1\n";
+    if (command == "ERR?") return std::to_string(std::exchange(error_, 0)) + "\n";
+    if (command == "#24" || command == "STP") return stop(&SimMotor::brake);
+    if (words.empty() || words.front() != "1") return refuse(words.empty() ? 24 : 15);
+    if (command.back() == '?') return words.front() + query(command, words);
+    return execute(command, words);
+  }
+
+  static std::string help() {
+    std::string text;
+    for (const char* line : help_lines) text += std::string(text.empty() ? "" : " \n") + line;
+    return text + "\n";
+  }
+
+  std::string stop(void (SimMotor::*how)()) {
+    if (motor_.moving()) (motor_.*how)();
+    homing_ = false;
+    error_ = 10;
+    return "";
+  }
+
+  std::string refuse(int code) {
+    error_ = code;
+    return "";
+  }
+
+  std::string query(const std::string& command, const std::vector<std::string>& words) {
+    if (command == "POS?") return "=" + decimal(motor_.angle_deg()) + "\n";
+    if (command == "MOV?") return "=" + decimal(motor_.target_deg()) + "\n";
+    if (command == "ONT?") return motor_.moving() ? "=0\n" : "=1\n";
+    if (command == "SVO?") return servo_ ? "=1\n" : "=0\n";
+    if (command == "FRF?") return referenced_ ? "=1\n" : "=0\n";
+    if (command == "RON?") return reference_mode_ ? "=1\n" : "=0\n";
+    if (command == "VEL?") return "=" + decimal(speed_deg_s_) + "\n";
+    if (command == "ACC?") return "=" + decimal(settings_.motor.acceleration_deg_s2) + "\n";
+    if (command == "TMN?") return "=" + decimal(settings_.min_deg) + "\n";
+    if (command == "TMX?") return "=" + decimal(settings_.max_deg) + "\n";
+    if (command == "PUN?") return "=deg\n";
+    if (command == "SPA?" && words.size() == 2 && words[1] == "0xA") {
+      return " 0xA=" + decimal(settings_.max_speed_deg_s) + "\n";
+    }
+    error_ = command == "SPA?" ? 54 : 2;
+    return "";
+  }
+
+  std::string execute(const std::string& command, const std::vector<std::string>& words) {
+    if (command == "HLT") return stop(&SimMotor::halt);
+    if (command == "FRF") return reference();
+    if (words.size() != 2) return refuse(24);
+    const auto number = parse_number(words[1]);
+    if (!number) return refuse(1);
+    const double value = *number;
+    if (command == "MOV") return travel(value);
+    if (command == "MVR") return travel(motor_.target_deg() + value);
+    if (command == "SVO") {
+      servo_ = value != 0;
+      if (!servo_ && motor_.moving()) motor_.cut_power();
+    } else if (command == "RON") {
+      reference_mode_ = value != 0;
+    } else if (command == "POS") {
+      if (reference_mode_ || motor_.moving()) return refuse(27);
+      motor_.set_angle(value);
+      referenced_ = true;
+      note("zeroed", {{"angle_deg", value}});
+    } else if (command == "VEL") {
+      if (value < 0 || value > settings_.max_speed_deg_s) return refuse(8);
+      speed_deg_s_ = value;
+      motor_.set_speed(value);
+    } else {
+      return refuse(2);
+    }
+    return "";
+  }
+
+  std::string reference() {
+    if (!servo_ || !reference_mode_) return refuse(5);
+    homing_ = true;
+    go(0, homing_speed_deg_s);
+    return "";
+  }
+
+  std::string travel(double target_deg) {
+    if (!servo_ || !referenced_ || homing_) return refuse(5);
+    if (target_deg < settings_.min_deg || target_deg > settings_.max_deg) return refuse(7);
+    go(target_deg, speed_deg_s_);
+    return "";
+  }
+
+  std::string line_;
+  int error_ = 0;
+  double speed_deg_s_ = 10;
+  bool addressed_ = false;
+  bool servo_ = false;
+  bool referenced_ = false;
+  bool reference_mode_ = true;
+  bool homing_ = false;
+};
+
+}  // namespace
+
+SimFault parse_sim_fault(const std::string& text) {
+  static const std::vector<std::string> kinds{"garbage", "truncated", "late",       "silent", "wrong-sender",
+                                              "error",   "unplug",    "power-loss", "block"};
+  const std::size_t at = text.find('@');
+  SimFault fault{text.substr(0, at), at == std::string::npos ? "" : text.substr(at + 1), 1};
+  const std::size_t colon = fault.command.find(':');
+  bool good = std::find(kinds.begin(), kinds.end(), fault.kind) != kinds.end();
+  if (colon != std::string::npos) {
+    const auto number = parse_number(fault.command.substr(colon + 1));
+    good = good && number && *number >= 1 && *number <= 1e6 && *number == std::floor(*number);
+    if (good) fault.occurrence = static_cast<int>(*number);
+    fault.command.resize(colon);
+  }
+  if (!good || fault.command.empty()) {
+    throw Error{Fault::usage,
+                "fault '" + text + "': not KIND@COMMAND[:N], e.g. truncated@POS?:3; kinds are " + join(kinds, ", ")};
+  }
+  return fault;
+}
+
+std::unique_ptr<SimDevice> make_sim_gcs(const SimGcsSettings& settings, double now_s, SimLog log) {
+  return std::make_unique<SimGcs>(settings, now_s, std::move(log));
+}
+
+}  // namespace vam::sim

@@ -1,0 +1,44 @@
+// A simulated PI C-863 with a rotation stage, down to its bad days.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/controllers/device.hpp"
+#include "sim/controllers/motor.hpp"
+
+namespace vam::sim {
+
+/// One thing that goes wrong: at the n-th time (from 1) that the command (POS?, MOV, #7, ...) arrives.
+/// garbage: random bytes instead of the answer · truncated: half the answer and no LF · late: 3 s later · silent: never
+/// wrong-sender: as if controller 7 had answered · error: the command is refused · unplug: the cable is pulled, motion
+/// goes on · power-loss: the controller dies and the table coasts to a stop · block: the
+/// table is held fast while the controller talks on.
+struct SimFault {
+  std::string kind;
+  std::string command;
+  int occurrence = 1;
+};
+
+/// "truncated@POS?:3". Throws Fault::usage.
+[[nodiscard]] SimFault parse_sim_fault(const std::string& text);
+
+struct SimGcsSettings {
+  MotorSettings motor;
+  double max_speed_deg_s = 90;  // M-060.PD
+  double min_deg = -36000;
+  double max_deg = 36000;
+  double home_deg = 17;       // where the table stands at power-on, seen from its reference
+  double latency_s = 0.0005;  // from question to answer, half of it before the controller looks at its axis
+  double jitter_s = 0;        // a random part more, of either half
+  std::uint64_t seed = 1;
+  int address = 1;
+  double log_period_s = 0.01;  // of the true angle, while the table moves
+  std::vector<SimFault> faults;
+};
+
+[[nodiscard]] std::unique_ptr<SimDevice> make_sim_gcs(const SimGcsSettings& settings, double now_s, SimLog log);
+
+}  // namespace vam::sim

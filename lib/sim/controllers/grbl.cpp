@@ -1,0 +1,129 @@
+#include "sim/controllers/grbl.hpp"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "base/text.hpp"
+#include "sim/controllers/private/controller.hpp"
+
+namespace vam::sim {
+
+namespace {
+
+constexpr double homing_speed_deg_s = 30;
+
+class SimGrbl final : public SimController {
+ public:
+  using SimController::SimController;
+
+  void receive(std::string_view bytes, double now_s) override {
+    advance(now_s);
+    for (const char c : bytes) {
+      if (silent()) return;
+      if (c == '?') {
+        asked_while_homing_ = homing_;  // reports pause
+        if (!homing_) reply("?", "?", status());
+      } else if (c == '\x85') {
+        cancel();
+      } else if (c == '\x18') {
+        reset();
+      } else if (c == '\n') {
+        handle(std::exchange(line_, ""));
+      } else if (c != '!' && c != '~' && c != '\r') {
+        line_ += c;
+      }
+    }
+  }
+
+ private:
+  void on_standing() override {
+    if (!homing_) return;
+    homing_ = false;
+    motor_.set_angle(0);
+    if (std::exchange(asked_while_homing_, false)) answer(status());
+    answer_spoilt(homing_fault_, homing_fault_ == "error" ? "ALARM:9\r\n" : "ok\r\n", "");
+  }
+
+  void reply(const std::string& line, const std::string& command, const std::string& text) {
+    const std::string fault = arrive(line, command);
+    if (silent()) return;
+    answer_spoilt(fault, fault == "error" ? "error:9\r\n" : text, "");
+  }
+
+  void cancel() {
+    arrive("0x85", "0x85");
+    if (motor_.moving() && !homing_) motor_.halt();
+  }
+
+  void reset() {
+    arrive("0x18", "0x18");
+    alarm_ = motor_.moving();
+    if (motor_.moving()) motor_.brake();
+    homing_ = false;
+    line_.clear();
+    answer("\r\nGrbl 1.1h ['$' for help]\r\n");
+  }
+
+  std::string status() const {
+    const char* state = alarm_ ? "Alarm" : homing_ ? "Home" : motor_.moving() ? "Jog" : "Idle";
+    std::array<char, 120> text{};
+    std::snprintf(text.data(), text.size(), "<%s|MPos:%.3f,0.000,0.000|FS:%.0f,0>\r\n", state, motor_.angle_deg(),
+                  60 * motor_.speed_deg_s());
+    return text.data();
+  }
+
+  std::string settings_text() const {
+    std::array<char, 200> text{};
+    std::snprintf(text.data(), text.size(), "$10=1\r\n$20=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n", 0,
+                  60 * settings_.max_speed_deg_s, settings_.motor.acceleration_deg_s2, settings_.max_deg);
+    return text.data();
+  }
+
+  void handle(const std::string& line) {
+    if (line.empty()) return answer("ok\r\n");
+    const std::string command = line.substr(0, line.rfind("$J=", 0) == 0 ? 2 : line.size());
+    if (command == "$I") return reply(line, command, "[VER:1.1h.20190830:table 3]\r\n[OPT:V,15,128]\r\nok\r\n");
+    if (command == "$$") return reply(line, command, settings_text());
+    if (command == "$X") {
+      alarm_ = false;
+      return reply(line, command, "[MSG:Caution: Unlocked]\r\nok\r\n");
+    }
+    if (command == "$H") {
+      homing_fault_ = arrive(line, command);
+      if (silent()) return;
+      homing_ = true;
+      return go(0, homing_speed_deg_s);
+    }
+    if (command == "$J") return jog(line);
+    reply(line, command, "error:20\r\n");
+  }
+
+  // "$J=G53 G90 X360.0000 F600.000"
+  void jog(const std::string& line) {
+    std::optional<double> target_deg;
+    std::optional<double> feed;
+    for (const auto& word : split(line.substr(3), ' ')) {
+      if (word.front() == 'X') target_deg = parse_number(word.substr(1));
+      if (word.front() == 'F') feed = parse_number(word.substr(1));
+    }
+    const bool good = target_deg && feed && *feed > 0 && !alarm_ && !homing_;
+    const bool inside = good && *target_deg >= settings_.min_deg && *target_deg <= settings_.max_deg;
+    reply(line, "$J", inside ? "ok\r\n" : good ? "error:15\r\n" : "error:9\r\n");
+    if (inside && !silent()) go(*target_deg, std::min(*feed / 60, settings_.max_speed_deg_s));
+  }
+
+  std::string line_;
+  bool homing_ = false;
+  bool asked_while_homing_ = false;
+  std::string homing_fault_;
+  bool alarm_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<SimDevice> make_sim_grbl(const SimGcsSettings& settings, double now_s, SimLog log) {
+  return std::make_unique<SimGrbl>(settings, now_s, std::move(log));
+}
+
+}  // namespace vam::sim

@@ -1,0 +1,18 @@
+// Simulators are told apart by options of their device string: sim:?speed_error=0.01&jitter_ms=5&log=truth.jsonl.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/os/address.hpp"
+#include "sim/controllers/gcs.hpp"
+
+namespace vam::sim {
+
+[[nodiscard]] const std::vector<std::string>& sim_option_names();
+[[nodiscard]] SimGcsSettings sim_settings(const device::Address& address);
+
+/// Writes each line to the file as it comes; nothing when path is empty.
+[[nodiscard]] SimLog file_sim_log(const std::string& path);
+
+}  // namespace vam::sim

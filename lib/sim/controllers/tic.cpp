@@ -1,0 +1,158 @@
+#include "sim/controllers/private/tic.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace vam::sim {
+
+namespace {
+
+class SimTic final : public device::UsbLink {
+ public:
+  SimTic(const SimTicSettings& settings, device::Clock& clock, SimLog log)
+      : settings_(settings), clock_(clock), log_(std::move(log)), motor_(settings.motor, clock.now_s()) {
+    heard_s_ = clock.now_s();
+  }
+
+  void control_out(int request, int value, int index) override {
+    advance();
+    refuse_if_spoilt();
+    heard_s_ = clock_.now_s();
+    const auto argument =
+        static_cast<std::int32_t>(static_cast<std::uint32_t>(index) << 16U | static_cast<std::uint32_t>(value));
+    switch (request) {
+      case 0x85:
+        energized_ = true;
+        break;  // energize
+      case 0x83:
+        safe_start_ = false;
+        break;  // exit safe start
+      case 0x8C:
+        break;  // reset command time-out
+      case 0x89:
+        motor_.brake();
+        note("halt");
+        break;  // halt and hold
+      case 0xE6:
+        motor_.set_speed(argument * 1e-4 / settings_.steps_per_deg);
+        break;  // maximum speed
+      case 0xEC:
+        motor_.set_angle(angle(argument));
+        break;  // halt and set position
+      case 0x97:
+        go(0);
+        uncertain_ = false;
+        break;  // go home
+      case 0xE0:
+        go(angle(argument));
+        break;  // target position
+      default:
+        throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
+    }
+  }
+
+  std::string control_in(int request, int, int index, int length) override {
+    advance();
+    if (request != 0xA1) throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
+    refuse_if_spoilt();
+    heard_s_ = clock_.now_s();
+    const std::string answer = packed(variable(index), length);
+    if (spoils("garbage")) return std::string(answer.size(), '\x5A');
+    return spoils("truncated") ? answer.substr(0, answer.size() / 2) : answer;
+  }
+
+  void write_report(const std::string&) override { throw Error{Fault::protocol, name_ + ": has no reports"}; }
+  std::string read_report() override { throw Error{Fault::protocol, name_ + ": has no reports"}; }
+  const std::string& name() const override { return name_; }
+  Json about() const override {
+    return {{"usb_id", "1ffb:00b3"},
+            {"serial", "00312345"},
+            {"maker", "Pololu Corporation"},
+            {"model", "Tic T825"},
+            {"firmware", "1.06"}};
+  }
+
+ private:
+  [[nodiscard]] bool spoils(const char* fault) const {
+    return settings_.fault == fault && transfers_ > settings_.fault_after;
+  }
+
+  void refuse_if_spoilt() {
+    ++transfers_;
+    if (spoils("unplug")) throw Error{Fault::absent, name_ + ": is gone (LIBUSB_ERROR_NO_DEVICE)"};
+    if (spoils("error")) throw Error{Fault::protocol, name_ + ": refused the request (LIBUSB_ERROR_PIPE)"};
+    if (!spoils("silent")) return;
+    clock_.sleep_until(clock_.now_s() + 0.25);
+    throw Error{Fault::busy, name_ + ": no answer (LIBUSB_ERROR_TIMEOUT)"};
+  }
+
+  double angle(std::int32_t steps) const { return steps / settings_.steps_per_deg; }
+
+  void go(double angle_deg) {
+    if (!energized_ || safe_start_) return;
+    motor_.go_to(angle_deg);
+    note("moving");
+  }
+
+  void note(const std::string& event) {
+    if (log_) log_({{"t_monotonic_s", clock_.now_s()}, {"event", event}, {"angle_deg", motor_.angle_deg()}});
+  }
+
+  void advance() {
+    const bool moved = motor_.moving();
+    motor_.advance(std::min(clock_.now_s(), heard_s_ + settings_.command_timeout_s));
+    if (clock_.now_s() > heard_s_ + settings_.command_timeout_s) motor_.halt();
+    motor_.advance(clock_.now_s());
+    if (moved && !motor_.moving()) note("standing");
+  }
+
+  std::int64_t variable(int offset) const {
+    const auto steps = [&](double deg) { return std::llround(deg * settings_.steps_per_deg); };
+    switch (offset) {
+      case 0x00:
+        return (settings_.error_bits != 0 ? 4 : energized_ ? 10 : 2) | variable(0x01) << 8;
+      case 0x01:
+        return (energized_ ? 1 : 0) | (uncertain_ ? 2 : 0) | (!uncertain_ && motor_.moving() ? 16 : 0);
+      case 0x02:
+        return settings_.error_bits;
+      case 0x0A:
+        return steps(motor_.target_deg());
+      case 0x1E:
+        return steps(settings_.motor.acceleration_deg_s2) * 100;
+      case 0x22:
+        return steps(motor_.angle_deg());
+      case 0x26:
+        return steps(motor_.speed_deg_s()) * 10000;
+      default:
+        return 0;
+    }
+  }
+
+  static std::string packed(std::int64_t value, int length) {
+    std::string bytes;
+    for (int i = 0; i < length; ++i) bytes += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xFFU);
+    return bytes;
+  }
+
+  SimTicSettings settings_;
+  device::Clock& clock_;
+  SimLog log_;
+  SimMotor motor_;
+  double heard_s_ = 0;
+  int transfers_ = 0;
+  bool energized_ = false;
+  bool safe_start_ = true;
+  bool uncertain_ = true;
+  std::string name_ = "usb:1ffb:00b3:00312345";
+};
+
+}  // namespace
+
+std::unique_ptr<device::UsbLink> make_sim_tic(const SimTicSettings& settings, device::Clock& clock, SimLog log) {
+  return std::make_unique<SimTic>(settings, clock, std::move(log));
+}
+
+}  // namespace vam::sim

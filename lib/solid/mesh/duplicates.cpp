@@ -1,0 +1,131 @@
+// Triangles that a mesh has more than once.
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "solid/mesh/private/topology.hpp"
+#include "solid/mesh/private/weld.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+// A triangle by its sorted corners, whichever way round it runs.
+struct Key {
+  Triangle sorted;
+  int index;
+  bool even;  // an even permutation of the sorted corners
+};
+
+// All triangles, those with the same corners next to each other, in the order of the file.
+std::vector<Key> sorted_keys(const model::TriangleSoup& mesh) {
+  // Counting sort by the lowest corner, then each short bucket by the others.
+  std::vector<std::size_t> first(mesh.points.size() + 1);
+  for (const Triangle& t : mesh.triangles) ++first[static_cast<std::size_t>(std::min({t[0], t[1], t[2]})) + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  std::vector<Key> keys(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    Triangle t = mesh.triangles[i];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    const bool even = t[1] < t[2];
+    if (!even) std::swap(t[1], t[2]);
+    keys[next[static_cast<std::size_t>(t[0])]++] = {t, static_cast<int>(i), even};
+  }
+  for (std::size_t low = 0; low + 1 < first.size(); ++low) {
+    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(first[low]),
+              keys.begin() + static_cast<std::ptrdiff_t>(first[low + 1]), [](const Key& a, const Key& b) {
+                return a.sorted != b.sorted ? a.sorted < b.sorted : a.index < b.index;
+              });
+  }
+  return keys;
+}
+
+// Which of the triangles left over from copies that cancel are needless: a patch of them is when the other triangles
+// meet it and are closed without it, as where two solids touch. A patch that closes a hole stays, and so does a surface
+// made of nothing else.
+class Patches {
+ public:
+  Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)
+      : root_(mesh.triangles.size()), keep_(mesh.triangles.size(), 0), met_(mesh.triangles.size(), 0) {
+    std::iota(root_.begin(), root_.end(), std::size_t{0});
+    std::vector<char> doubtful(mesh.triangles.size(), 0);
+    for (const std::size_t t : cancelling) doubtful[t] = 1;
+    std::vector<Triangle> rest;
+    std::vector<std::size_t> original;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (drop[t] != 0) continue;
+      rest.push_back(mesh.triangles[t]);
+      original.push_back(t);
+    }
+    EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+      std::vector<std::size_t> patch;
+      for (const HalfEdge& half : edge) {
+        const std::size_t t = original[static_cast<std::size_t>(half.triangle)];
+        if (doubtful[t] != 0) patch.push_back(t);
+      }
+      if (!patch.empty()) join(patch, edge.size() - patch.size());
+    });
+  }
+
+  [[nodiscard]] bool needless(std::size_t triangle) {
+    const std::size_t root = find(triangle);
+    return met_[root] != 0 && keep_[root] == 0;
+  }
+
+ private:
+  std::size_t find(std::size_t t) {
+    while (root_[t] != t) t = root_[t] = root_[root_[t]];
+    return t;
+  }
+  // An edge of the patch with so many other triangles.
+  void join(const std::vector<std::size_t>& patch, std::size_t others) {
+    std::size_t root = find(patch.front());
+    for (const std::size_t t : patch) {
+      const std::size_t other = find(t);
+      if (others > 0 || other == root) continue;
+      root_[other] = root;
+      keep_[root] |= keep_[other];
+      met_[root] |= met_[other];
+    }
+    for (const std::size_t t : patch) {
+      if (others > 0) met_[find(t)] = 1;
+      if (others % 2 == 1) keep_[find(t)] = 1;
+    }
+  }
+
+  std::vector<std::size_t> root_;
+  std::vector<char> keep_;
+  std::vector<char> met_;
+};
+
+}  // namespace
+
+long drop_duplicates(model::TriangleSoup& mesh) {
+  const std::vector<Key> keys = sorted_keys(mesh);
+  std::vector<char> drop(mesh.triangles.size(), 0);
+  std::vector<std::size_t> cancelling;  // the first of copies that cancel
+  for (auto group = keys.begin(); group != keys.end();) {
+    long balance = 0;
+    auto stop = group;
+    for (; stop != keys.end() && stop->sorted == group->sorted; ++stop) balance += stop->even ? 1 : -1;
+    const auto keep =
+        std::find_if(group, stop, [&](const Key& key) { return balance == 0 || key.even == (balance > 0); });
+    for (auto key = group; key != stop; ++key) drop[static_cast<std::size_t>(key->index)] = key != keep ? 1 : 0;
+    if (balance == 0) cancelling.push_back(static_cast<std::size_t>(keep->index));
+    group = stop;
+  }
+  if (!cancelling.empty()) {
+    Patches patches(mesh, drop, cancelling);
+    for (const std::size_t index : cancelling) drop[index] = patches.needless(index) ? 1 : 0;
+  }
+  const std::size_t before = mesh.triangles.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < before; ++i) {
+    if (drop[i] == 0) mesh.triangles[kept++] = mesh.triangles[i];
+  }
+  mesh.triangles.resize(kept);
+  return static_cast<long>(before - kept);
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,103 @@
+#include "solid/mesh/repair.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/stats/median.hpp"
+#include "base/text.hpp"
+#include "solid/mesh/geometry.hpp"
+#include "solid/mesh/private/orient.hpp"
+#include "solid/mesh/private/topology.hpp"
+#include "solid/mesh/private/weld.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+void drop(model::TriangleSoup& mesh, Repair& done) {
+  done.degenerate_dropped += drop_degenerate(mesh);
+  done.duplicates_dropped += drop_duplicates(mesh);
+}
+
+struct Border {
+  std::vector<int> points;      // of open edges
+  std::vector<double> lengths;  // of those edges
+};
+
+Border border(const model::TriangleSoup& mesh) {
+  Border result;
+  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int low, std::span<const HalfEdge> edge) {
+    if (edge.size() % 2 == 0) return;
+    const int high = edge.front().high;
+    result.points.push_back(low);
+    result.points.push_back(high);
+    result.lengths.push_back(
+        length(mesh.points[static_cast<std::size_t>(low)] - mesh.points[static_cast<std::size_t>(high)]));
+  });
+  std::sort(result.points.begin(), result.points.end());
+  result.points.erase(std::unique(result.points.begin(), result.points.end()), result.points.end());
+  return result;
+}
+
+// Cracks: borders that lie on each other up to rounding. Features are safe, as nothing but borders is joined and the
+// distance stays far below the border's own edges.
+void close_cracks(model::TriangleSoup& mesh, Repair& done) {
+  Border open = border(mesh);
+  if (open.points.empty()) return;
+  Bounds bounds;
+  for (const Point& p : mesh.points) bounds.add(p);
+  const double distance = std::min(1e-4 * bounds.diagonal(), 0.2 * stats::median(open.lengths));
+  const long welded = weld_near_points(mesh, open.points, distance);
+  if (welded == 0) return;
+  done.points_welded += welded;
+  done.weld_distance = distance;
+  drop(mesh, done);
+}
+
+void count_edges(const model::TriangleSoup& mesh, Repair& done) {
+  EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
+    const auto rising = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& half) { return half.rising; });
+    if (edge.size() % 2 != 0) ++done.open_edges;
+    if (edge.size() > 2) ++done.crowded_edges;
+    if (2 * rising != static_cast<std::ptrdiff_t>(edge.size())) ++done.unbalanced_edges;
+  });
+}
+
+}  // namespace
+
+Repair repair(model::TriangleSoup& mesh, const std::string& subject) {
+  Repair done;
+  done.points_welded = weld_equal_points(mesh);
+  drop(mesh, done);
+  close_cracks(mesh, done);
+  if (mesh.triangles.empty())
+    throw Error{Fault::data, subject + ": all triangles are degenerate; the mesh has no surface"};
+  const Orientation orientation = orient(mesh);
+  done.flipped = orientation.flipped;
+  done.components = orientation.components;
+  done.cavities = orientation.cavities;
+  done.unorientable = orientation.unorientable;
+  count_edges(mesh, done);
+  return done;
+}
+
+bool Repair::changed() const { return weld_distance > 0 || degenerate_dropped + duplicates_dropped + flipped > 0; }
+
+std::string Repair::summary() const {
+  std::vector<std::string> parts;
+  const auto say = [&](long count, const std::string& before, const std::string& after) {
+    if (count > 0) parts.push_back(before + std::to_string(count) + after);
+  };
+  if (weld_distance > 0) parts.push_back("closed cracks of up to " + format_number(weld_distance, 3) + " mm");
+  say(degenerate_dropped, "dropped ", " degenerate triangles");
+  say(duplicates_dropped, "dropped ", " duplicate triangles");
+  say(flipped, "turned over ", " triangles");
+  say(open_edges, "", " open edges remain");
+  say(crowded_edges, "", " edges have more than two triangles");
+  say(unorientable, "", " edges cannot be oriented");
+  return join(parts, ", ");
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,166 @@
+#include "solid/mesh/private/triangle_tree.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vam::solid {
+
+namespace {
+
+constexpr int leaf_size = 4;
+
+// Builds the nodes over an order of the triangles.
+class Builder {
+ public:
+  Builder(const std::vector<Corners>& soup, std::vector<TriangleNode>& nodes) : soup_(soup), nodes_(nodes) {
+    order_.resize(soup.size());
+    std::iota(order_.begin(), order_.end(), 0);
+    for (const Corners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
+    nodes_.reserve(soup.size());
+    if (!soup.empty()) build(0, static_cast<int>(soup.size()));
+  }
+  [[nodiscard]] const std::vector<int>& order() const { return order_; }
+
+ private:
+  [[nodiscard]] std::size_t at(int position) const {
+    return static_cast<std::size_t>(order_[static_cast<std::size_t>(position)]);
+  }
+
+  void build(int begin, int end) {
+    const std::size_t index = nodes_.size();
+    nodes_.emplace_back();
+    TriangleNode node{.low = soup_[at(begin)][0], .high = soup_[at(begin)][0], .begin = begin, .end = end};
+    if (end - begin <= leaf_size) {
+      for (int i = begin; i < end; ++i) {
+        for (const Vector3& corner : soup_[at(i)]) grow(node.low, node.high, corner);
+      }
+      nodes_[index] = node;
+      return;
+    }
+    const int middle = split(begin, end);
+    build(begin, middle);
+    node.right = static_cast<int>(nodes_.size());
+    build(middle, end);
+    for (const std::size_t child : {index + 1, static_cast<std::size_t>(node.right)}) {
+      grow(node.low, node.high, nodes_[child].low);
+      grow(node.low, node.high, nodes_[child].high);
+    }
+    nodes_[index] = node;
+  }
+
+  int split(int begin, int end) {
+    Vector3 low = centroids_[at(begin)];
+    Vector3 high = low;
+    for (int i = begin; i < end; ++i) grow(low, high, centroids_[at(i)]);
+    const Vector3 size = high - low;
+    const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
+    const int middle = (begin + end) / 2;
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
+      return centroids_[static_cast<std::size_t>(a)][axis] < centroids_[static_cast<std::size_t>(b)][axis];
+    });
+    return middle;
+  }
+
+  static void grow(Vector3& low, Vector3& high, const Vector3& p) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      low[d] = std::min(low[d], p[d]);
+      high[d] = std::max(high[d], p[d]);
+    }
+  }
+
+  const std::vector<Corners>& soup_;
+  std::vector<TriangleNode>& nodes_;
+  std::vector<Vector3> centroids_;
+  std::vector<int> order_;
+};
+
+double distance2(const TriangleNode& node, const Vector3& p) {
+  double sum = 0;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const double out = std::max(std::max(node.low[d] - p[d], p[d] - node.high[d]), 0.0);
+    sum += out * out;
+  }
+  return sum;
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(std::vector<Corners> soup) {
+  const Builder builder(soup, nodes);
+  triangles.reserve(soup.size());
+  for (const int i : builder.order()) triangles.push_back(soup[static_cast<std::size_t>(i)]);
+}
+
+Nearest TriangleTree::nearest(const Vector3& point, int start) const {
+  Nearest best;
+  const auto look = [&](int triangle) {
+    const Vector3 foot = nearest_on(triangles[static_cast<std::size_t>(triangle)], point);
+    const Vector3 way = point - foot;
+    const double d2 = dot(way, way);
+    if (d2 < best.distance2) best = {foot, d2, triangle};
+  };
+  best.distance2 = 1e300;
+  look(start);
+  struct Waiting {
+    int node;
+    double distance2;
+  };
+  std::array<Waiting, 64> stack;  // the median split keeps the depth below 32
+  std::size_t waiting = 0;
+  stack[waiting++] = {0, 0};
+  while (waiting > 0) {
+    const Waiting next = stack[--waiting];
+    if (next.distance2 >= best.distance2) continue;
+    const TriangleNode& node = nodes[static_cast<std::size_t>(next.node)];
+    if (node.right == 0) {
+      for (int i = node.begin; i < node.end; ++i) look(i);
+      continue;
+    }
+    Waiting near{next.node + 1, distance2(nodes[static_cast<std::size_t>(next.node) + 1], point)};
+    Waiting far{node.right, distance2(nodes[static_cast<std::size_t>(node.right)], point)};
+    if (far.distance2 < near.distance2) std::swap(near, far);
+    if (far.distance2 < best.distance2) stack[waiting++] = far;
+    if (near.distance2 < best.distance2) stack[waiting++] = near;
+  }
+  return best;
+}
+
+std::vector<Corners> corners_of(const model::TriangleSoup& mesh) {
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Corners c{mesh.points[static_cast<std::size_t>(t[0])], mesh.points[static_cast<std::size_t>(t[1])],
+                    mesh.points[static_cast<std::size_t>(t[2])]};
+    const Vector3 normal = cross(c[1] - c[0], c[2] - c[0]);
+    if (dot(normal, normal) > 0) triangles.push_back(c);
+  }
+  return triangles;
+}
+
+Vector3 nearest_on(const Corners& triangle, const Vector3& p) {
+  const auto& [a, b, c] = triangle;
+  const Vector3 ab = b - a;
+  const Vector3 ac = c - a;
+  const Vector3 ap = p - a;
+  const double d1 = dot(ab, ap);
+  const double d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const Vector3 bp = p - b;
+  const double d3 = dot(ab, bp);
+  const double d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + (d1 / (d1 - d3)) * ab;
+  const Vector3 cp = p - c;
+  const double d5 = dot(ab, cp);
+  const double d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + (d2 / (d2 - d6)) * ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + ((d4 - d3) / (d4 - d3 + d5 - d6)) * (c - b);
+  const double share = 1 / (va + vb + vc);
+  return a + (vb * share) * ab + (vc * share) * ac;
+}
+
+}  // namespace vam::solid

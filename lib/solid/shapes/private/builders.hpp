@@ -1,0 +1,44 @@
+// The solids behind the names of shapes.cpp; values in the order of the catalogue.
+#pragma once
+
+#include <span>
+
+#include "solid/shapes/field.hpp"
+
+namespace vam::solid::build {
+
+using Values = std::span<const double>;
+
+// shape_basic.cpp
+Field sphere(Values v);
+Field cylinder(Values v);
+Field half_cylinder(Values v);
+Field hollow_cylinder(Values v);
+Field box(Values v);
+Field cone(Values v);
+Field torus(Values v);
+Field egg_shell(Values v);
+
+// shape_lattice.cpp
+Field gyroid(Values v);
+Field octet(Values v);
+Field ball_in_cage(Values v);
+
+// shape_target.cpp
+Field disc_grid(Values v);
+Field ladder(Values v);
+Field resolution(Values v);
+
+// shape_boat.cpp
+Field boat(Values v);
+Field screwdriver(Values v);
+Field handle(Values v);
+
+/// Throws Fault::usage with the line unless it holds.
+void require(bool holds, const char* line);
+
+/// A solid from its field, its box, its radius about the z axis and its largest curvature; the ball is that of the box.
+Field solid(std::function<double(const Point&)> value, const Point& low, const Point& high, double radius_mm,
+            double curvature_per_mm);
+
+}  // namespace vam::solid::build

@@ -1,0 +1,67 @@
+// A part that stands in the printer, whatever it came from, and how it becomes voxels slab by slab.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/image.hpp"
+#include "base/json.hpp"
+#include "model/grid.hpp"
+#include "model/mesh.hpp"
+#include "solid/mesh/repair.hpp"
+#include "solid/voxel/placement.hpp"
+#include "solid/voxel/voxelize.hpp"
+
+namespace vam::solid {
+
+/// A placed part: where it is, and how to cover a grid with it.
+struct Part {
+  std::string subject;  // begins messages: the file's name, or "--shape gyroid"
+  Extent extent;
+  Affine map;                    // from the file's coordinates to the target's frame
+  std::optional<Repair> repair;  // of a mesh
+  bool voted = false;            // inside is found by vote
+  Lattice lattice;
+  std::function<Vote(const model::Grid&, const SliceSink&)> fill;
+};
+
+/// The part of a shape (see make_shape) under a placement.
+[[nodiscard]] Part shape_part(const std::string& text, const Placement& placement, const Writable& room);
+
+enum class FillMode { automatic, exact, vote };
+
+/// The part of a mesh: moved by `map`, then repaired. Automatic fills exactly where the mesh is closed and votes where
+/// it is not. Throws Fault::data when `exact` is asked of an open mesh; filling throws Fault::data when inside is
+/// ambiguous: no volume is enclosed, or more than 1 % of it stays undecided.
+[[nodiscard]] Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affine& map, FillMode mode);
+
+/// Numbered pictures, from the lowest slice up; row 0 of a picture is at the largest y.
+struct PictureStack {
+  int width = 0;
+  int height = 0;
+  int count = 0;
+  std::function<Image(int)> read;  // coverage 0...1; asked in ascending order, twice
+};
+
+/// The part of a stack of pictures whose pixels and distances are voxel_mm: pictures centred on the axis, the stack on
+/// z = 0. Stretching along z takes the mean of the pictures in a slice by their shares; x and y stay as they are (where
+/// height is odd and width is not, or the reverse, y is off by half a voxel).
+[[nodiscard]] Part picture_part(PictureStack stack, const std::string& subject, double voxel_mm, double stretch_z);
+
+/// What a filled grid holds.
+struct Content {
+  double volume_mm3 = 0;    // in the target's frame, stretched along z
+  long solid_voxels = 0;    // coverage 1
+  long surface_voxels = 0;  // coverage between 0 and 1
+  Vote vote;
+};
+
+/// Fills the grid and hands each slab on. Throws Fault::data when nothing is covered.
+Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink);
+
+/// What --report says: volume and size of the print (not of the stretched target), the grid, repairs.
+[[nodiscard]] Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
+                           const Writable& room);
+
+}  // namespace vam::solid

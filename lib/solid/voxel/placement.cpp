@@ -1,0 +1,129 @@
+#include "solid/voxel/placement.hpp"
+
+#include <functional>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+constexpr int most_voxels = 4096;     // a side; 256 GiB were it dense
+constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the border
+
+using ExtentUnder = std::function<Extent(const Affine&)>;
+
+Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room, const std::string& subject) {
+  Affine map = rotation(placement.rotate_deg) * scaling({placement.scale, placement.scale, placement.scale});
+  Extent part = under(map);
+  const auto centred = [](const Affine& m, const Extent& e) {
+    Affine moved = m;
+    moved.shift = moved.shift - e.box.centre();
+    return moved;
+  };
+  const Point size = part.box.size();
+  const double largest = std::max({size[0], size[1], size[2]});
+  if (!(largest > 0)) throw Error{Fault::data, subject + ": has no size, all its points coincide"};
+  if (placement.centre) map = centred(map, part);
+  double factor = 1;
+  if (placement.fit_mm) factor = *placement.fit_mm / largest;
+  if (placement.fit_writable) {
+    part = under(map);
+    const double height = part.box.size()[2] * placement.stretch_z;
+    factor = room.radius_mm / part.radius_mm;
+    if (height > 0) factor = std::min(factor, (room.high_mm - room.low_mm) / height);
+  }
+  return scaling({factor, factor, factor * placement.stretch_z}) * map;
+}
+
+}  // namespace
+
+Writable writable(const model::Printer& printer) {
+  const model::Projector& projector = printer.projector;
+  // Rows are numbered downwards; z is up. Row r is centred at z = (axis_row - r) * pixel_mm.
+  return {model::writable_radius_mm(printer), (projector.axis_row - (projector.rows - 0.5)) * projector.pixel_mm,
+          (projector.axis_row + 0.5) * projector.pixel_mm};
+}
+
+Extent extent(const model::TriangleSoup& soup) {
+  Extent result;
+  for (const auto& triangle : soup.triangles) {
+    for (const int index : triangle) {
+      const Point& p = soup.points[static_cast<std::size_t>(index)];
+      result.box.add(p);
+      result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
+    }
+  }
+  return result;
+}
+
+Extent extent(const Field& field) { return {field.box, field.radius_mm}; }
+
+Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
+             const std::string& subject) {
+  const auto under = [&](const Affine& map) {
+    Extent result;
+    for (const auto& triangle : soup.triangles) {
+      for (const int index : triangle) {
+        const Point p = map(soup.points[static_cast<std::size_t>(index)]);
+        result.box.add(p);
+        result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
+      }
+    }
+    return result;
+  };
+  return place(under, placement, room, subject);
+}
+
+Affine place(const Field& field, const Placement& placement, const Writable& room, const std::string& subject) {
+  return place([&](const Affine& map) { return extent(transformed(field, map)); }, placement, room, subject);
+}
+
+void transform(model::TriangleSoup& soup, const Affine& map) {
+  for (auto& point : soup.points) point = map(point);
+  const bool mirrors = dot(map.linear[0], cross(map.linear[1], map.linear[2])) < 0;
+  if (mirrors) {
+    for (auto& triangle : soup.triangles) std::swap(triangle[1], triangle[2]);
+  }
+}
+
+model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
+                        const std::string& subject) {
+  const double odd = lattice.odd_side ? 1 : 0;
+  const double half = std::ceil(std::max(part.radius_mm, radius_mm) / voxel_mm - 0.5 * odd - 1e-9) + 1;
+  const double first = std::floor(part.box.low[2] / voxel_mm - lattice.z_phase + 1e-9);
+  const double last = std::max(std::ceil(part.box.high[2] / voxel_mm - lattice.z_phase - 1e-9), first + 1);
+  const double side = 2 * half + odd;
+  if (side > most_voxels || last - first > most_voxels) {
+    throw Error{Fault::data, subject + ": " + format_number(side) + " x " + format_number(side) + " x " +
+                                 format_number(last - first) + " voxels of " + format_number(voxel_mm) +
+                                 " mm are more than " + std::to_string(most_voxels) +
+                                 " a side; check --unit, or take a larger --voxel or a smaller --fit"};
+  }
+  return model::centred_grid(static_cast<int>(side), static_cast<int>(side), static_cast<int>(last - first), voxel_mm,
+                             (first + lattice.z_phase + 0.5) * voxel_mm);
+}
+
+void require_writable(const Extent& part, const Writable& room, const std::string& subject) {
+  if (part.radius_mm > room.radius_mm + rounding_mm) {
+    throw Error{Fault::data, subject + ": reaches " + format_number(part.radius_mm, 4) +
+                                 " mm from the axis, beyond the writable radius of " +
+                                 format_number(room.radius_mm, 4) + " mm; --fit-writable shrinks it"};
+  }
+  if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
+    throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
+                                 format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
+                                 format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
+                                 " mm; --fit-writable shrinks it"};
+  }
+}
+
+void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject) {
+  if (insert.radius_mm <= vial_radius_mm) return;
+  throw Error{Fault::data, subject + ": reaches " + format_number(insert.radius_mm, 4) +
+                               " mm from the axis, beyond the vial's inner radius of " +
+                               format_number(vial_radius_mm, 4) + " mm; check --unit and --no-center"};
+}
+
+}  // namespace vam::solid

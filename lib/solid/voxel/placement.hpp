@@ -1,0 +1,68 @@
+// Where a part stands in the printer: its size, its turn, its place on the axis, and the voxels around it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/grid.hpp"
+#include "model/mesh.hpp"
+#include "model/printer.hpp"
+#include "solid/shapes/field.hpp"
+
+namespace vam::solid {
+
+/// What the user asks for. Order: scale, rotate, fit, centre, stretch.
+struct Placement {
+  double scale = 1;              // millimetres per unit of the file, and any factor on top
+  Point rotate_deg{};            // about x, then y, then z, fixed axes
+  std::optional<double> fit_mm;  // largest dimension
+  bool fit_writable = false;     // as large as the writable cylinder allows; needs `centre`
+  bool centre = true;            // middle of the bounding box to the origin
+  double stretch_z = 1;          // [OST22 eq S2]: 1 / M_vp undoes the projector's vertical magnification
+};
+
+/// The cylinder about the rotation axis that light reaches, z = 0 in the middle of the projector's rows.
+struct Writable {
+  double radius_mm = 0;
+  double low_mm = 0;  // z, in the stretched frame of the focal plane
+  double high_mm = 0;
+};
+[[nodiscard]] Writable writable(const model::Printer& printer);
+
+/// Extent of a placed part.
+struct Extent {
+  Bounds box;
+  double radius_mm = 0;  // about the z axis
+};
+[[nodiscard]] Extent extent(const model::TriangleSoup& soup);
+[[nodiscard]] Extent extent(const Field& field);
+
+/// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size.
+[[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
+                           const std::string& subject);
+[[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room,
+                           const std::string& subject);
+
+/// All points moved; triangles turned over when the map mirrors.
+void transform(model::TriangleSoup& soup, const Affine& map);
+
+/// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z, so that with
+/// voxel_mm = pixel_mm slices coincide with rows of the projector. Stacks of pictures bring a lattice of their own.
+struct Lattice {
+  bool odd_side = false;  // a voxel's centre on the axis, not a corner
+  double z_phase = 0;     // faces at multiples plus this share of a voxel
+};
+
+/// The smallest grid around the axis that holds the part with one voxel to spare in x and y, and at least `radius_mm`
+/// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side.
+[[nodiscard]] model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
+                                      const std::string& subject);
+
+/// Throws Fault::data, with both numbers and the remedy, when the part leaves the writable cylinder.
+void require_writable(const Extent& part, const Writable& room, const std::string& subject);
+
+/// Throws Fault::data when an insert is wider than the vial.
+void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject);
+
+}  // namespace vam::solid

@@ -1,0 +1,122 @@
+#include "solid/voxel/private/voxel_mesh.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+constexpr double rounding = 1e-6;
+
+// The part of a triangle between the planes z = 0 and z = nz, in triangles.
+void add_between(const Corners& corners, int nz, std::vector<Corners>& triangles) {
+  Polygon below;
+  Polygon rest;
+  Polygon inside;
+  Polygon above;
+  split(polygon(corners), 2, 0, below, rest);
+  split(rest, 2, nz, inside, above);
+  for (int i = 1; i + 1 < inside.count; ++i) {
+    const auto c = static_cast<std::size_t>(i);
+    triangles.push_back({inside.corners[0], inside.corners[c], inside.corners[c + 1]});
+  }
+}
+
+}  // namespace
+
+std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid) {
+  std::vector<Vector3> points(mesh.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) points[i][a] = (mesh.points[i][a] - grid.origin_mm[a]) / grid.voxel_mm + 0.5;
+    const auto within = [&](std::size_t a, int size) {
+      return points[i][a] > -rounding && points[i][a] < size + rounding;
+    };
+    if (!within(0, grid.nx) || !within(1, grid.ny)) throw Error{Fault::bug, "voxelize: the mesh leaves its grid"};
+  }
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& triangle : mesh.triangles) {
+    Corners corners{};
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = points[static_cast<std::size_t>(triangle[c])];
+    const double low = std::min({corners[0][2], corners[1][2], corners[2][2]});
+    const double high = std::max({corners[0][2], corners[1][2], corners[2][2]});
+    if (low > -rounding && high < grid.nz + rounding) {
+      triangles.push_back(corners);
+    } else if (low < grid.nz && high > 0) {
+      add_between(corners, grid.nz, triangles);
+    }
+  }
+  return triangles;
+}
+
+Polygon polygon(const Corners& corners) {
+  Polygon result;
+  for (const Vector3& corner : corners) result.add(corner);
+  return result;
+}
+
+Bins::Bins(const std::vector<Corners>& triangles, std::size_t axis, int layers)
+    : first_(static_cast<std::size_t>(layers) + 1) {
+  std::vector<Span> spans;
+  spans.reserve(triangles.size());
+  for (const Corners& t : triangles) {
+    const double low = std::min({t[0][axis], t[1][axis], t[2][axis]});
+    const double high = std::max({t[0][axis], t[1][axis], t[2][axis]});
+    spans.push_back(span_of(low, high, layers));
+    for (int k = spans.back().first; k <= spans.back().last; ++k) ++first_[static_cast<std::size_t>(k) + 1];
+  }
+  for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  members_.resize(first_.back());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (int k = spans[t].first; k <= spans[t].last; ++k) {
+      members_[next[static_cast<std::size_t>(k)]++] = static_cast<int>(t);
+    }
+  }
+}
+
+std::span<const int> Bins::operator[](int layer) const {
+  const auto k = static_cast<std::size_t>(layer);
+  return std::span<const int>(members_).subspan(first_[k], first_[k + 1] - first_[k]);
+}
+
+Moment moment(const Polygon& piece, std::size_t axis) {
+  const std::size_t u = (axis + 1) % 3;
+  const std::size_t v = (axis + 2) % 3;
+  const Vector3& a = piece.corners[0];
+  Moment result;
+  for (int i = 1; i + 1 < piece.count; ++i) {
+    const Vector3& b = piece.corners[static_cast<std::size_t>(i)];
+    const Vector3& c = piece.corners[static_cast<std::size_t>(i) + 1];
+    const double area = 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]));
+    result.area += area;
+    result.first += area * (a[axis] + b[axis] + c[axis]) / 3;
+  }
+  return result;
+}
+
+void Rows::reset(int rows, int voxels) {
+  length_ = voxels + 1;
+  values_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length_));
+  touched_.assign(static_cast<std::size_t>(rows), 0);
+}
+
+double* Rows::operator[](int row) {
+  double* begin = values_.data() + static_cast<std::ptrdiff_t>(row) * length_;
+  if (!touched(row)) {
+    touched_[static_cast<std::size_t>(row)] = 1;
+    std::fill(begin, begin + length_, 0.0);
+  }
+  return begin;
+}
+
+double Rows::accumulate(int row) {
+  double* entry = (*this)[row];
+  double sum = 0;
+  for (int i = 0; i < length_; ++i) entry[i] = sum += entry[i];
+  return sum;
+}
+
+}  // namespace vam::solid

@@ -1,6 +1,0 @@
-// The number of slices in a slab; apart, because kernel files include no standard header.
-#pragma once
-
-namespace vam::tomo {
-inline constexpr int lanes = 16;
-}

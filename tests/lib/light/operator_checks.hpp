@@ -1,0 +1,75 @@
+// What every operator must pass.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "base/slab.hpp"
+#include "light/operator.hpp"
+#include "optimize/methods/method.hpp"
+#include "oracle/part_2d.hpp"
+
+namespace parts {
+
+inline vam::Slab noise(vam::light::Shape shape, unsigned seed) {
+  vam::Slab slab(shape.width, shape.height);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (float& v : slab.values) v = uniform(random);
+  return slab;
+}
+
+inline double dot(const vam::Slab& a, const vam::Slab& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.values.size(); ++i)
+    sum += static_cast<double>(a.values[i]) * static_cast<double>(b.values[i]);
+  return sum;
+}
+
+inline vam::Slab dose_of(const vam::light::Operator& light, const vam::Slab& g) {
+  vam::Slab dose(light.object().width, light.object().height);
+  light.adjoint({&g, 1}, {&dose, 1});
+  return dose;
+}
+
+inline double adjoint_error(const vam::light::Operator& light) {
+  const vam::Slab f = noise(light.object(), 1);
+  const vam::Slab g = noise(light.sinogram(), 2);
+  vam::Slab projected(light.sinogram().width, light.sinogram().height);
+  light.forward({&f, 1}, {&projected, 1});
+  return std::abs(dot(projected, g) - dot(f, dose_of(light, g))) / std::sqrt(dot(projected, projected) * dot(g, g));
+}
+
+/// The preconditioner must be symmetric and positive definite.
+inline void check_preconditioner(const vam::light::Operator& light) {
+  const vam::Slab a = noise(light.sinogram(), 3);
+  const vam::Slab b = noise(light.sinogram(), 4);
+  vam::Slab pa = a;
+  vam::Slab pb = b;
+  light.precondition({&pa, 1});
+  light.precondition({&pb, 1});
+  CHECK(std::abs(dot(pa, b) - dot(a, pb)) / std::sqrt(dot(pa, pa) * dot(b, b)) < 1e-5);  // in float
+  CHECK(dot(a, pa) > 0);
+}
+
+/// Unclipped filtered back-projection must give a disc of ones again: relative error in its middle, dose outside.
+inline void check_disc_comes_back(const vam::light::Operator& light, double error, double outside) {
+  const int size = light.object().width;
+  const double place = 0.1 * size;
+  const auto disc =
+      vam::oracle::draw(size, [&](double x, double y) { return std::hypot(x - place, y + 0.5 * place) < 0.25 * size; });
+  vam::Slab f(size, size);
+  pack(disc.data(), 1, f);
+  std::vector<vam::Slab> g;
+  vam::optimize::filtered_projections(light, {&f, 1}, g);
+  const vam::Slab dose = dose_of(light, g[0]);
+  const int middle = size / 2;
+  const auto step = static_cast<int>(place);
+  CHECK(*dose.at(middle + step, middle - step / 2) == doctest::Approx(1.0).epsilon(error));
+  CHECK(std::abs(*dose.at(middle - 3 * step, middle + 3 * step)) < outside);
+}
+
+}  // namespace parts

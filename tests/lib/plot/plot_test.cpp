@@ -1,0 +1,119 @@
+#include "plot/plot.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "io/picture/picture.hpp"
+
+using namespace vam::io;
+using namespace vam::plot;
+using vam::Rgb;
+using vam::RgbImage;
+
+namespace {
+
+int count(const RgbImage& picture, Rgb colour) {
+  return static_cast<int>(std::count(picture.values.begin(), picture.values.end(), colour));
+}
+
+// Pictures for the eye, when $VAM_PICTURES names a folder.
+void keep(const RgbImage& picture, const std::string& name) {
+  if (const char* folder = std::getenv("VAM_PICTURES")) write_png(std::string(folder) + "/" + name, picture);
+}
+
+}  // namespace
+
+TEST_CASE("ticks are round, inside the axis and about as many as wanted") {
+  CHECK(ticks({"", 0, 10, false}, 5) == std::vector<double>{0, 2, 4, 6, 8, 10});
+  CHECK(ticks({"", -1, 1, false}, 4) == std::vector<double>{-1, -0.5, 0, 0.5, 1});
+  CHECK(ticks({"", 10, 0, false}, 5).size() == 6);
+  CHECK(ticks({"", 1, 1000, true}, 5) == std::vector<double>{1, 10, 100, 1000});
+  for (double span = 1e-3; span < 1e4; span *= 1.7) {
+    const auto values = ticks({"", 0.3 * span, 1.3 * span, false}, 6);
+    CHECK(values.size() >= 3);
+    CHECK(values.size() <= 11);
+    CHECK(values.front() >= 0.3 * span - 1e-9);
+    CHECK(values.back() <= 1.3 * span + 1e-6 * span);
+  }
+  CHECK(round_step(0.7) == doctest::Approx(0.5));
+  CHECK(round_step(23) == doctest::Approx(20));
+}
+
+TEST_CASE("a frame maps values to spots, y upwards, also on logarithmic axes") {
+  const Frame frame{100, 50, 300, 250, {"", 0, 10, false}, {"", 1, 100, true}};
+  CHECK(frame.spot_x(5) == 200);
+  CHECK(frame.spot_y(1) == 250);
+  CHECK(frame.spot_y(10) == doctest::Approx(150));
+  CHECK(frame.spot_y(100) == doctest::Approx(50));
+}
+
+TEST_CASE("a curve is where its values are") {
+  Plot plot;
+  plot.title = "a parabola, and points of a line";
+  plot.x = {"x / mm", 0, 10, false};
+  plot.y = {"y / mm2", 0, 100, false};
+  Series parabola{"x squared", {}, {}, paint::blue, SeriesStyle::line};
+  Series points{"8 x", {}, {}, paint::orange, SeriesStyle::points};
+  for (int i = 0; i <= 100; ++i) {
+    parabola.x.push_back(i / 10.0);
+    parabola.y.push_back(i * i / 100.0);
+    if (i % 10 == 0) points.x.push_back(i / 10.0), points.y.push_back(8 * i / 10.0);
+  }
+  plot.series = {parabola, points};
+  plot.markers = {{5, "half way", paint::green}};
+  const RgbImage picture = draw(plot);
+  keep(picture, "curve.png");
+  CHECK(picture.width == 900);
+  // Frame of draw(): left 86, right 872, top 52, bottom 538. At x = 7 the parabola is at 49.
+  const int x = static_cast<int>(std::lround(86 + 0.7 * 786));
+  const int y = static_cast<int>(std::lround(538 - 0.49 * 486));
+  bool found = false;
+  for (int dy = -2; dy <= 2; ++dy) found = found || picture(x, y + dy) == paint::blue;
+  CHECK(found);
+  CHECK(picture(x, y + 60) != paint::blue);
+  CHECK(count(picture, paint::orange) > 11 * 15);
+  CHECK(count(picture, paint::green) > 50);
+}
+
+TEST_CASE("histograms count shares and draw bars") {
+  HistogramBuilder builder(0, 1, 4);
+  for (const double value : {-3.0, 0.1, 0.3, 0.3, 0.9, 1.0, 7.0, 0.6}) builder.add(value);
+  const Histogram histogram = builder.done();
+  CHECK(histogram.edges == std::vector<double>{0, 0.25, 0.5, 0.75, 1});
+  CHECK(histogram.percent == std::vector<double>{25, 25, 12.5, 37.5});
+  Plot plot{"histogram", {"dose", 0, 1, false}, {"share of the voxels / %", 0, 0, false}, {}, {}, 600, 400};
+  plot.series = {{"in part", histogram.edges, histogram.percent, paint::vermilion, SeriesStyle::bars},
+                 {"out of part", histogram.edges, {40, 30, 20, 10}, paint::blue, SeriesStyle::bars}};
+  const RgbImage picture = draw(plot);
+  keep(picture, "histogram.png");
+  // Last bin, frame 86..572 by 52..338: 37.5 of 42 % high.
+  CHECK(picture(540, 330) != paint::white);
+  CHECK(picture(540, 60) == paint::white);
+}
+
+TEST_CASE("text has the width it says, reads upwards when asked, and stays on the canvas") {
+  Canvas canvas(200, 200);
+  canvas.text({10, 100}, "Hxg", 20);
+  const double width = Canvas::text_width("Hxg", 20);
+  CHECK(width > 25);
+  CHECK(width < 45);
+  const RgbImage across = canvas.picture();
+  int right = 0;
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) right = across(x, y) != paint::white ? std::max(right, x) : right;
+  }
+  CHECK(std::abs(right - (10 + width)) < 5);
+  Canvas upright(200, 200);
+  upright.text({100, 190}, "Hxg", 20, paint::black, Align::begin, Align::middle, true);
+  int top = 200;
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) top = upright.picture()(x, y) != paint::white ? std::min(top, y) : top;
+    if (top < 200) break;
+  }
+  CHECK(std::abs(top - (190 - width)) < 6);
+  canvas.text({-500, 900}, "beyond", 20);  // must not write outside
+  canvas.line({-100, -100}, {400, 500}, paint::blue);
+}

@@ -1,0 +1,239 @@
+#include "plot/view.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "fault_of.hpp"
+#include "io/picture/picture.hpp"
+#include "io/vdb/nrrd.hpp"
+#include "lib/io/scratch.hpp"
+
+using namespace vam::io;
+using namespace vam::plot;
+using vam::Image;
+using vam::Rgb;
+
+using scratch::slurp;
+
+namespace {
+
+// A value that tells i, j and k apart.
+float label(int i, int j, int k) { return static_cast<float>(1 + i + 100 * j + 10000 * k); }
+
+SparseVolume labelled(const std::string& name, const vam::model::Grid& grid) {
+  SparseVolume volume(name, grid);
+  std::vector<float> slices;
+  for (int k = 0; k < grid.nz; ++k) {
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) slices.push_back(label(i, j, k));
+    }
+  }
+  volume.write_slices(0, grid.nz, slices.data());
+  return volume;
+}
+
+// A ball of 3 mm around (1, 0, 0) mm with a soft edge of one voxel.
+SparseVolume ball(const vam::model::Grid& grid) {
+  SparseVolume volume("target", grid);
+  std::vector<float> slices;
+  for (int k = 0; k < grid.nz; ++k) {
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        const double r_mm = std::hypot(grid.x_mm(i) - 1, grid.y_mm(j), grid.z_mm(k));
+        slices.push_back(static_cast<float>(std::clamp(0.5 + (3 - r_mm) / grid.voxel_mm, 0.0, 1.0)));
+      }
+    }
+  }
+  volume.write_slices(0, grid.nz, slices.data());
+  return volume;
+}
+
+void keep(const vam::RgbImage& picture, const std::string& name) {
+  if (const char* folder = std::getenv("VAM_PICTURES")) write_png(std::string(folder) + "/" + name, picture);
+}
+
+}  // namespace
+
+TEST_CASE("sections stand upright: y up across the axis, z up along it") {
+  const auto grid = vam::model::centred_grid(5, 4, 19, 0.5, -2);
+  const SparseVolume volume = labelled("dose", grid);
+  const auto axial = planes(volume, Plane::axial, {2, 17});
+  CHECK(axial[1].width == 5);
+  CHECK(axial[1].height == 4);
+  CHECK(axial[0](1, 0) == label(1, 3, 2));
+  CHECK(axial[1](4, 3) == label(4, 0, 17));
+  const auto coronal = planes(volume, Plane::coronal, {1});
+  CHECK(coronal[0].height == 19);
+  CHECK(coronal[0](3, 0) == label(3, 1, 18));
+  CHECK(coronal[0](0, 18) == label(0, 1, 0));
+  const auto sagittal = planes(volume, Plane::sagittal, {4});
+  CHECK(sagittal[0].width == 4);
+  CHECK(sagittal[0](2, 3) == label(4, 2, 15));
+  CHECK(plane_index(grid, Plane::axial, -1.1) == 2);
+  CHECK(plane_mm(grid, Plane::sagittal, 4) == doctest::Approx(1));
+}
+
+TEST_CASE("a contour runs where the value is, closed around a blob") {
+  Image image(21, 21);
+  for (int y = 0; y < 21; ++y) {
+    for (int x = 0; x < 21; ++x) image(x, y) = static_cast<float>(7 - std::hypot(x - 10, y - 10));
+  }
+  const auto pieces = contour(image, 0.0F);
+  double length = 0;
+  for (const auto& piece : pieces) {
+    CHECK(std::hypot(piece.from.x - 10, piece.from.y - 10) == doctest::Approx(7).epsilon(0.01));
+    length += std::hypot(piece.to.x - piece.from.x, piece.to.y - piece.from.y);
+  }
+  CHECK(length == doctest::Approx(2 * std::acos(-1.0) * 7).epsilon(0.01));  // chords of about a pixel: h^2 / 24 r^2
+}
+
+TEST_CASE("at a saddle the pieces do not cross: the mean decides which corners are cut off") {
+  Image image(2, 2);
+  image.values = {1, 0, 0, 1};
+  const auto joined = contour(image, 0.4F);  // mean 0.5 is inside: the two low corners are cut off
+  REQUIRE(joined.size() == 2);
+  for (const auto& piece : joined) {
+    const double to_low_right = std::hypot(piece.from.x - 1, piece.from.y) + std::hypot(piece.to.x - 1, piece.to.y);
+    const double to_low_left = std::hypot(piece.from.x, piece.from.y - 1) + std::hypot(piece.to.x, piece.to.y - 1);
+    CHECK(std::min(to_low_right, to_low_left) == doctest::Approx(0.8));  // 0.4 from the corner along both sides
+  }
+}
+
+TEST_CASE("the target's outline lies on the dose, also when their grids differ") {
+  const auto fine = vam::model::centred_grid(60, 60, 40, 0.2, -3.9);
+  const SparseVolume target = ball(fine);
+  const auto coarse = vam::model::centred_grid(20, 24, 12, 0.5, -2.75);
+  for (const Plane plane : {Plane::axial, Plane::coronal, Plane::sagittal}) {
+    const auto lines = outlines(target, coarse, plane, {0.25, 40.0});
+    CHECK(lines[1].empty());  // beyond the target
+    REQUIRE(lines[0].size() > 50);
+    const Spot origin = plane_origin_mm(coarse, plane);
+    const int rows = plane == Plane::axial ? 24 : 12;
+    const double at_mm = plane == Plane::sagittal ? 0.25 - 1 : 0.25;  // section's distance from the middle of the ball
+    const double radius = std::sqrt(9 - std::pow(at_mm + 0.0, 2));
+    for (const auto& piece : lines[0]) {
+      const double right = origin.x + 0.5 * piece.from.x - (plane == Plane::sagittal ? 0 : 1);
+      const double up = origin.y + 0.5 * (rows - 1 - piece.from.y);
+      CHECK(std::hypot(right, up) == doctest::Approx(radius).epsilon(0.03));  // the section is the nearest of 0.2 mm
+    }
+  }
+}
+
+TEST_CASE("colours are even and have the right ends") {
+  CHECK(colour(ColourMap::grey, 0.5) == Rgb{128, 128, 128});
+  CHECK(colour(ColourMap::grey, 7) == Rgb{255, 255, 255});
+  CHECK(colour(ColourMap::diverging, 0.5) == Rgb{255, 255, 255});
+  CHECK(colour(ColourMap::diverging, 0) == Rgb{0, 0, 255});
+  CHECK(colour(ColourMap::diverging, 1) == Rgb{255, 0, 0});
+  CHECK(colour(ColourMap::viridis, 0) == Rgb{68, 1, 84});  // matplotlib's table, rounded
+  CHECK(colour(ColourMap::viridis, 1) == Rgb{253, 231, 37});
+  double before = -1;  // viridis rises in lightness all along
+  for (int i = 0; i <= 100; ++i) {
+    const Rgb c = colour(ColourMap::viridis, i / 100.0);
+    const double luma = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    CHECK(luma >= before - 0.5);
+    before = luma;
+  }
+}
+
+TEST_CASE("a figure shows every voxel as a square of its colour, right way up") {
+  const auto grid = vam::model::centred_grid(8, 6, 4, 0.5, 0);
+  SparseVolume volume("dose", grid);
+  std::vector<float> slices(grid.size(), 0.25F);
+  slices[2 * grid.slice_size() + 5 * 8 + 7] = 1;  // slice 2, uppermost row, last column
+  volume.write_slices(0, grid.nz, slices.data());
+  ViewOptions options;
+  options.name = "dose.vdb";
+  options.at = 1.0;
+  const ImageFigure figure = view_volume(volume, nullptr, options);
+  CHECK(figure.title == "dose.vdb: dose, axial section at z = 1 mm");
+  CHECK(figure.x.low == doctest::Approx(-2));
+  CHECK(figure.x.high == doctest::Approx(2));
+  CHECK(figure.y.low == doctest::Approx(-1.5));
+  CHECK(figure.high == 1);
+  const auto picture = draw(figure);
+  keep(picture, "voxel.png");
+  // Picture at (92, 52), 90 pixels a voxel: the bright one is at the upper right.
+  CHECK(picture(92 + 7 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 1));
+  CHECK(picture(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
+  CHECK(picture(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
+  options.at = 9.0;
+  CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }, vam::Fault::data),
+            "no axial section at 9 mm; it reaches from 0 mm to 1.5 mm"));
+}
+
+TEST_CASE("the histogram counts whole voxels inside, and outside within the circle") {
+  const auto grid = vam::model::centred_grid(40, 40, 40, 0.25, -4.875);
+  const SparseVolume target = ball(grid);
+  SparseVolume dose("dose", grid);
+  std::vector<float> covered(grid.size());
+  target.read_slices(0, grid.nz, covered.data());
+  std::vector<float> doses;
+  for (const float c : covered)
+    doses.push_back(c > 0.999F ? 0.9F : c < 0.001F ? 0.2F : 5.0F);  // the surface must not count
+  dose.write_slices(0, grid.nz, doses.data());
+  const vam::model::Circle circle{19.5, 19.5, 18};
+  ViewOptions options;
+  options.name = "dose.vdb";
+  const Plot plot = dose_histogram(dose, target, circle, options);
+  REQUIRE(plot.series.size() == 2);
+  CHECK(plot.x.high == doctest::Approx(0.9));
+  for (const auto& series : plot.series) {
+    double sum = 0;
+    double largest = 0;
+    for (const double percent : series.y) {
+      sum += percent;
+      largest = std::max(largest, percent);
+    }
+    CHECK(sum == doctest::Approx(100));
+    CHECK(largest == doctest::Approx(100));
+  }
+  CHECK(plot.markers[0].words == "lowest inside 0.9");
+  CHECK(plot.markers[1].words == "highest outside 0.2");
+  keep(draw(plot), "dose-histogram.png");
+  const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
+  CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
+            "the dose has 40 x 40 x 40 voxels, but the target has 8 x 8 x 8"));
+}
+
+TEST_CASE("NRRD has the dense box behind a header that says where it is") {
+  const scratch::Folder folder;
+  const auto grid = vam::model::centred_grid(5, 4, 19, 0.5, -2);
+  SparseVolume volume = labelled("dose", grid);
+  volume.history = {"vam-test 1"};
+  write_nrrd(folder / "a.nrrd", volume);
+  const std::string bytes = slurp(folder / "a.nrrd");
+  const std::size_t body = bytes.find("\n\n") + 2;
+  CHECK(bytes.size() == body + 4 * grid.size());
+  CHECK(has(bytes, "# vam-test 1\n"));
+  CHECK(has(bytes, "sizes: 5 4 19\n"));
+  CHECK(has(bytes, "space directions: (0.5,0,0) (0,0.5,0) (0,0,0.5)\nspace origin: (-1,-0.75,-2)\n"));
+  float value = 0;
+  std::memcpy(&value, bytes.data() + body + 4 * ((17 * 4 + 2) * 5 + 3), sizeof value);
+  CHECK(value == label(3, 2, 17));
+}
+
+TEST_CASE("files are told by their content") {
+  const scratch::Folder folder;
+  const auto written = [&](const std::string& bytes) {
+    std::ofstream(folder / "f", std::ios::binary) << bytes;
+    return (folder / "f");
+  };
+  SparseVolume volume = labelled("dose", vam::model::centred_grid(5, 4, 3, 0.5));
+  write_volume(folder / "v", volume);
+  CHECK(file_type(folder / "v") == FileType::volume);
+  CHECK(file_type(written("\x76\x2f\x31\x01....")) == FileType::stack);
+  CHECK(file_type(written("\x1a\x45\xdf\xa3....")) == FileType::video);
+  CHECK(file_type(written(std::string("\0\0\0\x20"
+                                      "ftypisom",
+                                      12))) == FileType::video);
+  CHECK(file_type(folder.path.string()) == FileType::pictures);
+  CHECK(has(error_of([&] { (void)file_type(written("solid part")); }, vam::Fault::data), "neither a volume (VDB)"));
+  CHECK(has(error_of([&] { (void)file_type(written("")); }, vam::Fault::data), "is empty"));
+}

@@ -1,0 +1,74 @@
+#include "score/score.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "base/error.hpp"
+
+using vam::score::Score;
+using vam::score::ScoreOptions;
+
+namespace {
+
+// 3 x 3 slices around an axis at (1, 1); a radius of 1 leaves the four corners out.
+const std::vector<float> target{0, 0, 0, 0, 1, 0.5F, 0, 1, 0};
+const std::vector<float> dose{9, 0.2F, 9, 0.1F, 0.8F, 0.7F, 9, 1.0F, 9};
+
+ScoreOptions options() {
+  ScoreOptions o;
+  o.circle = {1, 1, 1};
+  return o;
+}
+
+}  // namespace
+
+TEST_CASE("void outside the writable circle and surface voxels are not judged") {
+  Score score(options(), 3, 3);
+  score.add(dose.data(), target.data(), 1);
+  const auto json = score.figures();
+  CHECK(json["part_voxels"] == 2);
+  CHECK(json["void_voxels"] == 2);
+  CHECK(json["surface_voxels"] == 1);
+  CHECK(score.figure("pw") == doctest::Approx(0.6));
+  CHECK(score.figure("ver") == 0.0);
+  CHECK(std::isnan(score.figure("cured_iou")));
+}
+
+TEST_CASE("surface voxels count when asked, by their half") {
+  auto o = options();
+  o.surface = true;
+  Score score(o, 3, 3);
+  score.add(dose.data(), target.data(), 1);
+  CHECK(score.figure("min_part") == doctest::Approx(0.7));
+}
+
+TEST_CASE("absolute figures keep the dose's unit, and the critical dose is judged") {
+  auto o = options();
+  o.absolute = true;
+  o.threshold = 90;
+  Score score(o, 3, 3);
+  std::vector<float> hundredfold = dose;
+  for (float& d : hundredfold) d *= 100;
+  score.add(hundredfold.data(), target.data(), 1);
+  CHECK(score.figure("pw") == doctest::Approx(60));
+  CHECK(score.figure("cured_part") == doctest::Approx(0.5));
+  CHECK(score.figure("cured_void") == 0.0);
+  CHECK(score.figure("cured_wrong") == doctest::Approx(0.25));
+  CHECK(score.table().find("cured_wrong") != std::string::npos);
+}
+
+TEST_CASE("nothing to judge and doses that are no numbers are errors") {
+  Score empty(options(), 3, 3);
+  const std::vector<float> nothing(9, 0.0F);
+  empty.add(dose.data(), nothing.data(), 1);
+  CHECK_THROWS_WITH_AS((void)empty.figures(), doctest::Contains("no voxel wholly inside"), vam::Error);
+  Score full(options(), 3, 3);
+  const std::vector<float> everything(9, 1.0F);
+  full.add(dose.data(), everything.data(), 1);
+  CHECK_THROWS_WITH_AS((void)full.figures(), doctest::Contains("no void"), vam::Error);
+  Score broken(options(), 3, 3);
+  auto bad = dose;
+  bad[4] = std::nanf("");
+  CHECK_THROWS_WITH_AS(broken.add(bad.data(), target.data(), 1), doctest::Contains("not a number"), vam::Error);
+}
