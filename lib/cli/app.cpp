@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <map>
 #include <new>
 #include <set>
 
@@ -23,6 +24,7 @@ struct App::State {
   CLI::App* parser = nullptr;
   std::unique_ptr<CLI::App> owned;                // the root's parser
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
+  std::map<std::string, std::string> former;      // old spelling -> new
   std::string history;
 
   Group& current_group() {
@@ -176,6 +178,11 @@ App& App::flag(const std::string& name, bool& target, const std::string& help) {
   return *this;
 }
 
+App& App::was(const std::string& old_flag) {
+  state_->former[old_flag] = long_flag(state_->current_group().options.back());
+  return *this;
+}
+
 App& App::subcommand(const std::string& name, const std::string& summary, std::string& chosen) {
   auto nested = std::unique_ptr<App>(new App(Manual{name, summary, {}, {}, {}, {}}));
   nested->state_->owned.reset();
@@ -223,8 +230,27 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   throw Error{Fault::usage, last + ": needs a value"};
 }
 
+// Puts the new spelling for the old one, told once each. From the name of a subcommand on, its spellings count.
+void App::rename_old(std::vector<std::string>& words) const {
+  const App* scope = this;
+  std::set<std::string> told;
+  for (auto& word : words) {
+    if (word == "--") return;
+    for (const auto& nested : state_->subcommands) {
+      if (scope == this && nested->state_->tool.manual.name == word) scope = nested.get();
+    }
+    const std::string flag = word.substr(0, word.find('='));
+    const auto found = scope->state_->former.find(flag);
+    if (found == scope->state_->former.end()) continue;
+    word.replace(0, flag.size(), found->second);
+    if (!told.insert(flag).second) continue;
+    std::fprintf(stderr, "%s: %s is now %s\n", state_->tool.manual.name.c_str(), flag.c_str(), found->second.c_str());
+  }
+}
+
 void App::parse(int argc, char** argv) {
   std::vector<std::string> words(argv + 1, argv + argc);
+  rename_old(words);
   state_->history = state_->tool.manual.name + " " + VAM_VERSION;
   for (const auto& word : words) state_->history += " " + quoted(word);
   std::reverse(words.begin(), words.end());  // CLI11 takes them last first

@@ -62,6 +62,9 @@ class App {
   App& choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
               const std::string& help);
   App& flag(const std::string& name, bool& target, const std::string& help);
+  /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
+  /// completions do not show it.
+  App& was(const std::string& old_flag);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
   /// chosen is set to the name when the user names it. Without any, the tool runs its plain form.
   App& subcommand(const std::string& name, const std::string& summary, std::string& chosen);
@@ -79,6 +82,7 @@ class App {
   struct State;
   App& declare(Option option, const std::function<void(const std::string&)>& store);
   void parse(int argc, char** argv);
+  void rename_old(std::vector<std::string>& words) const;
   bool print_about(int argc, char** argv) const;
   [[noreturn]] void fail_on_unknown(const std::vector<std::string>& words) const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;

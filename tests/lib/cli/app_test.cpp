@@ -1,6 +1,10 @@
 #include "cli/app.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <functional>
 
 #include "base/error.hpp"
 #include "cli/declaration.hpp"
@@ -25,7 +29,7 @@ struct Tool {
     app.option("--angles", "N", angles, Range{1, 10000}, "Stage angles.");
     app.option("--rotate", "X,Y,Z", rotate, 3, "Angles in degrees.");
     app.option("--set", "K=V", sets, "Override.");
-    app.choice("--window", window, {"hann", "cosine"}, "Window.");
+    app.choice("--window", window, {"hann", "cosine"}, "Window.").was("--taper");
     app.flag("--half", half, "Half.");
   }
   int run(std::vector<std::string> words) {
@@ -35,6 +39,21 @@ struct Tool {
     return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
   }
 };
+
+// What is written to stderr while the work runs.
+std::string stderr_of(const std::function<void()>& work) {
+  std::FILE* file = std::tmpfile();
+  const int saved = dup(STDERR_FILENO);
+  dup2(fileno(file), STDERR_FILENO);
+  work();
+  dup2(saved, STDERR_FILENO);
+  close(saved);
+  std::string text(static_cast<std::size_t>(std::ftell(file)), ' ');
+  std::rewind(file);
+  CHECK(std::fread(text.data(), 1, text.size(), file) == text.size());
+  std::fclose(file);
+  return text;
+}
 
 }  // namespace
 
@@ -105,6 +124,43 @@ TEST_CASE("subcommands have options of their own") {
   CHECK(app.run(4, argv.data(), [] {}) == 0);
   CHECK(chosen == "spin");
   CHECK(speed == 25);
+}
+
+TEST_CASE("a former spelling works as the option does, with one warning") {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"--taper", "cosine"}, {"--taper=cosine"}}) {
+    Tool tool;
+    int status = -1;
+    CHECK(stderr_of([&] { status = tool.run(words); }) == "vam-demo: --taper is now --window\n");
+    CHECK(status == 0);
+    CHECK(tool.window == "cosine");
+    CHECK(tool.app.given("--window"));
+    CHECK(tool.app.history().find("--taper") == std::string::npos);
+  }
+  Tool tool;
+  CHECK(tool.run({"--taper", "hann", "--window", "hann"}) == 64);
+}
+
+TEST_CASE("a former spelling is not shown") {
+  Tool tool;
+  const std::string text = stderr_of([&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
+  CHECK(text.find("--window") != std::string::npos);
+  CHECK(text.find("--taper") == std::string::npos);
+}
+
+TEST_CASE("a former spelling of a subcommand's option is known after its name") {
+  App app(Manual{"vam-demo", "shows commands", {}, {}, {}, {}});
+  std::string chosen;
+  double speed = 1;
+  double level = 0;
+  app.option("--level", "N", level, any, "Level.");
+  app.subcommand("spin", "turn on", chosen).option("--speed", "DEG_S", speed, positive, "Speed.").was("--level");
+  std::vector<std::string> words{"vam-demo", "--level", "3", "spin", "--level", "25"};
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  CHECK(stderr_of([&] { CHECK(app.run(6, argv.data(), [] {}) == 0); }) == "vam-demo: --level is now --speed\n");
+  CHECK(speed == 25);
+  CHECK(level == 3);
 }
 
 TEST_CASE("the manual page escapes what roff would take for its own") {
