@@ -94,7 +94,7 @@ class DoseStatistics {
   double sum_ = 0, sum_squares_ = 0;
 };
 
-/// Efficiency of light: mean over max of the projections' values [physics section 7]; 0 for black ones.
+/// Efficiency of light: mean over max of the projections' values [physics §7]; 0 for black ones.
 struct LightEfficiency {
   double sum = 0;
   double max = 0;

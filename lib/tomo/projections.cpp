@@ -14,8 +14,8 @@ FilterSpec matched(FilterSpec filter, const ParallelGeometry& geometry) {
   return filter;
 }
 
-/// Unit of the values, and the light at the wall, e^{alpha sqrt(R^2 - t^2)} times that at the axis [CAL19, physics
-/// section 5]; columns beyond the wall get the factor of the axis plane, 1.
+/// Unit of the values, and the light at the wall, e^{alpha sqrt(R^2 - t^2)} times that at the axis [CAL19;
+/// physics §5]; columns beyond the wall get the factor of the axis plane, 1.
 std::vector<float> column_weights(const ProjectionSpec& spec) {
   const double unit = spec.filter.window == Window::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
   std::vector<float> weights;

@@ -22,8 +22,8 @@ struct ProjectionSpec {
 };
 
 /// Values without a filter: integrals of coverage along lines, in mm. With one: light per radian of turn, such that the
-/// dose sum over all angles, angle_step_rad * A* g (with weight e^{-alpha u}), is the part again [physics section 4,
-/// 5].
+/// dose sum over all angles, angle_step_rad * A* g (with weight e^{-alpha u}), is the part again
+/// [physics §4, physics §5].
 class Projections {
  public:
   explicit Projections(const ProjectionSpec& spec);

@@ -31,7 +31,7 @@ void forward(const ParallelGeometry& geometry, std::span<const Slab> images, std
              Simd level = simd_level());
 
 /// image(pixel) = sum over angles and bins of w(pixel, t, a) * sinogram(t, a) * e^{alpha u}: the transpose of forward.
-/// Multiply by the angle step to get the dose integral of physics section 4; dose in an absorber has alpha = -mu.
+/// Multiply by the angle step to get the dose integral [physics §4]; dose in an absorber has alpha = -mu.
 void adjoint(const ParallelGeometry& geometry, std::span<const Slab> sinograms, std::span<Slab> images,
              Simd level = simd_level());
 

@@ -1,4 +1,4 @@
-// A print of a million vertices against a reference of a million triangles: the bar is 10 s on two cores for all of
+// A print of a million vertices against a reference of a million triangles: the limit is 10 s on two cores for all of
 // vam-sdf, from alignment to the distance of every vertex.
 #include <benchmark/benchmark.h>
 

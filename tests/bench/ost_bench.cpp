@@ -1,4 +1,4 @@
-// One volume from 180 views of 480 x 300 pixels: the bar is 1.0 s on two cores, and 30 frames a second live.
+// One volume from 180 views of 480 x 300 pixels: the limit is 1.0 s on two cores, and 30 frames a second live.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Repairing and voxelizing a mesh of a million triangles at 512^3: the bar is 3 s on two cores for both together.
+// Repairing and voxelizing a mesh of a million triangles at 512^3: the limit is 3 s on two cores for both together.
 #include <benchmark/benchmark.h>
 
 #include "oracle/meshes.hpp"

@@ -15,7 +15,7 @@ vam-resample --threads 1 virtual.exr >one.exr
 vam-resample --threads 2 virtual.exr | sed 's/--threads 2/--threads 1/' >two.exr
 same "1 and 2 threads give identical bytes" one.exr two.exr
 
-# A constant sinogram shows the weights: J/T of the table in the manual of physics (column at 0.065 * 650 mm).
+# A constant sinogram shows the weights: J/T of the table in [physics §2] (column at 0.065 * 650 mm).
 $exr make flat.exr width=400 height=8 pixel=0.065 value=1 count=1
 vam-resample flat.exr >flat-p.exr
 weight=$(vam-resample --explain | awk -F, 'NR == 2 + 650 { print $6 }')

@@ -28,7 +28,7 @@ using ConstAccessor = openvdb::tree::ValueAccessor<const Tree, false>;
 
 constexpr int edge = Leaf::DIM;
 constexpr int shift = Leaf::LOG2DIM;
-static_assert(edge == 8, "the loops over a leaf and formats.md say 8");
+static_assert(edge == 8, "the loops over a leaf and vam-formats(7) say 8");
 
 // Slices k0 .. k0 + count - 1 as a box of voxels, and the leaf-sized blocks that it touches.
 struct Slab {

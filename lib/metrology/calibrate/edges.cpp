@@ -103,8 +103,8 @@ EdgeShapes edge_shapes(const model::Printer& printer) {
   return {{printer, side, edge_mm, -1}, {printer, side, edge_mm, 1}};
 }
 
-// Outer radius of the vial whose outermost lit column is at R_e. Slip 1 is in impact_mm(); where the resin, not the
-// glass, ends the light, the glass is a wall further out.
+// Outer radius of the vial whose outermost lit column is at R_e; impact_mm() has the sign right [physics §12]. Where
+// the resin, not the glass, ends the light, the glass is a wall further out.
 double radius_mm(const model::Printer& printer, double edge_px) {
   const optics::View view = optics::projector_view(printer);
   const double impact = optics::impact_mm(view, edge_px * printer.projector.pixel_mm);

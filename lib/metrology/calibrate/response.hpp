@@ -1,4 +1,4 @@
-// The projector's response: a ramp of uniform grey levels, read by a camera or a photodiode [CAL17; physics 10].
+// The projector's response: a ramp of uniform grey levels, read by a camera or a photodiode [CAL17; physics §10].
 #pragma once
 
 #include <vector>

@@ -78,7 +78,8 @@ TEST_CASE("Vial edges: 200 sweeps, 95 % inside 2 sigma, centre within 0.1 px, ra
   CHECK(radius.worst() < 5e-4);
 }
 
-TEST_CASE("Vial edges: slip 1, the tangent column is further out than the vial") {
+// [physics §12]
+TEST_CASE("Vial edges: the tangent column is further out than the vial") {
   vam::oracle::Random random(3);
   vam::oracle::SweepTruth truth;
   truth.noise = 0.5;

@@ -22,7 +22,7 @@ std::vector<double> random_intensities(int count, double low, double high, unsig
 }
 
 // Omega at every node by the oracle, against the recursion. The midpoint rule errs by (eta ln 10 / steps)^2 / 24 of the
-// dose: below 1e-9 for the thickest slice here with 2000 steps; 1e-6 is the promise.
+// dose: below 1e-9 for the thickest slice here with 2000 steps; 1e-6 is required.
 void compare(const resin::Process& process, std::uint32_t seed) {
   const resin::Limits limits = resin::limits_of(process);
   const double critical = resin::critical_intensity_mw_cm2(process);
@@ -93,7 +93,7 @@ TEST_CASE("cured fraction of a layer") {
 
 TEST_CASE("the worked example of the paper") {
   const resin::Process process;
-  CHECK(resin::critical_intensity_mw_cm2(process) == doctest::Approx(16.0));  // physics page, section 9
+  CHECK(resin::critical_intensity_mw_cm2(process) == doctest::Approx(16.0));  // [physics §9]
   const resin::Limits limits = resin::limits_of(process);
   CHECK(limits.q == doctest::Approx(std::pow(10, -0.025)));
   CHECK(limits.hold() == 1);

@@ -41,7 +41,8 @@ resin::Limits limits_with(Exposure exposure, double eta, double phi_min, double 
   return {exposure, q, exposure == Exposure::continuous ? 1 - q : q, phi_min, phi_max};
 }
 
-// Physics section 9 written out node by node, from phi alone, without the solver's helpers. `slack` is rounding.
+// The constraints [physics §9] written out node by node, from phi alone, without the solver's helpers; `slack` is
+// rounding.
 std::string violation(const Part& part, const std::vector<double>& phi, const resin::Limits& limits, double omega_max) {
   const double slack = 1e-9;
   const int slices = static_cast<int>(phi.size());

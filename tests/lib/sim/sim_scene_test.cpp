@@ -80,7 +80,8 @@ TEST_CASE("What turns with the table is seen where x cos(theta + azimuth) + y si
   CHECK(middle_px(side.render({90, nullptr, 1}, 20000, 0)) < -40);
 }
 
-TEST_CASE("A lit column glows while it crosses resin: up to R_e = R / sqrt(1 - (R/D)^2), slip 1 of the papers") {
+// The sign of the square is that of [physics §12].
+TEST_CASE("A lit column glows while it crosses resin: up to R_e = R / sqrt(1 - (R/D)^2)") {
   SimBench bench = small_bench();
   bench.printer.camera.azimuth_deg = 90;
   bench.bodies.clear();

@@ -87,7 +87,7 @@ TEST_CASE("a sphere of 80,000 triangles has the volume of its mesh") {
   REQUIRE(mesh.triangles.size() > 80000);
   const Result result = voxels(mesh, cube_grid(96));
   CHECK(result.repair.closed());
-  // The bar is 1e-4; what is left is the rounding of 900,000 floats.
+  // The limit is 1e-4; what is left is the rounding of 900,000 floats.
   CHECK(std::abs(result.sum() / vam::oracle::signed_volume(mesh) - 1) < 1e-6);
 }
 
@@ -150,7 +150,7 @@ TEST_CASE("a sphere's surface against counting points") {
       }
     }
   }
-  CHECK(std::sqrt(square / static_cast<double>(surface)) < 0.002);  // the bar is 0.01; counting 24^3 points errs 0.001
+  CHECK(std::sqrt(square / static_cast<double>(surface)) < 0.002);  // required: 0.01; counting 24^3 points errs 0.001
 }
 
 TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
@@ -189,7 +189,7 @@ TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
     const Result result = voxels(c.mesh, grid);
     CHECK(result.repair.closed() == c.closed);
     const double wrong = grossly_wrong(result.values, want);
-    CHECK(wrong <= 1e-3);  // the bar of the project
+    CHECK(wrong <= 1e-3);  // required
     for (const float v : result.values) {
       if (!(v >= 0 && v <= 1)) FAIL("coverage ", v);
     }

@@ -1,4 +1,4 @@
-// The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics section 6].
+// The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics §6].
 #pragma once
 
 #include <limits>

@@ -1,5 +1,5 @@
-// A chief ray through the bath's window and the vial, in the plane across the axis, for simulated cameras (physics:
-// Snell at the window, then Bouguer's n b).
+// A chief ray through the bath's window and the vial, in the plane across the axis, for simulated cameras: Snell at
+// the window, then Bouguer's n b [physics §2].
 #pragma once
 
 #include <algorithm>
