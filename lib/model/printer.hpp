@@ -96,7 +96,7 @@ struct Printer {
 /// the resin's own [RAY21 section 2; a glass wall refracts but does not stop the outermost ray].
 [[nodiscard]] double writable_radius_mm(const Printer& printer);
 
-/// Vertical magnification of the projected image, M_vp = 1 - R(1 - 1/n)/D [OST22 eq S1]; 1 when telecentric.
+/// Vertical magnification of the projected image, M_vp = 1 - R(1 - 1/n)/D [OST22 eq S5]; 1 when telecentric.
 [[nodiscard]] double vertical_magnification(const Printer& printer);
 
 }  // namespace vam::model

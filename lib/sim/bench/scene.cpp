@@ -181,7 +181,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
   const double along_mm = bench.wobble_mm * -std::sin(seat_rad);  // along its light
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
   const double seen_mm = aside_mm * std::cos(azimuth) + along_mm * std::sin(azimuth);
-  // Heights in the vial look enlarged [OST22 eq S5].
+  // Heights in the vial look enlarged [OST22 eq S6].
   const double enlarged = 1 / (1 - printer.vial.radius_mm * (1 - printer.bath.index / printer.camera.index_resin) /
                                        printer.camera.distance_mm);
   GlowingRow glowing(*this, moment.picture, bench.centre_px + aside_mm / printer.projector.pixel_mm);

@@ -19,7 +19,7 @@ struct Placement {
   std::optional<double> fit_mm;  // largest dimension
   bool fit_writable = false;     // as large as the writable cylinder allows; needs `centre`
   bool centre = true;            // middle of the bounding box to the origin
-  double stretch_z = 1;          // [OST22 eq S2]: 1 / M_vp undoes the projector's vertical magnification
+  double stretch_z = 1;          // [OST22 eq S5]: 1 / M_vp undoes the projector's vertical magnification
 };
 
 /// The cylinder about the rotation axis that light reaches, z = 0 in the middle of the projector's rows.
