@@ -1,4 +1,5 @@
-# Each tool's manual page: the committed one is what the tool prints, it is clean, and its examples run.
+# Each tool's manual page: the committed one is what the tool prints, it is clean, and its examples run. The pages of
+# section 7 are clean, and what they refer to is there.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 examples() {  # the commands of the EXAMPLES section of a page
@@ -34,6 +35,16 @@ for script in vam-print vam-calibrate; do
     grep -q "Fl -${option#--} " "$page" || grep -q "Fl -${option#--}\$" "$page"; report $? "$script: $option is in the manual"
   done
   grep -q "$script" "$VAM_SOURCE/README.md"; report $? "$script: in README"
+done
+
+for page in "$VAM_SOURCE"/man/*.7; do
+  name=$(basename "$page" .7)
+  is "$name: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
+  sed -n 's/^\.Xr \([a-z0-9-]*\) \([17]\).*/\1.\2/p' "$page" | sort -u >references
+  while read -r reference; do
+    [ -f "$VAM_SOURCE/man/$reference" ]; report $? "$name: refers to $reference"
+  done <references
+  grep -q "$name" "$VAM_SOURCE/README.md"; report $? "$name: in README"
 done
 
 done_testing

@@ -1,0 +1,90 @@
+"""Holds what the source cites against the manual pages of section 7. usage: citations.py ROOT; prints what is cited
+but not defined, one a line, and fails if there is any.
+
+[physics §n] and [devices §n] are numbered sections, [formats: heading] is a heading, [RAY21 eq 8] is a paper under
+REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an attribute of vam-formats.7. Keys of
+the printer file and schemas of reports are defined in vam-formats.7, and source paths in these pages exist."""
+import pathlib
+import re
+import sys
+
+root = pathlib.Path(sys.argv[1])
+KEY = r'[A-Z]{2,6}\d\d'
+
+
+def page(name):
+    path = root / f'man/vam-{name}.7'
+    return path.read_text() if path.exists() else ''
+
+
+def headings(text):
+    return {m.strip().strip('"').lower() for m in re.findall(r'^\.S[hs] (.*)', text, re.M)}
+
+
+def brackets(text):
+    """What stands in brackets around a paper's key, comments that run over lines joined."""
+    joined = re.sub(r'\n\s*(?:///?|#)\s?', ' ', text)
+    return [b for b in re.findall(r'\[([^\[\]\n]*)\]', joined) if re.search(rf'(?<![\w.]){KEY}\b', b)]
+
+
+def equations(bracket):
+    """{'RAY21 eq 4', ...}: the equations that it names, ranges counted out."""
+    found = set()
+    for key, numbers in re.findall(rf'({KEY}) eq ([S\d]+(?:-[S\d]+)?)', bracket):
+        letter = 'S' if numbers.startswith('S') else ''
+        ends = [int(n.strip('S')) for n in numbers.split('-')]
+        found |= {f'{key} eq {letter}{n}' for n in range(ends[0], ends[-1] + 1)}
+    return found
+
+
+physics, formats, devices = page('physics'), page('formats'), page('devices')
+sections = {name: set(re.findall(r'^\.Sh "?(\d+)\.', text, re.M))
+            for name, text in (('physics', physics), ('devices', devices))}
+papers = set(re.findall(rf'^\.It ({KEY})$', physics, re.M))
+defined = set().union(*(equations(b) for b in brackets(physics)), set())
+attributes = set(re.findall(r'^\.It Va (vam:\w+)', formats, re.M))
+faults = []
+
+
+def check(where, text):
+    for kind, number in re.findall(r'\b(physics|devices) §(\d+)', text):
+        if number not in sections[kind]:
+            faults.append(f'{where}: vam-{kind}(7) has no section {number}')
+    for heading in re.findall(r'\[formats: ([^\]]+)\]', text):
+        if heading.lower() not in headings(formats):
+            faults.append(f'{where}: vam-formats(7) has no heading "{heading}"')
+    for bracket in brackets(text):
+        for key in re.findall(rf'(?<![\w.]){KEY}\b', bracket):
+            if key not in papers:
+                faults.append(f'{where}: [{key}] is not among the references of vam-physics(7)')
+        for equation in sorted(equations(bracket) - defined):
+            faults.append(f'{where}: [{equation}] does not stand in vam-physics(7)')
+    for name in sorted(set(re.findall(r'\bvam:[a-z_]+\w', text)) - attributes):
+        faults.append(f'{where}: the attribute {name} is not defined in vam-formats(7)')
+
+
+used = ''
+for top in ('lib', 'tools', 'tests', 'scripts'):
+    for file in sorted((root / top).rglob('*')):
+        if not file.is_file() or file.name.startswith('citations.') or '__pycache__' in file.parts:
+            continue
+        text = file.read_text(errors='replace')
+        check(file.relative_to(root), text)
+        if top in ('lib', 'tools', 'scripts'):
+            used += text
+
+for name in sorted(attributes - set(re.findall(r'\bvam:\w+', used))):
+    faults.append(f'man/vam-formats.7: nothing writes or reads {name}')
+for name in ('physics', 'formats', 'devices'):
+    for path in re.findall(r'(?:lib|tools|tests|scripts)/[\w/.-]*\w/?', page(name)):
+        if not (root / path).exists():
+            faults.append(f'man/vam-{name}.7: there is no {path}')
+for section, key in re.findall(r'^    \{"(\w+)", "(\w+)", at<', used, re.M):
+    if not re.search(rf'^\.It Va {section}\.{key}\b', formats, re.M):
+        faults.append(f'man/vam-formats.7: the printer file\'s {section}.{key} is missing')
+for schema in sorted(set(re.findall(r'"(vam-[a-z-]+/\d)"', used))):
+    if schema not in formats:
+        faults.append(f'man/vam-formats.7: the schema {schema} is missing')
+
+print(*faults, sep='\n', end='\n' if faults else '')
+sys.exit(bool(faults))

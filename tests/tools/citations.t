@@ -1,0 +1,23 @@
+#!/bin/sh
+# What the source cites stands in the manual pages of section 7; and the check that says so finds what does not.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+check() { python3 "$VAM_SOURCE/tests/tools/citations.py" "$1"; }
+ok "every citation, attribute, printer key and schema is in the manual" check "$VAM_SOURCE"
+
+finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the only one
+  rm -rf tree
+  mkdir -p tree
+  cp -r "$VAM_SOURCE"/man "$VAM_SOURCE"/lib "$VAM_SOURCE"/tools "$VAM_SOURCE"/scripts "$VAM_SOURCE"/tests tree
+  printf '%s\n' "$2" >tree/lib/base/cited.hpp
+  check tree >faults && report 1 "found: $2" && return
+  is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
+}
+finds 'vam-physics.7. has no section 99' '// along the ray [physics §99]'
+finds '.KELLY99. is not among the references' '// as in [KELLY99]'
+finds '.RAY21 eq 77. does not stand' '// as in [RAY21 eq 77]'
+finds 'the attribute vam:colour is not defined' 'const char* key = "vam:colour";'
+finds 'has no heading "weather"' '// as it is written [formats: weather]'
+finds "the printer file's projector.colour is missing" '    {"projector", "colour", at<&Printer::projector>},'
+finds 'the schema vam-paint/1 is missing' 'write_report(path, "vam-paint/1", figures);'
+done_testing
