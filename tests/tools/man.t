@@ -27,7 +27,7 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
 done
 
-for script in vam-print vam-calibrate; do
+for script in vam-print vam-calibrate-all; do
   page=$VAM_SOURCE/man/$script.1
   is "$script: mandoc -Tlint is silent" "$(mandoc -Tlint "$page" | grep -v 'referenced manual not found')" ""
   ok "$script: --help" "$VAM_SOURCE/scripts/$script" --help

@@ -1,107 +1,101 @@
 #!/bin/sh
-# Calibration on simulators that are out of adjustment: stage, screen and a GigE Vision camera beside a glowing vial,
-# all taken live; the records are held against what the simulators were set to.
-[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
+# The calibration scans on images with known truth: records, current link, refusal.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-PATH=$VAM_SOURCE/scripts:$PATH; export PATH
-mkdir keep
-judge="python3 $VAM_SOURCE/tests/tools/scan_judge.py"
-cat >printer.toml <<TOML
+scans="python3 $VAM_SOURCE/tests/tools/scans.py"
+value() { json "$1" "values.$2.value"; }  # value RECORD NAME
+sigma() { json "$1" "values.$2.sigma"; }
+near() { holds "$1" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
+kept() { ls cal | grep -c "^cal-lab-1-$1-.*json"; }  # records of a scan
+
+geometry='columns=512 pitch=4 width=2 radius=12.4'
+$scans sweep sweep axis=249.3 $geometry
+$scans ramp ramp
+$scans flat flat
+$scans beam beam
+$scans turn turn axis=61.25 wobble=2 phase=40
+$scans sweep moved axis=251.3 $geometry
+
+fails 64 'no command; give one of' vam-calibrate
+fails 64 'name them with --from' vam-calibrate edges
+fails 66 'missing' vam-calibrate edges --from missing
+fails 64 'needs --flips' vam-calibrate latency --from ramp
+fails 64 'needs --pixel' vam-calibrate beam --from beam
+fails 64 'leave out --first and --step' vam-calibrate beam --from beam --side --step 1
+fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames 160 x 32' vam-calibrate beam --from beam --side --dark ramp/00000.png
+fails 65 'at least 32 are needed' vam-calibrate beam --from ramp --side
+fails 65 'looks at 45 degrees to the light' vam-calibrate beam --from beam --side --set camera.azimuth_deg=45
+fails 64 'no calibration.folder' vam-calibrate check
+fails 65 'are not 16 levels' vam-calibrate response --from ramp --steps 16
+for azimuth in 0 -45 100 180; do
+  fails 65 "looks at $azimuth degrees to the light" vam-calibrate edges --from sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
+done
+fails 65 'no height shows light' vam-calibrate edges --from flat --pitch 4 --width 2
+fails 65 '8 rows; at least 16' vam-calibrate beam --from ramp --pixel 0.0035 --step 1.27
+
+# Without a folder the record is printed.
+vam-calibrate beam --from beam --pixel 0.0035 --first -6.35 --step 1.27 >beam.json
+is 'beam: it ends well' $? 0
+near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
+is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
+
+cat >printer.toml <<'TOML'
 [projector]
-columns = 208
-rows = 96
-pixel_mm = 0.1
-axis_column = 103.5
-axis_row = 47
-telecentric = true
-[vial]
-radius_mm = 9
-[bath]
-index = 1.53
-window_mm = 12
-[stage]
-device = "sim:?acceleration_deg_s2=1000&log=$PWD/truth"
-speed_deg_s = 85
-[camera]
-device = "aravis:127.0.0.1"
-pixel_mm = 0.15
-exposure_us = 2500
-fps = 50
+columns = 512
 [calibration]
 folder = "cal"
-instrument = "simulated"
-valid_hours = 1
+instrument = "lab 1"
+vial = "A7"
+valid_hours = 12
 TOML
-value() { json "cal/current-$1.json" "values.$2.value"; }
-sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
-within() { near "$1 is as well known as it says" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
-near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
+quiet 'edges' vam-calibrate edges --from sweep --pitch 4 --width 2
+near 'edges: the middle' "$(value cal/current-edges.json axis_column)" 249.3 0.1
+near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
+is 'edges: what is said of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
+is 'edges: the frames are named by their hash' "$(json cal/current-edges.json sha256.sweep)" "$(cd sweep && sha256sum * | sha256sum | cut -d' ' -f1)"
+quiet 'response' vam-calibrate response --from ramp
+near 'response: half grey' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-lab-1-response-*.csv)" 0.229 0.003
+quiet 'flat' vam-calibrate flat --from flat
+near 'flat: unevenness' "$(json cal/current-flat.json flat.unevenness)" 0.09 0.02
+quiet 'axis' vam-calibrate axis --from turn --step 10
+near 'axis: the column' "$(value cal/current-axis.json axis_column)" 61.25 0.02
+near 'axis: the wobble' "$(value cal/current-axis.json wobble)" 2 0.02
+near 'axis: its phase' "$(value cal/current-axis.json wobble_phase)" 40 1
+is 'records are read-only' "$(find cal -name 'cal-*.json' -perm 0444 | wc -l)" 4
 
-fails 64 'no --screen' vam-calibrate
-fails 64 'none of latency' vam-calibrate --screen null: --scans edge
-fails 64 'names no scan' vam-calibrate --screen null: --scans ' '
+# The tools take them up.
+vam-project --print-printer -o in-force.toml
+is 'axis_column is the measured one' "$(sed -n 's/^axis_column = \([0-9.]*\).*/\1/p' in-force.toml | head -n 1)" "$(value cal/current-edges.json axis_column)"
+ok 'so is the response' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-force.toml
+ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.toml
+ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
+vam-capture check >former 2>errors
+is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: vam-capture check is now vam-calibrate check true'
+ok 'check' vam-calibrate check --need edges --need response
+vam-calibrate check >state
+is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
 
-# A bench out of adjustment. The projector's log tells the camera's simulator which pattern is on.
-screen_up 208 96
-bench() {  # bench OPTIONS...
-  camera_up --angles truth --shown keep/flips --log seen --columns 200 --rows 60 --noise 0.002 --glow 5 --gamma 1.8 \
-    --axis-column 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
-}
-calibrate() { vam-calibrate --screen sdl:0 --light sim: --keep keep --log events --pitch 2 --sweep-exposure 19000 --scans "$@"; }
+# Stale, foreign and missing records.
+fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --need latency
+fails 64 'none of edges' vam-calibrate check --need edge
+fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
+fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
+ok 'without them all goes on' vam-project --print-printer --set calibration.folder= -o plain.toml
+vam-calibrate axis --from turn --step 10 --set calibration.valid_hours=1e-7
+fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-printer
+quiet 'a stale record does not stop a new one' vam-calibrate axis --from turn --step 10
+ok 'which heals' vam-project --print-printer -o healed.toml
 
-bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0.001 --beam 0.5 --focus 1.5 --divergence 1.5
-quiet 'five scans in one go' calibrate 'edges axis beam latency response'
-camera_down
-is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
-is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'latency response axis beam edges '
-$judge latency seen keep/latency.exr >delay
-# The flips' own times are exact, and the frames are late by what the camera's log says: 0.1 ms is a 25th of an
-# exposure. On a busy machine the shortest way from the camera is found anew now and then; so much is added.
-read -r late wander <delay
-near 'latency: what the frames are late by' "$(value latency latency)" "$late" "(0.1 + $wander)"
-holds 'latency: is known well' "$(sigma latency latency) < 0.05 + $wander"
-near 'response: the gamma of the projector' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-simulated-response-*.csv)" 0.289 0.01
-near 'axis: the column' "$(value axis axis_column)" 102 0.05
-near 'axis: the tilt' "$(value axis tilt)" 0.4 0.1
-within 'axis: the tilt' "$(value axis tilt)" 0.4 "$(sigma axis tilt)"
-holds 'axis: it is known well' "$(sigma axis tilt) < 0.06"
-# A lit row is 0.1 mm high, as wide as a Gaussian of 0.068 mm: hypot(0.5, 0.068). 2 %: it is no Gaussian, and the planes
-# are 1.6 mm thick. The rest is the noise that the record tells.
-near 'beam: the waist' "$(value beam waist)" 0.5046 0.01
-near 'beam: where it is' "$(value beam focus)" 1.5 "0.05 + 3 * $(sigma beam focus)"
-near 'beam: the divergence' "$(value beam divergence)" 1.5 "0.03 + 3 * $(sigma beam divergence)"
-holds 'beam: it is known well' "$(sigma beam divergence) < 0.1 && $(sigma beam focus) < 0.2"
-# The figures of the proof: 0.1 px, 0.05 %.
-near 'edges: the middle' "$(value edges axis_column)" 106.7 0.1
-near 'edges: the radius' "$(value edges radius)" 9 0.0045
-within 'edges: the middle' "$(value edges axis_column)" 106.7 "$(sigma edges axis_column)"
-within 'edges: the radius' "$(value edges radius)" 9 "$(sigma edges radius)"
-
-bench --card --vignetting 0.3
-quiet 'the flat field, of a card' calibrate flat
-# Nine of ten pixels within two sigma: 40 frames of noise, and the 8-bit grey levels of all of them.
-$judge flat cal/cal-simulated-flat-*.exr 0.3 "$(json cal/current-flat.json flat.pixel_sigma)" >judged
-is 'flat: the shape of the light' "$(cut -d' ' -f1 judged)" good
-sed 's/^/# flat: /' judged
-ok 'all are in force' vam-capture check --need latency --need response --need axis --need beam --need edges --need flat
-
-# A print takes them up, and freezes them.
-python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1
-quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 \
-  --views 90 --run run
-camera_down
-is 'whose summary names them' "$(json run/summary.json calibration.response.sha256)" "$(sha256sum <cal/current-response.json | cut -d' ' -f1)"
-is 'and the camera' "$(json run/devices.json camera.camera.serial)" VAM1
-is 'and the stage' "$(json run/devices.json stage.serial)" "$(json cal/current-axis.json devices.stage.serial)"
-
-# But not with devices that they were not made with.
-bench --serial another
-vam-print part.exr --screen null: --need 'latency response axis' --views 90 --run foreign 2>foreign.err
-is 'a foreign camera is refused' "$? $(grep -c 'was made with the camera VAM1, this is another; run vam-calibrate' foreign.err)" '65 1'
-is 'before anything moves' "$(ls foreign | grep -c 'stage.jsonl\|flips.jsonl\|views') $(json foreign/summary.json status)" '0 65'
-camera_down
-echo '{"stage": {"serial": "another"}}' >other.json
-fails 65 'was made with the stage .*, this is another; run vam-calibrate' vam-capture check --devices other.json
-fails 65 "is of instrument 'simulated', this is 'other'" vam-capture check --set calibration.instrument=other
-screen_down
+# A vial that moved is told and not used, unless that is wanted.
+before=$(readlink cal/current-edges.json)
+vam-calibrate edges --from moved --pitch 4 --width 2 2>errors
+is 'a vial that moved by 2 px is a judgement' $? 1
+ok 'which says how far' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
+is 'the record in force stays' "$(readlink cal/current-edges.json)" "$before"
+is 'the other is kept, too' "$(kept edges)" 2
+vam-calibrate edges --from moved --pitch 4 --width 2 --accept 2>errors
+is 'accepted' "$? $(grep -c warning errors)" '0 1'
+near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
+echo nonsense >cal/current-beam.json
+fails 65 'is no vam-calibration/1 record of beam' vam-project --print-printer
+fails 73 'cannot make the folder' vam-calibrate axis --from turn --step 10 --set calibration.folder=printer.toml/cal
 done_testing

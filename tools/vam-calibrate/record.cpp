@@ -8,9 +8,9 @@
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/stream/stream.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -150,4 +150,4 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
   if (!first.empty()) throw Error{Fault::data, first};
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

@@ -1,12 +1,13 @@
-// vam-capture flat: frames of an even scene become the camera's flat field.
+// vam-calibrate flat: frames of an even scene become the camera's flat field.
+#include "metrology/calibrate/flat.hpp"
+
 #include <cmath>
 
 #include "io/exr/stack.hpp"
 #include "io/picture/view_source.hpp"
-#include "metrology/calibrate/flat.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -54,4 +55,4 @@ Finding scan_flat(const ScanOptions& options, const model::Printer& printer) {
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

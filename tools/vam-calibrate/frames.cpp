@@ -5,9 +5,9 @@
 #include "base/text.hpp"
 #include "io/picture/view_source.hpp"
 #include "io/stream/stream.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -74,4 +74,4 @@ double mean_level(const Image& image) {
   return sum / static_cast<double>(image.size());
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

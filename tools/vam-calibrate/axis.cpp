@@ -1,9 +1,10 @@
-// vam-capture axis: the rotation axis in the camera's frames, over a turn.
-#include "base/text.hpp"
+// vam-calibrate axis: the rotation axis in the camera's frames, over a turn.
 #include "metrology/calibrate/axis.hpp"
-#include "vam-capture/scan.hpp"
 
-namespace vam::capture_tool {
+#include "base/text.hpp"
+#include "vam-calibrate/scan.hpp"
+
+namespace vam::calibrate_tool {
 
 Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   metrology::TurnScan scan;
@@ -32,4 +33,4 @@ Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

@@ -1,7 +1,8 @@
-// The calibration scans of vam-capture: captured frames in, a calibration record out.
+// The calibration scans: captured frames in, a calibration record out.
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,58 +12,66 @@
 #include "cli/common.hpp"
 #include "model/printer.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 struct ScanOptions {
   std::string command;
   std::string from;   // the frames
-  std::string flips;  // log of vam-project while they were taken
+  std::string flips;  // log of vam-project from the time of the capture
   std::string dark;
   bool accept = false;
   int bands = 5;
   int pitch_px = 4, width_px = 4, steps = 17;      // of the pattern
   double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
   bool side = false;                               // beam: frames of a camera beside the vial
-  double step_deg = 0;                             // axis: frames without angles
-  std::string devices;                             // who took part
+  double step_deg = 0;                             // axis: frames without recorded angles
+  std::string devices;                             // identities of the devices in use
   std::vector<std::string> needed;                 // check
   cli::PrinterOptions printer;
 };
 
-/// Declares edges, response, flat, beam, axis, latency and check; `chosen` is set when the user names one.
-void add_scans(cli::App& app, ScanOptions& options, std::string& chosen);
-[[nodiscard]] bool is_scan(const std::string& command);
-/// Throws as the scan does, Fault::judged when its result must not be used.
-void run_scan(const cli::App& app, const ScanOptions& options, const std::string& command);
+/// resin: the standard's scattering volume and its size.
+struct ResinOptions {
+  std::string scatter = "-";
+  std::string record = "-";
+  std::string profile;
+  std::optional<double> diameter_mm;
+  double profile_pixel_mm = 0.05;
+};
 
-// ---- scan_frames.cpp: which frame shows what
+/// Throws as the scan does, Fault::judged when its result must not be used.
+void run_scan(const cli::App& app, const ScanOptions& options);
+
+/// Writes the gelation threshold as a resin record. Throws Error: usage, no_input, data, no_output.
+void measure_resin(const ResinOptions& options);
+
+// ---- frames.cpp: which pattern frame each camera frame shows
 
 struct ScanFrame {
   Image image;
   double time_s = 0;  // middle of the exposure
   double angle_deg = 0;
   double pixel_mm = 0;  // at the axis, as the frames say, else the printer
-  int shown =
-      0;  // the pattern's frame that was on during the whole exposure: by the flips, else the frame's own number
+  int shown = 0;        // pattern frame during the whole exposure: by the flips, else the frame's own number
 };
 
-/// Calls `take` for every frame, in order; with flips only for those during which one picture of the pattern was on.
+/// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on.
 /// Throws Error: no_input, data, usage (flips, but frames without times).
 void each_frame(const ScanOptions& options, const model::Printer& printer,
                 const std::function<void(const ScanFrame&)>& take);
 
-/// One picture of the pattern and when it came on.
+/// A pattern frame and when it came on.
 struct Showing {
   double t_s = 0;
   int frame = -1;  // -1: black
 };
-/// The changes of picture in a log of vam-project. Throws Error: no_input, data.
+/// The changes of pattern frame in a log of vam-project. Throws Error: no_input, data.
 [[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
 
-/// Mean over the picture: a frame is kept as one number until it is known how the pattern went.
+/// Mean over the image: each frame is reduced to one number until the timing of the pattern is known.
 [[nodiscard]] double mean_level(const Image& image);
 
-// ---- scan_edges.cpp and its neighbours: from frames to what they tell
+// ---- edges.cpp and its neighbours: one measurement each
 class Finding;
 [[nodiscard]] Finding scan_edges(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_response(const ScanOptions& options, const model::Printer& printer);
@@ -70,16 +79,16 @@ class Finding;
 [[nodiscard]] Finding scan_latency(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);
-inline constexpr double wanted_axis_sigma_px = 0.1;  // of an axis, be it the vial's or the camera's
+inline constexpr double wanted_axis_sigma_px = 0.1;  // of an axis, the vial's or the camera's
 
-// ---- record.cpp: what becomes of the result
+// ---- record.cpp: from result to record
 
-/// What a scan found.
+/// The result of a scan.
 class Finding {
  public:
   void value(const std::string& name, const stats::Measured& measured, const std::string& unit,
              const std::string& method);
-  /// The result is used, and the reason told.
+  /// The result is used with a warning.
   void warn_because(const std::string& reason);
   /// The result must not be used.
   void fail_because(const std::string& reason);
@@ -104,8 +113,8 @@ class Finding {
 void keep(const cli::App& app, const ScanOptions& options, const model::Calibration& calibration,
           const std::string& scan, Finding finding);
 
-/// Prints the current records and what is wrong with them as JSON. Throws Fault::data when a needed one is missing,
+/// Prints the current records and their validity as JSON. Throws Fault::data when a needed one is missing,
 /// stale or foreign.
 void check_records(const ScanOptions& options, const model::Calibration& calibration);
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

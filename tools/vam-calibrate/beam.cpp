@@ -1,12 +1,13 @@
-// vam-capture beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
+// vam-calibrate beam: width by plane, from a bare sensor that is moved along the light, or from the side through resin.
+#include "metrology/calibrate/beam.hpp"
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/picture/view_source.hpp"
-#include "metrology/calibrate/beam.hpp"
 #include "metrology/calibrate/flat.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -100,4 +101,4 @@ Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

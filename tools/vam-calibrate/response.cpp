@@ -1,4 +1,6 @@
-// vam-capture response: grey level to light, from a ramp of uniform levels.
+// vam-calibrate response: grey level to light, from a ramp of uniform levels.
+#include "metrology/calibrate/response.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,10 +9,9 @@
 #include "base/text.hpp"
 #include "io/picture/view_source.hpp"
 #include "io/stream/stream.hpp"
-#include "metrology/calibrate/response.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 Finding scan_response(const ScanOptions& options, const model::Printer& printer) {
   double dark = 0;
@@ -44,7 +45,7 @@ Finding scan_response(const ScanOptions& options, const model::Printer& printer)
                  curve.intensity.front().sigma / std::pow(std::max(curve.intensity.front().value, 1e-9), 2),
                  curve.intensity.front().n},
                 "1", "full grey over black");
-  std::string csv = "# of " + printer.calibration.instrument + ", by vam-capture response\ngrey,intensity\n";
+  std::string csv = "# of " + printer.calibration.instrument + ", by vam-calibrate response\ngrey,intensity\n";
   Json levels = Json::array();
   for (std::size_t i = 0; i < curve.grey.size(); ++i) {
     csv += format_number(curve.grey[i]) + "," + format_number(curve.intensity[i].value, 9) + "\n";
@@ -60,4 +61,4 @@ Finding scan_response(const ScanOptions& options, const model::Printer& printer)
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

@@ -1,13 +1,14 @@
-// vam-capture edges: where the vial stands, from a sweep of lines through fluorescing resin.
+// vam-calibrate edges: where the vial stands, from a sweep of lines through fluorescing resin.
+#include "metrology/calibrate/edges.hpp"
+
 #include <cmath>
 #include <map>
 
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
-#include "metrology/calibrate/edges.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -89,4 +90,4 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

@@ -1,10 +1,11 @@
-// vam-capture latency: from a flip to its light, from a blinking screen.
+// vam-calibrate latency: from a flip to its light, from a blinking screen.
+#include "metrology/calibrate/latency.hpp"
+
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "metrology/calibrate/latency.hpp"
-#include "vam-capture/scan.hpp"
+#include "vam-calibrate/scan.hpp"
 
-namespace vam::capture_tool {
+namespace vam::calibrate_tool {
 
 namespace {
 
@@ -35,4 +36,4 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
   return finding;
 }
 
-}  // namespace vam::capture_tool
+}  // namespace vam::calibrate_tool

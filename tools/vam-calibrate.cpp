@@ -1,0 +1,124 @@
+// vam-calibrate: measures the instrument from captured frames and writes calibration records.
+#include <string>
+
+#include "base/error.hpp"
+#include "cli/app.hpp"
+#include "moved.hpp"
+#include "vam-calibrate/scan.hpp"
+
+namespace {
+
+using namespace vam;
+using calibrate_tool::ResinOptions;
+using calibrate_tool::ScanOptions;
+
+cli::Manual manual() {
+  return {
+      "vam-calibrate",
+      "measure the instrument and write calibration records",
+      {"Each command reads frames that vam-capture took while vam-project showed a test pattern, measures one property "
+       "of the instrument and writes a calibration record. --flips names the log of vam-project, which tells which "
+       "pattern frame was on and when. check reports which records are in force. vam-calibrate-all(1) shows the "
+       "patterns, captures the frames and runs all commands in the right order.",
+       "edges: the camera must see the whole vial, from the position given by camera.distance_mm and "
+       "camera.azimuth_deg, 60 to 91 degrees from the projector. beam: either a bare sensor is moved along the beam, "
+       "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
+       "each image column is another plane. latency takes the times of the frames as true: determine --latency of "
+       "vam-capture first.",
+       "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder "
+       "(vam-ost): the threshold at which its cross-section has the known diameter, from a mean over the height of "
+       "the standard. Its record is the --resin of vam-ost and vam-sdf.",
+       "A record is a JSON file in calibration.folder of the printer file: read-only, named "
+       "cal-INSTRUMENT-SCAN-UTC.json, with the unit, standard deviation, number of readings and method of each value, "
+       "the hashes of the frames, the validity period, the instrument and the vial. The link current-SCAN.json points "
+       "to the record in force, which is used by every tool that reads the printer file; precedence: flag, --set, "
+       "record, file. A stale or foreign record is refused (status 65). A result that does not meet its requirements "
+       "is recorded but not put in force (status 1). Without a folder the record is written to standard output."},
+      {{"The rotation axis in frames of a bead (here a printed piece) over one turn:",
+        "vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
+        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3"},
+       {"The records in force:", "vam-calibrate check --set calibration.folder=cal"}},
+      {},
+      {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"}};
+}
+
+void add_input(cli::App& scan, ScanOptions& o, bool with_flips) {
+  scan.option("--from", "FILE", o.from, "The frames: an EXR stack or folder of vam-capture, or a folder of images.");
+  if (with_flips) {
+    scan.option("--flips", "FILE", o.flips,
+                "Log of vam-project during the capture: which pattern frame was on. Default: frame n shows pattern "
+                "frame n.");
+  }
+  scan.option("--devices", "FILE", o.devices,
+              "JSON for the record, like {\"camera\": ...}: the output of identify for each device in use.");
+  cli::add_printer(scan, o.printer);
+}
+
+void add_dark(cli::App& scan, ScanOptions& o) {
+  scan.option("--dark", "FILE", o.dark, "Image or stack taken with the projector dark; its mean is subtracted.");
+}
+
+void add_resin(cli::App& resin, ResinOptions& o) {
+  resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).");
+  resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
+  resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
+  resin.option("--profile", "FILE.png", o.profile, "Profilometer height map of the standard, to measure its diameter.");
+  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel of the height map.");
+}
+
+void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
+  auto& edges = app.subcommand("edges", "centre, radius and tilt of the vial, from a sweep of lines", o.command);
+  add_input(edges, o, true);
+  edges.option("--pitch", "PX", o.pitch_px, {1, 1000}, "Step of the sweep.");
+  edges.option("--width", "PX", o.width_px, {1, 1000}, "Width of the swept line.");
+  edges.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  edges.flag("--accept", o.accept, "Accept a vial that moved or changed since the previous record.");
+  auto& ramp = app.subcommand("response", "intensity by grey level, from a ramp of uniform levels", o.command);
+  add_input(ramp, o, true);
+  ramp.option("--steps", "N", o.steps, {2, 65536}, "Levels of the ramp.");
+  add_dark(ramp, o);
+  auto& even = app.subcommand("flat", "flat field of the camera, from frames of a uniform scene", o.command);
+  add_input(even, o, true);
+  add_dark(even, o);
+  auto& line = app.subcommand(
+      "beam", "width and divergence of the beam, on a sensor moved along it or from the side in resin", o.command);
+  add_input(line, o, true);
+  line.flag("--side", o.side,
+            "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).");
+  add_dark(line, o);
+  line.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.");
+  line.option("--step", "MM", o.step_mm, cli::any, "Distance between planes.");
+  line.option("--pixel", "MM", o.pixel_mm, cli::non_negative, "Pixel of the bare sensor; with --side at the axis.");
+  auto& turn = app.subcommand("axis", "rotation axis and wobble in the camera's frames over a turn", o.command);
+  add_input(turn, o, false);
+  turn.option("--step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.");
+  turn.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o, true);
+  auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
+  check.option("--need", "SCAN", o.needed, "Require a record of this scan; may be repeated.");
+  check.option("--devices", "FILE", o.devices, "Refuse records of devices with other serial numbers.");
+  cli::add_printer(check, o.printer);
+  add_resin(app.subcommand("resin", "gelation threshold, from a printed standard cylinder", o.command), resin);
+}
+
+void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin) {
+  if (scan.command.empty()) {
+    throw Error{Fault::usage, "no command; give one of edges, response, flat, beam, axis, latency, check, resin"};
+  }
+  scan.command == "resin" ? calibrate_tool::measure_resin(resin) : calibrate_tool::run_scan(app, scan);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int moved = tool::follow_moved(argc, argv,
+                                       {"--screen", "--light", "--printer", "--set", "--scans", "--accept", "--home",
+                                        "--pitch", "--sweep-exposure", "--keep", "--log"},
+                                       "vam-calibrate-all");
+  if (moved >= 0) return moved;
+  cli::App app(manual());
+  ScanOptions scan;
+  ResinOptions resin;
+  declare(app, scan, resin);
+  return app.run(argc, argv, [&] { run(app, scan, resin); });
+}

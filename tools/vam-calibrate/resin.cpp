@@ -1,0 +1,37 @@
+// vam-calibrate resin: the scattered intensity at which the resin gels, from the volume of a printed standard.
+#include "base/error.hpp"
+#include "io/picture/view_source.hpp"
+#include "io/settings/report.hpp"
+#include "io/vdb/vdb.hpp"
+#include "metrology/ost/threshold.hpp"
+#include "vam-calibrate/scan.hpp"
+
+namespace vam::calibrate_tool {
+
+namespace {
+
+model::Volume read_scatter(const std::string& path) {
+  const io::SparseVolume sparse = io::read_volume(path, "");
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  return volume;
+}
+
+}  // namespace
+
+void measure_resin(const ResinOptions& options) {
+  if (options.diameter_mm.has_value() == !options.profile.empty()) {
+    throw Error{Fault::usage, "resin: give the diameter of the standard, as either --diameter or --profile"};
+  }
+  double diameter_mm = options.diameter_mm.value_or(0);
+  if (!options.profile.empty()) {
+    diameter_mm = 2 * options.profile_pixel_mm * metrology::find_circle(io::read_field(options.profile)).radius;
+  }
+  const model::Volume volume = read_scatter(options.scatter);
+  const metrology::OverheadMean overhead = metrology::overhead_mean(volume);
+  Json figures = metrology::to_json(metrology::gelation_threshold(overhead.mean, volume.grid.voxel_mm, diameter_mm));
+  figures["height_mm"] = overhead.height_mm;
+  io::write_report(options.record, "vam-resin/1", figures);
+}
+
+}  // namespace vam::calibrate_tool

@@ -1,0 +1,42 @@
+#include "vam-calibrate/scan.hpp"
+
+#include <functional>
+#include <map>
+
+#include "base/error.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "io/settings/printer_file.hpp"
+
+namespace vam::calibrate_tool {
+
+namespace {
+
+using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
+const std::map<std::string, Scan>& scans() {
+  static const std::map<std::string, Scan> all{{"edges", scan_edges}, {"response", scan_response},
+                                               {"flat", scan_flat},   {"beam", scan_beam},
+                                               {"axis", scan_axis},   {"latency", scan_latency}};
+  return all;
+}
+
+}  // namespace
+
+void run_scan(const cli::App& app, const ScanOptions& options) {
+  const std::string& command = options.command;
+  model::Printer printer = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore);
+  if (command == "check") return check_records(options, printer.calibration);
+  // The axis in the camera's image, as measured before.
+  const auto axis_record = io::current_record(printer.calibration, "axis");
+  if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, io::utc_seconds()).empty()) {
+    printer.camera.axis_column = axis_record->value("axis_column");
+  }
+  // A latency measured before decides which pattern frame a camera frame shows.
+  const auto known = io::current_record(printer.calibration, "latency");
+  if (known && command != "latency" && io::objection(*known, printer.calibration, io::utc_seconds()).empty()) {
+    printer.projector.latency_ms = known->value("latency");
+  }
+  if (options.from.empty()) throw Error{Fault::usage, command + ": no frames; name them with --from"};
+  keep(app, options, printer.calibration, command, scans().at(command)(options, printer));
+}
+
+}  // namespace vam::calibrate_tool
