@@ -26,9 +26,10 @@ void add_live(cli::App& app, LiveOptions& options) {
 void add_patterns(cli::App& app, PatternOptions& options) {
   options.plan.name.clear();
   app.group("Test pictures (instead of a sinogram)");
-  app.option("--pattern", "NAME", options.plan.name,
-             "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) or "
-             "row (a line at z = 0, for vam-calibrate beam).");
+  app.option(
+      "--pattern", "NAME", options.plan.name,
+      "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) or "
+      "row (a line at z = 0, for vam-calibrate beam).");
   app.option("--level", "PART", options.plan.level, {0, 1}, "Grey of lines and fields, as a part of full grey.");
   app.option("--pitch", "PX", options.plan.pitch_px, {1, 100000}, "Of grid lines, and step of the sweep.");
   app.option("--width", "PX", options.plan.width_px, {1, 100000}, "Of lines.");
