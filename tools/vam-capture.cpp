@@ -1,5 +1,6 @@
 // vam-capture: captures the camera's frames, each with its time and the angle of the stage.
 #include "cli/app.hpp"
+#include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/os/interrupt.hpp"
 #include "moved.hpp"
@@ -60,7 +61,7 @@ cli::Manual manual() {
 }
 
 void add_camera(cli::App& app, Options& o) {
-  app.option("--device", "DEVICE", o.device, "Camera. Default: camera.device.");
+  app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ". Default: camera.device.");
   app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time. Default: camera.exposure_us.");
   app.option("--fps", "HZ", o.camera.fps, cli::positive, "Frames per second. Default: camera.fps.");
   app.option("--binning", "N", o.camera.binning, {1, 64}, "Sum N x N pixels in the camera. Default: camera.binning.");

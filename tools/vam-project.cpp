@@ -1,6 +1,6 @@
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
+#include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/projector/display.hpp"
 #include "io/exr/stack.hpp"
 #include "io/picture/frame_sink.hpp"
 #include "io/stream/stream.hpp"

@@ -77,7 +77,7 @@ cli::Manual manual() {
 
 void add_common(cli::App& command, Options& options) {
   command.option("--device", "DEVICE", options.device,
-                 "The stage: sim:, gcs:PATH, grbl:PATH or tic:SERIAL, with options after a question mark.");
+                 "Rotation stage: " + device::stage_devices() + ", with options after a question mark.");
   command.option("--log", "FILE", options.log,
                  "Append one JSON line per event, with UTC and monotonic time; - for standard error.");
   command.flag("--die-with-parent", options.with_parent, "Stop and end when the process that started this one ends.");

@@ -1,6 +1,7 @@
 #include "vam-project/options.hpp"
 
 #include "base/error.hpp"
+#include "device/open/light.hpp"
 #include "printer.hpp"
 
 namespace vam::project {
@@ -11,7 +12,7 @@ void add_live(cli::App& app, LiveOptions& options) {
   app.group("Live output");
   app.option("--follow", "FILE", options.follow,
              "Take the stage's angle from these lines of vam-stage spin, a FIFO or - (then name the sinogram).");
-  app.option("--light", "DEVICE", options.light, "Light engine: dlpc350:, dlpc900: or sim:.");
+  app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000},
              "Frames to preload; without it one for each angle of the sinogram.");
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/picture/frame_sink.hpp"
 #include "optics/frames.hpp"

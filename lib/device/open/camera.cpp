@@ -27,23 +27,23 @@ std::unique_ptr<Camera> open_aravis(const Address& address, const CameraSettings
 
 struct CameraBackend {
   const char* scheme;
+  const char* place;  // for people
   std::unique_ptr<Camera> (*open)(const Address& address, const CameraSettings& settings, const CameraBench& bench,
                                   Clock& clock);
 };
 
-constexpr CameraBackend backends[] = {
-    {"sim", sim::open_sim_camera}, {"aravis", open_aravis}, {"v4l2", open_v4l2}, {"replay", open_replay_camera}};
+constexpr CameraBackend backends[] = {{"aravis", "ID-or-IP", open_aravis},
+                                      {"v4l2", "PATH", open_v4l2},
+                                      {"replay", "PLACE", open_replay_camera},
+                                      {"sim", "", sim::open_sim_camera}};
 
 }  // namespace
 
-const std::vector<std::string>& camera_schemes() {
-  static const auto schemes = schemes_of(backends);
-  return schemes;
-}
+std::string camera_devices() { return forms_of(backends); }
 
 std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings, const CameraBench& bench,
                                     Clock& clock) {
-  const Address address = parse_address(device, camera_schemes());
+  const Address address = parse_address(device, schemes_of(backends));
   return backend_of(backends, address).open(address, settings, bench, clock);
 }
 

@@ -11,7 +11,7 @@ namespace vam::device {
 [[nodiscard]] std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings,
                                                   const CameraBench& bench, Clock& clock);
 
-/// The schemes that open_camera knows.
-[[nodiscard]] const std::vector<std::string>& camera_schemes();
+/// The devices that open_camera knows, for --help: "aravis:ID-or-IP, v4l2:PATH, replay:PLACE or sim:".
+[[nodiscard]] std::string camera_devices();
 
 }  // namespace vam::device

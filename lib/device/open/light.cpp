@@ -29,12 +29,16 @@ std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSetting
 
 struct LightBackend {
   const char* scheme;
+  const char* place;  // for people
   std::unique_ptr<LightEngine> (*open)(const Address& address, const LightSettings& settings, Guardian* guardian);
 };
 
-constexpr LightBackend backends[] = {{"sim", open_sim}, {"dlpc350", open_dlp}, {"dlpc900", open_dlp}};
+constexpr LightBackend backends[] = {
+    {"dlpc350", "SERIAL", open_dlp}, {"dlpc900", "SERIAL", open_dlp}, {"sim", "", open_sim}};
 
 }  // namespace
+
+std::string light_devices() { return forms_of(backends); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian) {
   const Address address = parse_address(device, schemes_of(backends));

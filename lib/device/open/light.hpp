@@ -9,4 +9,7 @@ namespace vam::device {
 /// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
 [[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian);
 
+/// The devices that open_light knows, for --help: "dlpc350:SERIAL, dlpc900:SERIAL or sim:".
+[[nodiscard]] std::string light_devices();
+
 }  // namespace vam::device

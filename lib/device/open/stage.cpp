@@ -71,20 +71,19 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
 
 struct StageBackend {
   const char* scheme;
+  const char* place;  // for people
   std::unique_ptr<Stage> (*open)(const Address& address, Clock& clock, Guardian* guardian);
 };
 
-constexpr StageBackend backends[] = {{"sim", open_sim}, {"gcs", open_gcs}, {"tic", open_tic}, {"grbl", open_grbl}};
+constexpr StageBackend backends[] = {
+    {"gcs", "PATH", open_gcs}, {"tic", "SERIAL", open_tic}, {"grbl", "PATH", open_grbl}, {"sim", "", open_sim}};
 
 }  // namespace
 
-const std::vector<std::string>& stage_schemes() {
-  static const auto schemes = schemes_of(backends);
-  return schemes;
-}
+std::string stage_devices() { return forms_of(backends); }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
-  const Address address = parse_address(device, stage_schemes());
+  const Address address = parse_address(device, schemes_of(backends));
   return backend_of(backends, address).open(address, clock, guardian);
 }
 

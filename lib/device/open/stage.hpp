@@ -9,7 +9,7 @@ namespace vam::device {
 /// virtual time). Throws as the constructors and DeviceLock do, and Fault::usage for a bad device string.
 [[nodiscard]] std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian);
 
-/// The schemes that open_stage knows.
-[[nodiscard]] const std::vector<std::string>& stage_schemes();
+/// The devices that open_stage knows, for --help: "gcs:PATH, tic:SERIAL or sim:".
+[[nodiscard]] std::string stage_devices();
 
 }  // namespace vam::device

@@ -1,4 +1,4 @@
-// A screen that shows preloaded frames at its vertical blanks: the picture half of a projector.
+// A screen that shows preloaded frames at its vertical blanks: the image input of a projector.
 #pragma once
 
 #include <memory>
@@ -42,16 +42,6 @@ class Display {
  private:
   std::unique_ptr<DeviceLock> lock_;
 };
-
-/// sdl:N (window over screen N), drm:CONNECTOR (page flips without a desktop), null: (nothing is shown; vertical blanks
-/// by the clock).
-[[nodiscard]] const std::vector<std::string>& display_schemes();
-/// Does this output name a display?
-[[nodiscard]] bool names_display(const std::string& output);
-
-/// guardian may be null in tests.
-[[nodiscard]] std::unique_ptr<Display> open_display(const std::string& device, const DisplayMode& wanted, Clock& clock,
-                                                    Guardian* guardian);
 
 /// 8-bit bytes, row-major, of a frame of this size. Throws Fault::data for another size, Fault::usage for more than 8
 /// bits.

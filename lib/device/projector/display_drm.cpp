@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 #include "device/os/interrupt.hpp"
-#include "device/projector/private/display_backends.hpp"
+#include "device/projector/display_backends.hpp"
 #include "device/projector/private/drm_output.hpp"
 
 namespace vam::device {
@@ -194,7 +194,8 @@ class DrmDisplay final : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> open_drm_display(const Address& address, Clock& clock, Guardian* guardian) {
+std::unique_ptr<Display> open_drm_display(const Address& address, const DisplayMode&, Clock& clock,
+                                          Guardian* guardian) {
   address.allow({});
   auto lock = std::make_unique<DeviceLock>("drm-" + address.place);
   if (guardian != nullptr) guardian->keep(lock->handle());

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <utility>
 
-#include "device/projector/private/display_backends.hpp"
+#include "device/projector/display_backends.hpp"
 
 namespace vam::device {
 
@@ -38,7 +38,7 @@ class NullDisplay final : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> open_null_display(const Address& address, const DisplayMode& wanted, Clock& clock) {
+std::unique_ptr<Display> open_null_display(const Address& address, const DisplayMode& wanted, Clock& clock, Guardian*) {
   address.allow({"hz", "miss"});
   DisplayMode mode = wanted;
   mode.hz = address.number("hz", wanted.hz, 5, 1000);  // every blank is a heartbeat

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "device/projector/private/display_backends.hpp"
+#include "device/projector/display_backends.hpp"
 
 namespace vam::device {
 
@@ -159,7 +159,8 @@ class SdlDisplay final : public Display {
 
 }  // namespace
 
-std::unique_ptr<Display> open_sdl_display(const Address& address, Clock& clock, Guardian* guardian) {
+std::unique_ptr<Display> open_sdl_display(const Address& address, const DisplayMode&, Clock& clock,
+                                          Guardian* guardian) {
   address.allow({});
   int screen = 0;
   try {

@@ -23,7 +23,7 @@ using namespace vam::device;
 namespace {
 
 std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const CameraSettings& settings = {}) {
-  return open_v4l2_camera(parse_address("v4l2:/dev/video9", camera_schemes()), settings,
+  return open_v4l2_camera(parse_address("v4l2:/dev/video9", {"v4l2"}), settings,
                           std::make_unique<FakeV4l2>(script, clock), clock);
 }
 

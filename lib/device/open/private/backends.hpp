@@ -1,4 +1,5 @@
-// A table of backends, one a scheme: {"gcs", open_gcs}. What is not in the table cannot be opened.
+// A table of backends, one row per scheme: {"gcs", "PATH", open_gcs}. A scheme that is not in the table cannot be
+// opened, and the row is also its line in --help.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +15,17 @@ template <class Backend, std::size_t count>
   std::vector<std::string> schemes;
   for (const Backend& backend : backends) schemes.emplace_back(backend.scheme);
   return schemes;
+}
+
+/// "gcs:PATH, tic:SERIAL or sim:"
+template <class Backend, std::size_t count>
+[[nodiscard]] std::string forms_of(const Backend (&backends)[count]) {
+  std::string forms;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0) forms += i + 1 < count ? ", " : " or ";
+    forms += std::string(backends[i].scheme) + ":" + backends[i].place;
+  }
+  return forms;
 }
 
 /// The address was parsed with schemes_of(backends), so one of them has its scheme.
