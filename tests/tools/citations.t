@@ -8,7 +8,7 @@ ok "every citation, attribute, printer key and schema is in the manual" check "$
 finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the only one
   rm -rf tree
   mkdir -p tree
-  cp -r "$VAM_SOURCE"/man "$VAM_SOURCE"/lib "$VAM_SOURCE"/tools "$VAM_SOURCE"/scripts "$VAM_SOURCE"/tests tree
+  cp -r "$VAM_SOURCE"/CONTRIBUTING.md "$VAM_SOURCE"/man "$VAM_SOURCE"/lib "$VAM_SOURCE"/tools "$VAM_SOURCE"/scripts "$VAM_SOURCE"/tests tree
   printf '%s\n' "$2" >tree/lib/base/cited.hpp
   check tree >faults && report 1 "found: $2" && return
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
@@ -20,4 +20,8 @@ finds 'the attribute vam:colour is not defined' 'const char* key = "vam:colour";
 finds 'has no heading "weather"' '// as it is written [formats: weather]'
 finds "the printer file's projector.colour is missing" '    {"projector", "colour", at<&Printer::projector>},'
 finds 'the schema vam-paint/1 is missing' 'write_report(path, "vam-paint/1", figures);'
+rm -r tree/lib/resin tree/lib/base/cited.hpp
+check tree >faults
+grep -q 'vam-physics.7: there is no lib/resin/' faults
+report $? 'found: a path that is not there'
 done_testing
