@@ -1,7 +1,6 @@
 // vam-calibrate: measures the instrument from captured frames and writes calibration records.
 #include <string>
 
-#include "base/error.hpp"
 #include "cli/app.hpp"
 #include "moved.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -39,7 +38,9 @@ cli::Manual manual() {
         "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3"},
        {"The records in force:", "vam-calibrate check --set calibration.folder=cal"}},
       {},
-      {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"}};
+      {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"},
+      {},
+      {{1, "A result does not meet its requirements and is not put in force."}}};
 }
 
 void add_input(cli::App& scan, ScanOptions& o, bool with_flips) {
@@ -102,9 +103,6 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
 }
 
 void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin) {
-  if (scan.command.empty()) {
-    throw Error{Fault::usage, "no command; give one of edges, response, flat, beam, axis, latency, check, resin"};
-  }
   scan.command == "resin" ? calibrate_tool::measure_resin(resin) : calibrate_tool::run_scan(app, scan);
 }
 

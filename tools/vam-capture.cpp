@@ -57,7 +57,8 @@ cli::Manual manual() {
        "A folder's manifest.jsonl begins with a line on the camera and its settings. A line for each frame follows "
        "when its image is on the disk: frame (its place), file, number, t_monotonic_s, device_s (the camera's own "
        "stamp), angle_deg, sigma_deg, complete and levels (a fingerprint of the grey levels); dropped frames have a "
-       "line {\"dropped\":[FIRST,LAST]}."}};
+       "line {\"dropped\":[FIRST,LAST]}."},
+      cli::device_statuses};
 }
 
 void add_camera(cli::App& app, Options& o) {

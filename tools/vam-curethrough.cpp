@@ -1,7 +1,6 @@
 // vam-curethrough: continuous stereolithography without cure-through [CURE19].
 #include <string>
 
-#include "base/error.hpp"
 #include "cli/app.hpp"
 #include "printer.hpp"
 #include "vam-curethrough/figures.hpp"
@@ -105,8 +104,5 @@ int main(int argc, char** argv) {
     if (chosen == "working-curve") run(app, for_curve, working_curve);
     if (chosen == "response") run(app, for_response, response);
     if (chosen == "sweep" && !tool::print_printer(sweep.print.printer)) run(app, for_sweep, sweep);
-    if (chosen.empty()) {
-      throw Error{Fault::usage, "no subcommand; give model, correct, working-curve, response or sweep"};
-    }
   });
 }

@@ -56,7 +56,9 @@ cli::Manual manual() {
            "bench "
            "itself may be out of adjustment; the options of that group are what vam-capture's scans have to find.",
            "The fake camera of Aravis, which serves, keeps up with about 50 frames of 0.3 megapixels a second."},
-          {"vam-capture", "vam-sim-stage", "vam-project"}};
+          {"vam-capture", "vam-sim-stage", "vam-project"},
+          {},
+          cli::device_statuses};
 }
 
 void declare(cli::App& app, Options& o) {

@@ -50,7 +50,9 @@ cli::Manual manual() {
        "refused), unplug (the cable is pulled; the motion goes on, as with the real one) and power-loss (the "
        "controller dies and the table coasts to a stop) and block (the table is held fast while the controller talks "
        "on)."},
-      {"vam-stage", "vam-sim-camera"}};
+      {"vam-stage", "vam-sim-camera"},
+      {},
+      cli::device_statuses};
 }
 
 void declare(cli::App& app, Options& options) {

@@ -72,7 +72,9 @@ cli::Manual manual() {
        "the "
        "members of that group from their next login), vam-stage and its guardian go before all others.",
        "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
-      {"vam-project", "vam-sim-stage", "vam-capture"}};
+      {"vam-project", "vam-sim-stage", "vam-capture"},
+      {},
+      cli::device_statuses};
 }
 
 void add_common(cli::App& command, Options& options) {
@@ -118,9 +120,6 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
 }
 
 void drive(const std::string& command, Options& options) {
-  if (command.empty()) {
-    throw Error{Fault::usage, "no command; give one of identify, status, ports, home, move, spin, stop, follow"};
-  }
   if (options.plan.direction == 0) throw Error{Fault::usage, "--direction: give 1 or -1"};
   if (command == "ports") return device::print_line(device::list_serial_ports().dump(2));
   if (options.with_parent) device::end_with_parent();

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <map>
 #include <new>
 #include <set>
 
@@ -16,6 +15,7 @@
 #include "base/text.hpp"
 #include "cli/declaration.hpp"
 #include "cli/private/values.hpp"
+#include "cli/private/words.hpp"
 
 namespace vam::cli {
 
@@ -24,7 +24,6 @@ struct App::State {
   CLI::App* parser = nullptr;
   std::unique_ptr<CLI::App> owned;                // the root's parser
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
-  std::map<std::string, std::string> former;      // old spelling -> new
   std::string history;
 
   Group& current_group() {
@@ -44,19 +43,12 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-std::vector<std::string> all_flags(const Declaration& tool) {
-  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
-  for (const auto& group : tool.groups) {
-    for (const auto& option : group.options) flags.push_back(long_flag(option));
-  }
-  return flags;
-}
-
-// The subcommand of that name with the tool's before its own, or the tool.
-Declaration asked_about(const Declaration& tool, const std::string& subcommand) {
+// The command that the words name, with the tool's name before its own, or the tool.
+Declaration asked_about(Declaration tool, const std::vector<std::string>& words) {
+  const int place = find_command(tool, words);
   for (Declaration nested : tool.subcommands) {
-    if (nested.manual.name != subcommand) continue;
-    nested.manual.name = tool.manual.name + " " + subcommand;
+    if (place < 0 || nested.manual.name != words[static_cast<std::size_t>(place)]) continue;
+    nested.manual.name = tool.manual.name + " " + nested.manual.name;
     return nested;
   }
   return tool;
@@ -92,44 +84,40 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
   return *this;
 }
 
+// An operand is required when nothing stands for it, or when a required one follows.
 App& App::positional(const std::string& value_name, std::string& target, const std::string& help) {
   state_->parser->add_option(value_name, target)->type_size(1)->expected(1);
-  state_->tool.positionals.push_back({value_name, help, false});
-  return *this;
-}
-
-App& App::positionals(const std::string& value_name, std::vector<std::string>& target, const std::string& help) {
-  state_->parser->add_option(value_name, target);
-  state_->tool.positionals.push_back({value_name, help, true});
+  state_->tool.positionals.push_back({value_name, help, target});
+  if (!target.empty()) return *this;
+  for (auto& positional : state_->tool.positionals) positional.default_text.clear();
   return *this;
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
-  return declare({flag, value_name, help, target, "", {}, false},
-                 [&target](const std::string& text) { target = text; });
+  return declare({flag, value_name, help, target, "", {}}, [&target](const std::string& text) { target = text; });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, double& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, format_number(target), describe(range), {}, false},
+  return declare({flag, value_name, help, format_number(target), describe(range), {}},
                  [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, int& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, std::to_string(target), describe(range), {}, false},
+  return declare({flag, value_name, help, std::to_string(target), describe(range), {}},
                  [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, target ? format_number(*target) : "", describe(range), {}, false},
+  return declare({flag, value_name, help, target ? format_number(*target) : "", describe(range), {}},
                  [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, target ? std::to_string(*target) : "", describe(range), {}, false},
+  return declare({flag, value_name, help, target ? std::to_string(*target) : "", describe(range), {}},
                  [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
 }
 
@@ -137,7 +125,7 @@ App& App::option(const std::string& flag, const std::string& value_name, std::ve
                  const std::string& help) {
   std::vector<std::string> defaults;
   for (const double value : target) defaults.push_back(format_number(value));
-  return declare({flag, value_name, help, join(defaults, ","), "", {}, false},
+  return declare({flag, value_name, help, join(defaults, ","), "", {}},
                  [&target, flag, count](const std::string& text) {
                    const auto parts = split(text, ',');
                    if (count > 0 && static_cast<int>(parts.size()) != count) {
@@ -157,13 +145,13 @@ App& App::option(const std::string& flag, const std::string& value_name, std::ve
 
 App& App::option(const std::string& flag, const std::string& value_name, Range range,
                  const std::function<void(int)>& store, const std::string& help, const std::string& default_text) {
-  return declare({flag, value_name, help, default_text, describe(range), {}, false},
+  return declare({flag, value_name, help, default_text, describe(range), {}},
                  [store, flag, range](const std::string& text) { store(checked_integer(flag, text, range)); });
 }
 
 App& App::choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
                  const std::string& help) {
-  return declare({flag, "WORD", help, target, "", values, false}, [&target, flag, values](const std::string& text) {
+  return declare({flag, "WORD", help, target, "", values}, [&target, flag, values](const std::string& text) {
     if (std::find(values.begin(), values.end(), text) == values.end()) {
       throw Error{Fault::usage,
                   flag + ": '" + text + "' is not one of " + join(values, ", ") + did_you_mean(text, values)};
@@ -174,12 +162,17 @@ App& App::choice(const std::string& flag, std::string& target, const std::vector
 
 App& App::flag(const std::string& name, bool& target, const std::string& help) {
   state_->parser->add_flag(name, target);
-  state_->current_group().options.push_back({name, "", help, "", "", {}, false});
+  state_->current_group().options.push_back({name, "", help, "", "", {}});
+  return *this;
+}
+
+App& App::default_is(const std::string& text) {
+  state_->current_group().options.back().default_text = text;
   return *this;
 }
 
 App& App::was(const std::string& old_flag) {
-  state_->former[old_flag] = long_flag(state_->current_group().options.back());
+  state_->current_group().options.back().former.push_back(old_flag);
   return *this;
 }
 
@@ -204,20 +197,6 @@ Declaration App::whole() const {
   return tool;
 }
 
-// The flags of the subcommand that the words name, else of the tool: for "did you mean".
-void App::fail_on_unknown(const std::vector<std::string>& words) const {
-  const Declaration tool = whole();
-  std::vector<std::string> known = all_flags(tool);
-  for (const auto& nested : tool.subcommands) {
-    known.push_back(nested.manual.name);
-    for (const auto& flag : all_flags(nested)) known.push_back(flag);
-  }
-  const std::string word = words.empty() ? "" : split(words.front(), '=').front();
-  const bool option = word.rfind('-', 0) == 0;
-  throw Error{Fault::usage, word + (option ? ": unknown option" : ": unexpected argument") + did_you_mean(word, known) +
-                                " (" + tool.manual.name + " --help lists all)"};
-}
-
 // CLI11 says only that a count is wrong: find the option that comes twice, or the one whose value is missing.
 void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   std::set<std::string> seen;
@@ -230,49 +209,35 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   throw Error{Fault::usage, last + ": needs a value"};
 }
 
-// Puts the new spelling for the old one, told once each. From the name of a subcommand on, its spellings count.
-void App::rename_old(std::vector<std::string>& words) const {
-  const App* scope = this;
-  std::set<std::string> told;
-  for (auto& word : words) {
-    if (word == "--") return;
-    for (const auto& nested : state_->subcommands) {
-      if (scope == this && nested->state_->tool.manual.name == word) scope = nested.get();
-    }
-    const std::string flag = word.substr(0, word.find('='));
-    const auto found = scope->state_->former.find(flag);
-    if (found == scope->state_->former.end()) continue;
-    word.replace(0, flag.size(), found->second);
-    if (!told.insert(flag).second) continue;
-    std::fprintf(stderr, "%s: %s is now %s\n", state_->tool.manual.name.c_str(), flag.c_str(), found->second.c_str());
-  }
-}
-
 void App::parse(int argc, char** argv) {
+  const Declaration tool = whole();
   std::vector<std::string> words(argv + 1, argv + argc);
-  rename_old(words);
-  state_->history = state_->tool.manual.name + " " + VAM_VERSION;
+  rename_former(tool, words);
+  state_->history = tool.manual.name + " " + VAM_VERSION;
   for (const auto& word : words) state_->history += " " + quoted(word);
-  std::reverse(words.begin(), words.end());  // CLI11 takes them last first
+  require_command(tool, words);
+  put_command_first(tool, words);
+  const std::vector<std::string> reversed(words.rbegin(), words.rend());  // CLI11 takes them last first
   try {
-    state_->parser->parse(std::vector<std::string>(words));  // it consumes its copy
+    state_->parser->parse(std::vector<std::string>(reversed));  // it consumes its copy
   } catch (const CLI::ExtrasError&) {
-    fail_on_unknown(state_->parser->remaining(true));
+    const auto unknown = state_->parser->remaining(true);
+    throw Error{Fault::usage, unknown_word(tool, words, unknown.empty() ? "" : unknown.front())};
   } catch (const CLI::ArgumentMismatch&) {
-    fail_on_count(words);
+    fail_on_count(reversed);
   } catch (const CLI::ParseError& error) {
-    throw Error{Fault::usage, std::string(error.what()) + " (" + state_->tool.manual.name + " --help lists all)"};
+    throw Error{Fault::usage, std::string(error.what()) + " (" + tool.manual.name + " --help lists all)"};
   }
 }
 
 // --help, --version, --man and --completion print and end; they win over every other option. True when one was given.
 bool App::print_about(int argc, char** argv) const {
+  const std::vector<std::string> words(argv + 1, argv + argc);
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--") return false;
     if (word == "--help" || word == "-h") {
-      const Declaration tool = i > 1 ? asked_about(whole(), argv[1]) : whole();
-      std::fputs(help_text(tool).c_str(), stdout);
+      std::fputs(help_text(asked_about(whole(), words)).c_str(), stdout);
     } else if (word == "--version") {
       std::printf("%s %s\n", state_->tool.manual.name.c_str(), VAM_VERSION);
     } else if (word == "--man") {

@@ -11,6 +11,11 @@
 
 namespace vam::cli {
 
+struct ExitStatus {
+  int code;
+  std::string meaning;
+};
+
 /// What the manual says beside the options. Paragraphs are plain text.
 struct Manual {
   std::string name;                                           // vam-slice
@@ -20,7 +25,12 @@ struct Manual {
   std::vector<std::string> notes;                             // paragraphs: memory, accuracy, sources
   std::vector<std::string> see_also;                          // vam-sinogram, ...
   std::vector<std::string> files = {};                        // paragraphs on what its files hold beside the usual
+  std::vector<ExitStatus> statuses = {};                      // beside those of all tools; device_statuses
 };
+
+/// For the manuals of tools that drive devices.
+inline const std::vector<ExitStatus> device_statuses{
+    {69, "A device is absent."}, {75, "A device is busy or timed out; try again."}, {76, "Device protocol error."}};
 
 struct Range {
   double low;
@@ -42,8 +52,7 @@ class App {
   ~App();
 
   App& group(const std::string& title);  // heading of the options that follow
-  App& positional(const std::string& value_name, std::string& target, const std::string& help);  // default shown
-  App& positionals(const std::string& value_name, std::vector<std::string>& target, const std::string& help);
+  App& positional(const std::string& value_name, std::string& target, const std::string& help);  // empty: required
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, double& target, Range range,
               const std::string& help);
@@ -62,11 +71,14 @@ class App {
   App& choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
               const std::string& help);
   App& flag(const std::string& name, bool& target, const std::string& help);
+  /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
+  App& default_is(const std::string& text);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it.
   App& was(const std::string& old_flag);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
-  /// chosen is set to the name when the user names it. Without any, the tool runs its plain form.
+  /// chosen is set to the name when the user names it. A tool with operands or options of its own has a plain form,
+  /// which runs without a command; else a command must be given. Options may stand before the command.
   App& subcommand(const std::string& name, const std::string& summary, std::string& chosen);
 
   /// Parses, calls body, maps every exception to one line on stderr and its exit status.
@@ -82,9 +94,7 @@ class App {
   struct State;
   App& declare(Option option, const std::function<void(const std::string&)>& store);
   void parse(int argc, char** argv);
-  void rename_old(std::vector<std::string>& words) const;
   bool print_about(int argc, char** argv) const;
-  [[noreturn]] void fail_on_unknown(const std::vector<std::string>& words) const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;
 

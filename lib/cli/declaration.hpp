@@ -16,6 +16,7 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
+  std::vector<std::string> former = {};  // old spellings; not shown
 };
 
 struct Group {
@@ -26,7 +27,7 @@ struct Group {
 struct Positional {
   std::string value_name;
   std::string help;
-  bool many = false;
+  std::string default_text;  // empty: must be given
 };
 
 struct Declaration {
@@ -39,15 +40,21 @@ struct Declaration {
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);
 
+/// The option of that name, of the tool itself or of one of its commands; null when there is none.
+[[nodiscard]] const Option* find_option(const Declaration& tool, const std::string& flag);
+
+/// Does the tool do something without a command? It does when it has operands or options beside its commands'.
+[[nodiscard]] bool has_plain_form(const Declaration& tool);
+
+/// What help and manual say of the option: its help, choices, range, default. One sentence or more each.
+[[nodiscard]] std::vector<std::string> details(const Option& option);
+[[nodiscard]] std::string details(const Positional& positional);
+
 [[nodiscard]] std::string help_text(const Declaration& tool);
 [[nodiscard]] std::string manual_page(const Declaration& tool);  // mdoc(7)
 [[nodiscard]] std::string completion(const Declaration& tool, const std::string& shell);
 
-/// The texts that all tools share.
-struct ExitStatus {
-  int code;
-  const char* meaning;
-};
-[[nodiscard]] const std::vector<ExitStatus>& exit_statuses();
+/// The exit statuses that the tool's manual lists: those of all tools, 1 with --require, and the tool's own.
+[[nodiscard]] std::vector<ExitStatus> exit_statuses(const Declaration& tool);
 
 }  // namespace vam::cli

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "base/text.hpp"
@@ -9,25 +10,45 @@ namespace {
 constexpr int width = 80;
 constexpr int indent = 6;
 
-std::string usage(const Declaration& tool) {
-  std::string line = "Usage: " + tool.manual.name;
-  if (!tool.subcommands.empty()) line += " COMMAND";
-  line += " [OPTIONS]";
-  for (const auto& positional : tool.positionals)
-    line += " [" + positional.value_name + (positional.many ? "...]" : "]");
-  return line + "\n";
-}
-
-std::string details(const Option& option) {
-  std::string text = option.help;
-  if (!option.choices.empty()) text += " One of " + join(option.choices, ", ") + ".";
-  if (!option.range_text.empty()) text += " Range: " + option.range_text + ".";
-  if (!option.default_text.empty()) text += " Default: " + option.default_text + ".";
-  if (option.repeatable) text += " May be repeated.";
+// "SLICES" or "[SLICES]" for each operand.
+std::string operands(const Declaration& form) {
+  std::string text;
+  for (const auto& positional : form.positionals) {
+    const bool optional = !positional.default_text.empty();
+    text += optional ? " [" + positional.value_name + "]" : " " + positional.value_name;
+  }
   return text;
 }
 
+std::string usage(const Declaration& tool) {
+  const std::string name = tool.manual.name;
+  if (tool.subcommands.empty()) return "Usage: " + name + " [OPTIONS]" + operands(tool) + "\n";
+  const std::string with_command = name + " COMMAND [OPTIONS]; " + name + " COMMAND --help\n";
+  if (!has_plain_form(tool)) return "Usage: " + with_command;
+  return "Usage: " + name + " [OPTIONS]" + operands(tool) + "\n       " + with_command;
+}
+
 }  // namespace
+
+bool has_plain_form(const Declaration& tool) {
+  return tool.subcommands.empty() || !tool.positionals.empty() || !tool.groups.empty();
+}
+
+std::vector<std::string> details(const Option& option) {
+  std::vector<std::string> texts{option.help};
+  if (!option.choices.empty()) texts.push_back("One of " + join(option.choices, ", ") + ".");
+  if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
+  if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
+  if (option.repeatable) texts.emplace_back("May be repeated.");
+  return texts;
+}
+
+std::string details(const Positional& positional) {
+  if (positional.default_text.empty()) return positional.help;
+  return positional.help +
+         " Default: " + (positional.default_text == "-" ? std::string("standard input") : positional.default_text) +
+         ".";
+}
 
 std::string long_flag(const Option& option) {
   const auto names = split(option.flag, ',');
@@ -37,21 +58,20 @@ std::string long_flag(const Option& option) {
   return option.flag;
 }
 
-const std::vector<ExitStatus>& exit_statuses() {
-  static const std::vector<ExitStatus> statuses{
-      {0, "Done."},
-      {1, "A judged comparison failed (--require)."},
-      {64, "Wrong options or arguments; nothing was opened."},
+std::vector<ExitStatus> exit_statuses(const Declaration& tool) {
+  std::vector<ExitStatus> statuses{
+      {0, "Success."},
+      {64, "Wrong options or operands; nothing was opened."},
       {65, "Bad input data."},
       {66, "An input cannot be opened."},
-      {69, "A device is absent."},
       {70, "Internal error."},
       {71, "Out of memory."},
       {73, "An output cannot be created."},
       {74, "A read or write failed, the final flush included."},
-      {75, "A device is busy or timed out; try again."},
-      {76, "A device spoke nonsense."},
   };
+  if (find_option(tool, "--require") != nullptr) statuses.push_back({1, "A condition of --require does not hold."});
+  statuses.insert(statuses.end(), tool.manual.statuses.begin(), tool.manual.statuses.end());
+  std::sort(statuses.begin(), statuses.end(), [](const auto& a, const auto& b) { return a.code < b.code; });
   return statuses;
 }
 
@@ -63,7 +83,7 @@ std::string help_text(const Declaration& tool) {
   }
   if (!tool.subcommands.empty()) text += "\n";
   for (const auto& positional : tool.positionals) {
-    text += "  " + positional.value_name + "\n" + wrap(positional.help, width, indent);
+    text += "  " + positional.value_name + "\n" + wrap(details(positional), width, indent);
   }
   if (!tool.positionals.empty()) text += "\n";
   for (const auto& group : tool.groups) {
@@ -71,7 +91,7 @@ std::string help_text(const Declaration& tool) {
     for (const auto& option : group.options) {
       text += "  " + join(split(option.flag, ','), ", ");
       if (!option.value_name.empty()) text += " " + option.value_name;
-      text += "\n" + wrap(details(option), width, indent);
+      text += "\n" + wrap(join(details(option), " "), width, indent);
     }
     text += "\n";
   }

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <map>
+#include <set>
 #include <string>
 
 #include "base/text.hpp"
@@ -12,7 +14,6 @@ namespace vam::cli {
 namespace {
 
 constexpr int width = 78;
-constexpr const char* date = "November 21, 2026";  // of the last change of the shared texts
 
 // UTF-8 to roff's ASCII spelling; backslashes literal.
 std::string escape(const std::string& text) {
@@ -89,11 +90,8 @@ std::string option_list(const Declaration& tool) {
     if (tool.groups.size() > 1 || group.title != "Options") out += ".Ss " + group.title + "\n";
     out += ".Bl -tag -width Ds\n";
     for (const auto& option : group.options) {
-      out += ".It " + flag_words(option) + "\n" + paragraph(option.help);
-      if (!option.choices.empty()) out += paragraph("One of " + join(option.choices, ", ") + ".");
-      if (!option.range_text.empty()) out += paragraph("Range: " + option.range_text + ".");
-      if (!option.default_text.empty()) out += paragraph("Default: " + option.default_text + ".");
-      if (option.repeatable) out += paragraph("May be repeated.");
+      out += ".It " + flag_words(option) + "\n";
+      for (const auto& text : details(option)) out += paragraph(text);
     }
     out += ".El\n";
   }
@@ -104,7 +102,7 @@ std::string positional_list(const Declaration& tool) {
   if (tool.positionals.empty()) return "";
   std::string out = ".Bl -tag -width Ds\n";
   for (const auto& positional : tool.positionals) {
-    out += ".It Ar " + argument(positional.value_name) + "\n" + paragraph(positional.help);
+    out += ".It Ar " + argument(positional.value_name) + "\n" + paragraph(details(positional));
   }
   return out + ".El\n";
 }
@@ -114,14 +112,92 @@ std::string synopsis(const Declaration& tool) {
   const auto line = [&](const Declaration& form, const std::string& command) {
     out += ".Nm\n";
     if (!command.empty()) out += ".Cm " + command + "\n";
-    out += ".Op Ar OPTIONS\n";
+    if (!form.groups.empty()) out += ".Op Ar OPTIONS\n";
     for (const auto& positional : form.positionals) {
-      out += ".Op Ar " + argument(positional.value_name) + (positional.many ? " ...\n" : "\n");
+      out += (positional.default_text.empty() ? ".Ar " : ".Op Ar ") + argument(positional.value_name) + "\n";
     }
   };
-  if (tool.subcommands.empty()) line(tool, "");
+  if (has_plain_form(tool)) line(tool, "");
   for (const auto& nested : tool.subcommands) line(nested, nested.manual.name);
   return out;
+}
+
+// What makes two options the same for a reader.
+std::string printed(const Option& option) { return flag_words(option) + "\n" + join(details(option), "\n"); }
+
+std::vector<Option> options_of(const Declaration& form) {
+  std::vector<Option> options;
+  for (const auto& group : form.groups) options.insert(options.end(), group.options.begin(), group.options.end());
+  return options;
+}
+
+// Options that several commands declare alike and the plain form does not: printed once, before the commands.
+Group common_options(const Declaration& tool) {
+  std::map<std::string, int> uses;
+  for (const auto& nested : tool.subcommands) {
+    for (const auto& option : options_of(nested)) ++uses[printed(option)];
+  }
+  for (const auto& option : options_of(tool)) uses.erase(printed(option));
+  Group common{"Options of several commands", {}};
+  for (const auto& nested : tool.subcommands) {
+    for (const auto& option : options_of(nested)) {
+      if (uses[printed(option)] < 2) continue;
+      common.options.push_back(option);
+      uses[printed(option)] = 0;
+    }
+  }
+  return common;
+}
+
+// A command's own options in full, the names of those that are printed above.
+std::string command_options(const Declaration& nested, const std::set<std::string>& above) {
+  std::string out;
+  std::vector<std::string> names;
+  for (const auto& group : nested.groups) {
+    Group own{"Options", {}};
+    for (const auto& option : group.options) {
+      if (above.count(printed(option)) == 0)
+        own.options.push_back(option);
+      else
+        names.push_back(long_flag(option));
+    }
+    if (own.options.empty()) continue;
+    Declaration one;
+    one.groups = {own};
+    if (nested.groups.size() > 1) out += ".Pp\n" + paragraph(group.title + ":");
+    out += option_list(one);
+  }
+  if (names.empty()) return out;
+  return out + ".Pp\n" + paragraph("Options described above: " + join(names, ", ") + ".");
+}
+
+std::string sentence(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text + ".";
+}
+
+std::string commands(const Declaration& tool) {
+  std::string out;
+  Declaration shared;
+  shared.groups = {common_options(tool)};
+  std::set<std::string> above;
+  for (const auto& option : options_of(tool)) above.insert(printed(option));
+  for (const auto& option : options_of(shared)) above.insert(printed(option));
+  if (!shared.groups[0].options.empty()) out += option_list(shared);
+  for (const auto& nested : tool.subcommands) {
+    out += ".Ss " + tool.manual.name + " " + nested.manual.name + "\n" + paragraph(sentence(nested.manual.summary));
+    out += positional_list(nested) + command_options(nested, above);
+  }
+  return out;
+}
+
+std::string environment(const Declaration& tool) {
+  std::string out;
+  if (find_option(tool, "--printer") != nullptr)
+    out += ".It Ev VAM_PRINTER\nThe printer file, when\n.Fl -printer\nis not given.\n";
+  if (find_option(tool, "--threads") != nullptr)
+    out += ".It Ev VAM_SIMD\nHighest instruction set to use: baseline, avx2 or avx512.\n";
+  return out.empty() ? "" : ".Sh ENVIRONMENT\n.Bl -tag -width Ds\n" + out + ".El\n";
 }
 
 std::string examples(const Manual& manual) {
@@ -142,7 +218,7 @@ std::string manual_page(const Declaration& tool) {
   std::string upper = manual.name;
   for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   std::string out = ".\\\" Printed by " + manual.name + " --man; do not edit.\n";
-  out += std::string(".Dd ") + date + "\n.Dt " + upper + " 1\n.Os\n";
+  out += std::string(".Dd ") + VAM_DATE + "\n.Dt " + upper + " 1\n.Os\n";
   out += ".Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
   out += ".Sh SYNOPSIS\n" + synopsis(tool);
   out += ".Sh DESCRIPTION\n";
@@ -152,16 +228,7 @@ std::string manual_page(const Declaration& tool) {
   }
   out += positional_list(tool);
   out += option_list(tool);
-  for (const auto& nested : tool.subcommands) {
-    out += ".Ss " + manual.name + " " + nested.manual.name + "\n" + paragraph(nested.manual.summary + ".");
-    out += positional_list(nested);
-    for (const auto& group : nested.groups) {
-      Declaration one;
-      one.groups = {{"Options", group.options}};
-      if (nested.groups.size() > 1) out += ".Pp\n" + paragraph(group.title + ":");
-      out += option_list(one);
-    }
-  }
+  out += commands(tool);
   out +=
       ".Ss Help\n.Bl -tag -width Ds\n.It Fl h , Fl -help\nPrint a summary of the options.\n"
       ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
@@ -173,20 +240,17 @@ std::string manual_page(const Declaration& tool) {
       out += ".Pp\n";
     out += paragraph(note);
   }
-  out +=
-      ".Sh ENVIRONMENT\n.Bl -tag -width Ds\n"
-      ".It Ev VAM_PRINTER\nThe printer file, when no\n.Fl -printer\nis given.\n"
-      ".It Ev VAM_SIMD\nHighest instruction set to use: baseline, avx2 or avx512.\n.El\n";
+  out += environment(tool);
   out +=
       ".Sh FILES\n"
-      "Volumes are OpenVDB float grids in mm with the rotation axis at x = y = 0.\n"
-      "Stacks are multi-part scanline OpenEXR files with one channel Y.\n"
+      "The formats of volumes, stacks, records and the printer file are described in\n"
+      ".Xr vam-formats 7 .\n"
       "A dash means standard input or standard output; outputs appear under their\n"
-      "final name only when complete.\n"
-      "Settings of the printer are read from a TOML file.\n";
+      "final name only when complete.\n";
   for (const auto& file : manual.files) out += ".Pp\n" + paragraph(file);
   out += ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
-  for (const auto& status : exit_statuses()) out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
+  for (const auto& status : exit_statuses(tool))
+    out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
   out += ".El\n";
   out += examples(manual);
   std::vector<std::string> others = manual.see_also;

@@ -103,7 +103,7 @@ holds "more below" "$(json sweep.json points.0.ratio) > 0.1"
 holds "more above" "$(json sweep.json points.4.ratio) > 0.1"
 
 # ---- what cannot be used
-fails 64 'no subcommand' vam-curethrough
+fails 64 'no command' vam-curethrough
 fails 65 'the minimum, 120 mW/cm2, must be at least 0 and below the maximum' \
   vam-curethrough correct ladder.vdb --min-intensity 120 --max-intensity 110 -o no.exr
 fails 65 'slice height: 50 um is more than ten absorbance heights' \

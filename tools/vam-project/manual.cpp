@@ -87,7 +87,9 @@ cli::Manual manual() {
        "rises.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017; Orth et al., Correcting ray distortion in tomographic "
        "additive manufacturing, Opt. Express 2021."},
-      {"vam-optimize", "vam-resample", "vam-curethrough", "vam-stage", "vam-view"}};
+      {"vam-optimize", "vam-resample", "vam-curethrough", "vam-stage", "vam-view"},
+      {},
+      cli::device_statuses};
 }
 
 }  // namespace vam::project

@@ -40,13 +40,15 @@ struct Tool {
   }
 };
 
-// What is written to stderr while the work runs.
-std::string stderr_of(const std::function<void()>& work) {
+// What is written to the stream while the work runs.
+std::string written_to(std::FILE* stream, const std::function<void()>& work) {
+  std::fflush(stream);
   std::FILE* file = std::tmpfile();
-  const int saved = dup(STDERR_FILENO);
-  dup2(fileno(file), STDERR_FILENO);
+  const int saved = dup(fileno(stream));
+  dup2(fileno(file), fileno(stream));
   work();
-  dup2(saved, STDERR_FILENO);
+  std::fflush(stream);
+  dup2(saved, fileno(stream));
   close(saved);
   std::string text(static_cast<std::size_t>(std::ftell(file)), ' ');
   std::rewind(file);
@@ -111,19 +113,115 @@ TEST_CASE("faults become exit codes") {
   CHECK(tool.app.run(1, argv, [] { throw std::runtime_error("x"); }) == 70);
 }
 
-TEST_CASE("subcommands have options of their own") {
-  App app(Manual{"vam-demo", "shows commands", {}, {}, {}, {}});
-  std::string chosen;
-  double speed = 1;
-  double angle = 0;
-  app.subcommand("spin", "turn on", chosen).option("--speed", "DEG_S", speed, positive, "Speed.");
-  app.subcommand("move", "go there", chosen).option("--angle", "DEG", angle, any, "Angle.");
-  std::vector<std::string> words{"vam-demo", "spin", "--speed", "25"};
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  CHECK(app.run(4, argv.data(), [] {}) == 0);
-  CHECK(chosen == "spin");
-  CHECK(speed == 25);
+namespace {
+
+// A tool that does nothing without a command, or, with `plain`, something.
+struct Stage {
+  std::string chosen, device = "sim:", input = "-";
+  double speed = 1, angle = 0;
+  bool quick = false;
+  App app{Manual{"vam-demo", "shows commands", {}, {}, {}, {}}};
+  explicit Stage(bool plain = false) {
+    if (plain) app.positional("INPUT", input, "What to read.").flag("--quick", quick, "Quick.");
+    App& spin = app.subcommand("spin", "turn on", chosen);
+    spin.option("--device", "DEVICE", device, "The stage.");
+    spin.option("--speed", "DEG_S", speed, positive, "Speed.").default_is("stage.speed_deg_s").was("--pace");
+    App& move = app.subcommand("move", "go there", chosen);
+    move.option("--device", "DEVICE", device, "The stage.").option("--angle", "DEG", angle, any, "Angle.");
+  }
+  int run(std::vector<std::string> words) {
+    words.insert(words.begin(), "vam-demo");
+    std::vector<char*> argv;
+    for (auto& word : words) argv.push_back(word.data());
+    return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("options of a command may stand before or behind it") {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"spin", "--speed", "25", "--device", "move"},
+                                             {"--speed", "25", "--device", "move", "spin"},
+                                             {"--device=move", "spin", "--speed=25"}}) {
+    for (const bool plain : {false, true}) {
+      Stage stage(plain);
+      CHECK(stage.run(words) == 0);
+      CHECK(stage.chosen == "spin");
+      CHECK(stage.speed == 25);
+      CHECK(stage.device == "move");
+    }
+  }
+}
+
+TEST_CASE("the error for a wrong option of a command says where it belongs") {
+  const auto said = [](const std::vector<std::string>& words, bool plain) {
+    return written_to(stderr, [&] { CHECK(Stage(plain).run(words) == 64); });
+  };
+  CHECK(said({"--angle", "3", "spin"}, false) ==
+        "vam-demo: --angle: not an option of vam-demo spin; it belongs to move\n");
+  CHECK(said({"--quick", "spin"}, true) ==
+        "vam-demo: --quick: not an option of vam-demo spin; it belongs to vam-demo without a command\n");
+  CHECK(said({"spin", "--sped", "3"}, false) ==
+        "vam-demo: --sped: unknown option; did you mean --speed? (vam-demo spin --help lists all)\n");
+  CHECK(said({"spinn"}, false) == "vam-demo: spinn: unknown command; did you mean spin? (vam-demo --help lists all)\n");
+  CHECK(said({"--device", "spin"}, false) == "vam-demo: no command; give one of spin, move\n");
+}
+
+TEST_CASE("a tool with operands of its own runs without a command") {
+  Stage stage(true);
+  CHECK(stage.run({"part.vdb"}) == 0);
+  CHECK(stage.chosen.empty());
+  CHECK(stage.input == "part.vdb");
+}
+
+namespace {
+
+std::string man_of(Stage& stage) {
+  return written_to(stdout, [&] { CHECK(stage.run({"--man"}) == 0); });
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("the manual prints options of several commands once, and the plain form where there is one") {
+  Stage commands;
+  Stage both(true);
+  const std::string page = man_of(commands);
+  CHECK(count_of(page, ".It Fl -device") == 1);
+  CHECK(count_of(page, "Options described above: --device.") == 2);
+  CHECK(page.find("Default: stage.speed_deg_s.") != std::string::npos);
+  CHECK(page.find("--pace") == std::string::npos);
+  CHECK(page.find(".Sh SYNOPSIS\n.Nm\n.Cm spin\n") != std::string::npos);
+  CHECK(man_of(both).find(".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&INPUT\n.Nm\n.Cm spin\n") != std::string::npos);
+}
+
+TEST_CASE("an operand without a default, and any before it, is shown as required") {
+  Stage stage;
+  std::string print = "-", reference;
+  stage.app.positional("PRINT", print, "Print.").positional("REFERENCE", reference, "Design.");
+  CHECK(man_of(stage).find(".Nm\n.Ar \\&PRINT\n.Ar \\&REFERENCE\n") != std::string::npos);
+}
+
+TEST_CASE("the manual lists the variables and statuses of what the tool has") {
+  Declaration tool;
+  tool.manual = {"vam-demo", "shows", {"Shows."}, {}, {}, {}};
+  const std::string bare = manual_page(tool);
+  CHECK(bare.find("VAM_PRINTER") == std::string::npos);
+  CHECK(bare.find(".It 1\n") == std::string::npos);
+  CHECK(bare.find(".It 76\n") == std::string::npos);
+  tool.manual.statuses = device_statuses;
+  tool.groups = {
+      {"Options", {{"--printer", "FILE", "Settings.", "", "", {}}, {"--require", "C", "Limits.", "", "", {}}}}};
+  const std::string page = manual_page(tool);
+  CHECK(page.find("VAM_PRINTER") != std::string::npos);
+  CHECK(page.find(".It 1\n") != std::string::npos);
+  CHECK(page.find(".It 76\nDevice protocol error.\n") != std::string::npos);
 }
 
 TEST_CASE("a former spelling works as the option does, with one warning") {
@@ -131,7 +229,7 @@ TEST_CASE("a former spelling works as the option does, with one warning") {
        std::vector<std::vector<std::string>>{{"--taper", "cosine"}, {"--taper=cosine"}}) {
     Tool tool;
     int status = -1;
-    CHECK(stderr_of([&] { status = tool.run(words); }) == "vam-demo: --taper is now --window\n");
+    CHECK(written_to(stderr, [&] { status = tool.run(words); }) == "vam-demo: --taper is now --window\n");
     CHECK(status == 0);
     CHECK(tool.window == "cosine");
     CHECK(tool.app.given("--window"));
@@ -143,24 +241,18 @@ TEST_CASE("a former spelling works as the option does, with one warning") {
 
 TEST_CASE("a former spelling is not shown") {
   Tool tool;
-  const std::string text = stderr_of([&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
+  const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
   CHECK(text.find("--window") != std::string::npos);
   CHECK(text.find("--taper") == std::string::npos);
 }
 
-TEST_CASE("a former spelling of a subcommand's option is known after its name") {
-  App app(Manual{"vam-demo", "shows commands", {}, {}, {}, {}});
-  std::string chosen;
-  double speed = 1;
-  double level = 0;
-  app.option("--level", "N", level, any, "Level.");
-  app.subcommand("spin", "turn on", chosen).option("--speed", "DEG_S", speed, positive, "Speed.").was("--level");
-  std::vector<std::string> words{"vam-demo", "--level", "3", "spin", "--level", "25"};
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  CHECK(stderr_of([&] { CHECK(app.run(6, argv.data(), [] {}) == 0); }) == "vam-demo: --level is now --speed\n");
-  CHECK(speed == 25);
-  CHECK(level == 3);
+TEST_CASE("a command's option has former spellings, too") {
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"spin", "--pace", "25"}, {"--pace", "25", "spin"}}) {
+    Stage stage;
+    CHECK(written_to(stderr, [&] { CHECK(stage.run(words) == 0); }) == "vam-demo: --pace is now --speed\n");
+    CHECK(stage.speed == 25);
+  }
 }
 
 TEST_CASE("the manual page escapes what roff would take for its own") {

@@ -1,0 +1,30 @@
+// Private to App: the words of a command line, seen by the declaration before they are parsed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/declaration.hpp"
+
+namespace vam::cli {
+
+/// The flag of "--flag=value".
+[[nodiscard]] std::string flag_of(const std::string& word);
+
+/// Where the command stands: the first word that is neither an option nor its value, when that is one. Else -1.
+[[nodiscard]] int find_command(const Declaration& tool, const std::vector<std::string>& words);
+
+/// Throws Fault::usage when a tool that does nothing without a command is not given one.
+void require_command(const Declaration& tool, const std::vector<std::string>& words);
+
+/// Options before the command go behind it, so that both orders mean the same.
+void put_command_first(const Declaration& tool, std::vector<std::string>& words);
+
+/// Puts the present spelling of options for former ones, with a line on stderr, once each. A command's come first.
+void rename_former(const Declaration& tool, std::vector<std::string>& words);
+
+/// The line for a word that the tool, or the command that the words name, does not know.
+[[nodiscard]] std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words,
+                                       const std::string& unknown);
+
+}  // namespace vam::cli

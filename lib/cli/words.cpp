@@ -1,0 +1,139 @@
+#include "cli/private/words.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::cli {
+
+namespace {
+
+bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
+
+bool has_name(const Option& option, const std::string& flag) {
+  const auto names = split(option.flag, ',');
+  return std::find(names.begin(), names.end(), flag) != names.end() ||
+         std::find(option.former.begin(), option.former.end(), flag) != option.former.end();
+}
+
+const Option* find_own(const Declaration& tool, const std::string& flag) {
+  for (const auto& group : tool.groups) {
+    for (const auto& option : group.options) {
+      if (has_name(option, flag)) return &option;
+    }
+  }
+  return nullptr;
+}
+
+// The command that the words name, else the tool's plain form.
+const Declaration& form_of(const Declaration& tool, const std::vector<std::string>& words) {
+  const int place = find_command(tool, words);
+  if (place < 0) return tool;
+  const auto& name = words[static_cast<std::size_t>(place)];
+  return *std::find_if(tool.subcommands.begin(), tool.subcommands.end(),
+                       [&](const Declaration& nested) { return nested.manual.name == name; });
+}
+
+std::vector<std::string> command_names(const Declaration& tool) {
+  std::vector<std::string> names;
+  for (const auto& nested : tool.subcommands) names.push_back(nested.manual.name);
+  return names;
+}
+
+std::vector<std::string> flags_of(const Declaration& form) {
+  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
+  for (const auto& group : form.groups) {
+    for (const auto& option : group.options) flags.push_back(long_flag(option));
+  }
+  return flags;
+}
+
+// The forms of the tool that take an option: "move, spin".
+std::string takers(const Declaration& tool, const std::string& flag) {
+  std::vector<std::string> names;
+  if (find_own(tool, flag) != nullptr) names.push_back(tool.manual.name + " without a command");
+  for (const auto& nested : tool.subcommands) {
+    if (find_own(nested, flag) != nullptr) names.push_back(nested.manual.name);
+  }
+  return join(names, ", ");
+}
+
+// Where the first word stands that is neither an option nor an option's value; -1 when there is none.
+int first_operand(const Declaration& tool, const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--") return -1;
+    if (!is_option(words[i])) return static_cast<int>(i);
+    const Option* option = find_option(tool, words[i]);
+    if (option != nullptr && !option->value_name.empty()) ++i;  // its value
+  }
+  return -1;
+}
+
+}  // namespace
+
+const Option* find_option(const Declaration& tool, const std::string& flag) {
+  const Option* found = find_own(tool, flag);
+  for (const auto& nested : tool.subcommands) {
+    if (found == nullptr) found = find_own(nested, flag);
+  }
+  return found;
+}
+
+std::string flag_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+int find_command(const Declaration& tool, const std::vector<std::string>& words) {
+  const int place = first_operand(tool, words);
+  if (place < 0) return -1;
+  const auto names = command_names(tool);
+  return std::find(names.begin(), names.end(), words[static_cast<std::size_t>(place)]) == names.end() ? -1 : place;
+}
+
+void require_command(const Declaration& tool, const std::vector<std::string>& words) {
+  if (has_plain_form(tool) || find_command(tool, words) >= 0) return;
+  const auto names = command_names(tool);
+  const int place = first_operand(tool, words);
+  if (place < 0) throw Error{Fault::usage, "no command; give one of " + join(names, ", ")};
+  const std::string& word = words[static_cast<std::size_t>(place)];
+  throw Error{Fault::usage,
+              word + ": unknown command" + did_you_mean(word, names) + " (" + tool.manual.name + " --help lists all)"};
+}
+
+void put_command_first(const Declaration& tool, std::vector<std::string>& words) {
+  const int place = find_command(tool, words);
+  if (place > 0) std::rotate(words.begin(), words.begin() + place, words.begin() + place + 1);
+}
+
+void rename_former(const Declaration& tool, std::vector<std::string>& words) {
+  const Declaration& form = form_of(tool, words);
+  std::set<std::string> told;
+  for (auto& word : words) {
+    if (word == "--") return;
+    const std::string flag = flag_of(word);
+    const Option* option = find_own(form, flag);
+    if (option == nullptr || std::count(option->former.begin(), option->former.end(), flag) == 0) continue;
+    const std::string present = long_flag(*option);
+    word.replace(0, flag.size(), present);
+    if (!told.insert(flag).second) continue;
+    std::fprintf(stderr, "%s: %s is now %s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str());
+  }
+}
+
+std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words, const std::string& unknown) {
+  const Declaration& form = form_of(tool, words);
+  const bool plain = &form == &tool;
+  const std::string name = plain ? tool.manual.name : tool.manual.name + " " + form.manual.name;
+  const std::string where = " (" + name + " --help lists all)";
+  if (!is_option(unknown)) {
+    const auto known = plain ? command_names(tool) : std::vector<std::string>{};
+    return unknown + ": unexpected argument" + did_you_mean(unknown, known) + where;
+  }
+  const std::string flag = flag_of(unknown);
+  const std::string others = takers(tool, flag);
+  if (!others.empty()) return flag + ": not an option of " + name + "; it belongs to " + others;
+  return flag + ": unknown option" + did_you_mean(flag, flags_of(form)) + where;
+}
+
+}  // namespace vam::cli
