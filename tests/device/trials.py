@@ -1,4 +1,4 @@
-"""What the trials of promise 1 share: the ways a program can end, the simulators' logs, and the table of results."""
+"""Common parts of the safety trials [devices promise 1]: ways to end a program, simulator logs, table of results."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-// The camera as the tools see it; one backend per file (aravis_camera, v4l2_camera, replay_camera, sim_camera).
+// The camera as the tools see it; one backend per file (aravis_camera, v4l2_camera, replay_camera, sim_camera) [devices §6].
 #pragma once
 
 #include <functional>

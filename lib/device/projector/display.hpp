@@ -1,4 +1,4 @@
-// A screen that shows preloaded frames at its vertical blanks: the image input of a projector.
+// A screen that shows preloaded frames at its vertical blanks: the image input of a projector [devices §4].
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// The lamp half of a projector: LEDs, their current, and whether grey is linear.
+// The light engine of a projector: LEDs, their current, and whether grey is linear [devices §5].
 #pragma once
 
 #include <memory>

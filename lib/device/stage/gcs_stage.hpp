@@ -1,4 +1,4 @@
-// A PI controller with one rotation stage, e.g. C-863 with M-060.PD.
+// A PI controller with one rotation stage, e.g. C-863 with M-060.PD [devices §3.1].
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// A rotation axis driven by GRBL 1.1, one unit a degree.
+// A rotation axis driven by GRBL 1.1, one unit per degree [devices §3.3].
 #pragma once
 
 #include <memory>

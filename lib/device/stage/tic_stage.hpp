@@ -1,4 +1,4 @@
-// A stepper motor behind a Pololu Tic (T500, T825, T834, T249, 36v4, N825).
+// A stepper motor behind a Pololu Tic (T500, T825, T834, T249, 36v4, N825) [devices §3.2].
 #pragma once
 
 #include <memory>
