@@ -14,6 +14,8 @@ finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the 
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
 }
 finds 'vam-physics.7. has no section 99' '// along the ray [physics §99]'
+finds 'vam-devices.7. has no section 99' '// as [devices §99] has it'
+finds 'vam-devices.7. has no promise 9' '// promise 9'
 finds '.KELLY99. is not among the references' '// as in [KELLY99]'
 finds '.RAY21 eq 77. does not stand' '// as in [RAY21 eq 77]'
 finds 'the attribute vam:colour is not defined' 'const char* key = "vam:colour";'

@@ -108,8 +108,9 @@ double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, P
 
 }  // namespace
 
+// [devices promise 3]
 TEST_CASE(
-    "Promise 3: with 1 % speed error and 5 ms jitter the shown frame is within 0.1 deg, p99; by elapsed time it is "
+    "With 1 % speed error and 5 ms jitter the shown frame is within 0.1 deg, p99; by elapsed time it is "
     "not") {
   for (const double speed_deg_s : {10.0, 25.0}) {
     for (const double speed_error : {-0.01, 0.01}) {

@@ -65,7 +65,8 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
   }
 }
 
-TEST_CASE("Promise 2: however seldom a sample is wanted, a table that moves is asked every 200 ms") {
+// [devices promise 2]
+TEST_CASE("However seldom a sample is wanted, a table that moves is asked every 200 ms") {
   VirtualStage lab;
   SpinPlan plan;
   plan.speed_deg_s = 60;
