@@ -49,9 +49,10 @@ faults = []
 
 
 def check(where, text):
-    for kind, number in re.findall(r'\b(physics|devices) §(\d+(?:\.\d+)?)', text):
-        if number not in sections[kind]:
-            faults.append(f'{where}: vam-{kind}(7) has no section {number}')
+    for kind, numbers in re.findall(r'\b(physics|devices) (§\d+(?:\.\d+)?(?:, §\d+(?:\.\d+)?)*)', text):
+        for number in numbers.replace('§', '').split(', '):
+            if number not in sections[kind]:
+                faults.append(f'{where}: vam-{kind}(7) has no section {number}')
     for number in re.findall(r'\b[Pp]romises? (\d\b)', text):
         if int(number) > promises:
             faults.append(f'{where}: vam-devices(7) has no promise {number}')

@@ -13,7 +13,7 @@ finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the 
   check tree >faults && report 1 "found: $2" && return
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
 }
-finds 'vam-physics.7. has no section 99' '// along the ray [physics §99]'
+finds 'vam-physics.7. has no section 99' '// along the ray [physics §2, §99]'
 finds 'vam-devices.7. has no section 99' '// as [devices §99] has it'
 finds 'vam-devices.7. has no promise 9' '// promise 9'
 finds '.KELLY99. is not among the references' '// as in [KELLY99]'
