@@ -1,4 +1,5 @@
 // vam-dose: the dose that sinograms leave in the resin.
+#include "base/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "base/json.hpp"
 #include "base/log.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/settings/report.hpp"

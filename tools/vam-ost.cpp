@@ -1,6 +1,7 @@
 // vam-ost: optical scattering tomography, from camera views to the print as it stands.
 #include <cstdio>
 
+#include "base/json.hpp"
 #include "io/settings/report.hpp"
 #include "printer.hpp"
 #include "vam-ost/session.hpp"

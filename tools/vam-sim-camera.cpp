@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "cli/app.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "cli/app.hpp"
 #include "device/open/stage.hpp"
 #include "device/os/event_log.hpp"

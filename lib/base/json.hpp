@@ -3,6 +3,4 @@
 
 #include <nlohmann/json.hpp>
 
-namespace vam {
-using Json = nlohmann::ordered_json;
-}
+#include "base/json_fwd.hpp"

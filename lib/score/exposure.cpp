@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/json.hpp"
 
 namespace vam::score {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/printer.hpp"
 
 namespace vam::score {

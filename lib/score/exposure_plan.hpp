@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/printer.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/printer.hpp"

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/address.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "sim/controllers/dlp.hpp"

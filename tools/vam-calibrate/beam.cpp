@@ -2,6 +2,7 @@
 #include "metrology/calibrate/beam.hpp"
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/picture/view_source.hpp"
 #include "metrology/calibrate/flat.hpp"

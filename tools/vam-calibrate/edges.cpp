@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "vam-calibrate/scan.hpp"

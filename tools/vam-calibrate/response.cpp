@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/picture/view_source.hpp"
 #include "io/stream/stream.hpp"

@@ -1,5 +1,6 @@
 #include "vam-capture/sinks.hpp"
 
+#include "base/json.hpp"
 #include "io/picture/capture_folder.hpp"
 #include "sim/cameras/camera.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/camera/capture.hpp"
 #include "io/exr/stack.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/stream/stream.hpp"

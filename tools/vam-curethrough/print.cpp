@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/response_file.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "resin/curethrough/curethrough.hpp"

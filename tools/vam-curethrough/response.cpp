@@ -1,6 +1,7 @@
 // The projector's grey response from photodiode readings.
 #include <cmath>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/report.hpp"

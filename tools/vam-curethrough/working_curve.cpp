@@ -1,6 +1,7 @@
 // A resin's absorbance height and gelation dose from cured thicknesses.
 #include "resin/working_curve.hpp"
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/csv_table.hpp"
 #include "io/settings/report.hpp"

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
 #include "score/exposure_plan.hpp"

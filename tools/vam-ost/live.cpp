@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/picture/view_queue.hpp"
 #include "io/settings/event_log.hpp"

@@ -2,6 +2,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "cli/app.hpp"
 #include "io/picture/view_source.hpp"
 #include "io/vdb/vdb.hpp"

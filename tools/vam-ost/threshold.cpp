@@ -1,6 +1,7 @@
 #include "metrology/ost/threshold.hpp"
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "io/settings/report.hpp"
 #include "vam-ost/session.hpp"
 

@@ -1,5 +1,6 @@
 #include "vam-project/files.hpp"
 
+#include "base/json.hpp"
 #include "io/picture/frame_sink.hpp"
 #include "io/settings/report.hpp"
 #include "optics/frames.hpp"

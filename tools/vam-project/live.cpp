@@ -1,5 +1,6 @@
 #include "vam-project/live.hpp"
 
+#include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "device/os/interrupt.hpp"

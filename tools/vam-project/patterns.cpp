@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/picture/frame_sink.hpp"

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "io/picture/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "resin/response.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "base/pixels.hpp"
 #include "device/os/address.hpp"
 #include "device/os/clock.hpp"

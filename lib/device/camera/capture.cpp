@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 
 namespace vam::device {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/camera/camera.hpp"
 #include "device/stage/angle_source.hpp"
 

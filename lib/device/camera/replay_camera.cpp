@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/camera/camera_backends.hpp"
 
 namespace vam::device {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 
@@ -49,6 +50,8 @@ EventLog::EventLog(const std::string& path) : path_(path) {
 EventLog::~EventLog() {
   if (fd_ >= 0) close(fd_);
 }
+
+void EventLog::operator()(const std::string& event) { (*this)(event, Json::object()); }
 
 void EventLog::operator()(const std::string& event, const Json& facts) { at(real_clock().now_s(), event, facts); }
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 
 namespace vam::device {
 
@@ -16,7 +16,8 @@ class EventLog {
   ~EventLog();
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
-  void operator()(const std::string& event, const Json& facts = Json::object());
+  void operator()(const std::string& event);
+  void operator()(const std::string& event, const Json& facts);
   /// What happened at a time of its own, on CLOCK_MONOTONIC.
   void at(double t_s, const std::string& event, const Json& facts);
   /// A line as it is.

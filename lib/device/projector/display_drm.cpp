@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/projector/display_backends.hpp"
 #include "device/projector/private/drm_output.hpp"

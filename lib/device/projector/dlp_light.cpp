@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/clock.hpp"
 #include "device/projector/light_engine.hpp"

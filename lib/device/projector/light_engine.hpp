@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/usb_link.hpp"

@@ -5,6 +5,7 @@
 #include <deque>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/interrupt.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/projector/display.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/stage/angle_source.hpp"

@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/safety/private/guardian_child.hpp"
 
 namespace vam::device {

@@ -8,6 +8,7 @@
 
 #include <string>
 
+#include "base/json.hpp"
 #include "device/port/usb_link.hpp"
 
 namespace vam::device {

@@ -9,7 +9,7 @@
 // `order`: 0 for light, 1 for motion; lower first.
 #pragma once
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 
 namespace vam::device {
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/port/serial_port.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/os/address.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/stage/private/stop_on_exit.hpp"
 #include "device/stage/spin.hpp"

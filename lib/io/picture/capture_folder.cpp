@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "io/picture/picture.hpp"
 #include "io/stream/stream.hpp"
 

@@ -1,5 +1,6 @@
 #include "io/settings/report.hpp"
 
+#include "base/json.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 
 namespace vam::metrology {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/surface.hpp"
 

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "metrology/compare/private/outline.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 
 namespace vam::metrology {

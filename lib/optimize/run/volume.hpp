@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/iterate.hpp"
 #include "optimize/target/slice_reader.hpp"

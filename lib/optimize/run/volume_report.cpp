@@ -1,6 +1,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "model/figures.hpp"
 #include "optimize/run/slice_figures.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "sim/cameras/open_camera.hpp"

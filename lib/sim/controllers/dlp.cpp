@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
 
 namespace vam::sim {

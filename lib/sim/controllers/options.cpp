@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/event_log.hpp"
 

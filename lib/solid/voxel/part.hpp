@@ -6,7 +6,7 @@
 #include <string>
 
 #include "base/image.hpp"
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "solid/mesh/repair.hpp"

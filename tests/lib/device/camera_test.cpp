@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/capture.hpp"
 #include "device/camera/private/frame_count.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/interrupt.hpp"
 #include "fault_of.hpp"

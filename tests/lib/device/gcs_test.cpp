@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/stage/grbl_stage.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <functional>
 
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/safety/guardian_actions.hpp"
 

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/stage/spin.hpp"
 #include "fault_of.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "fault_of.hpp"
 #include "virtual_stage.hpp"
 

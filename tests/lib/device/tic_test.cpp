@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/stage/spin.hpp"
 #include "device/stage/tic_stage.hpp"
 #include "fault_of.hpp"

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/json.hpp"
 #include "fault_of.hpp"
 #include "io/settings/printer_file.hpp"
 #include "scratch.hpp"

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/shadowed.hpp"
 #include "optimize/target/schedule.hpp"

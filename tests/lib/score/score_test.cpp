@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 
 using vam::score::Score;
 using vam::score::ScoreOptions;

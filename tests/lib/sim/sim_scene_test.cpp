@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/json.hpp"
 #include "sim/bench/scene.hpp"
 #include "sim/bench/world.hpp"
 

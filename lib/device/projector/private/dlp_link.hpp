@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/usb_link.hpp"
 #include "device/safety/guardian.hpp"
