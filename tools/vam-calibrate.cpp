@@ -46,9 +46,8 @@ cli::Manual manual() {
 void add_input(cli::App& scan, ScanOptions& o, bool with_flips) {
   scan.option("--from", "FILE", o.from, "The frames: an EXR stack or folder of vam-capture, or a folder of images.");
   if (with_flips) {
-    scan.option("--flips", "FILE", o.flips,
-                "Log of vam-project during the capture: which pattern frame was on. Default: frame n shows pattern "
-                "frame n.");
+    scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.")
+        .default_is("frame n shows pattern frame n");
   }
   scan.option("--devices", "FILE", o.devices,
               "JSON for the record, like {\"camera\": ...}: the output of identify for each device in use.");
@@ -109,10 +108,8 @@ void run(const cli::App& app, const ScanOptions& scan, const ResinOptions& resin
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int moved = tool::follow_moved(argc, argv,
-                                       {"--screen", "--light", "--printer", "--set", "--scans", "--accept", "--home",
-                                        "--pitch", "--sweep-exposure", "--keep", "--log"},
-                                       "vam-calibrate-all");
+  const int moved = tool::follow_moved(
+      argc, argv, {"--screen", "--light", "--scans", "--home", "--sweep-exposure", "--keep"}, "vam-calibrate-all");
   if (moved >= 0) return moved;
   cli::App app(manual());
   ScanOptions scan;

@@ -62,14 +62,16 @@ cli::Manual manual() {
 }
 
 void add_camera(cli::App& app, Options& o) {
-  app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ". Default: camera.device.");
-  app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time. Default: camera.exposure_us.");
-  app.option("--fps", "HZ", o.camera.fps, cli::positive, "Frames per second. Default: camera.fps.");
-  app.option("--binning", "N", o.camera.binning, {1, 64}, "Sum N x N pixels in the camera. Default: camera.binning.");
+  app.option("--device", "DEVICE", o.device, "Camera: " + device::camera_devices() + ".").default_is("camera.device");
+  app.option("--exposure", "US", o.camera.exposure_us, cli::positive, "Exposure time.")
+      .default_is("camera.exposure_us");
+  app.option("--fps", "HZ", o.camera.fps, cli::positive, "Frames per second.").default_is("camera.fps");
+  app.option("--binning", "N", o.camera.binning, {1, 64}, "Sum N x N pixels in the camera.")
+      .default_is("camera.binning");
   app.option("--trigger", "SOURCE", o.camera.trigger, "free, software, or an input line of the camera (Line0).");
   app.option("--format", "NAME", o.camera.format, "Pixel format, in the camera's naming (Mono8, Mono16, GREY, Y16).");
-  app.option("--timeout", "S", o.camera.timeout_s, {0.01, 86400},
-             "Longest wait for a frame. Default: three frame periods, an exposure and one second.");
+  app.option("--timeout", "S", o.camera.timeout_s, {0.01, 86400}, "Longest wait for a frame.")
+      .default_is("three frame periods, an exposure and one second");
 }
 
 void declare(cli::App& app, Options& o) {
@@ -77,10 +79,10 @@ void declare(cli::App& app, Options& o) {
   app.group("Camera");
   add_camera(app, o);
   app.group("Frame selection");
-  app.option("--frames", "N", o.frames, {1, 1e6},
-             "Number of frames. Default: until a signal or the end of a recording.");
+  app.option("--frames", "N", o.frames, {1, 1e6}, "Number of frames.")
+      .default_is("until a signal or the end of a recording");
   app.option("--every", "DEG", o.every_deg, cli::positive, "Keep the frames nearest to the multiples of this angle.");
-  app.option("--turns", "N", o.turns, cli::positive, "With --every: number of turns. Default: 1.");
+  app.option("--turns", "N", o.turns, cli::positive, "With --every: number of turns.").default_is("1");
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
              "Without --follow: angle = speed x time since the start.");
@@ -90,8 +92,8 @@ void declare(cli::App& app, Options& o) {
              "End with status 75 when more frames are dropped or incomplete.");
   app.group("Output and machine");
   app.flag("--live", o.live, "Send every frame at once as a stack of its own.");
-  app.option("--pixel", "MM", o.pixel_mm, cli::positive,
-             "Pixel pitch at the axis, after binning. Default: camera.pixel_mm times the binning.");
+  app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch at the axis, after binning.")
+      .default_is("camera.pixel_mm times the binning");
   cli::add_printer(app, o.printer);
   cli::add_stack_output(app, o.stack.half, o.stack.compression);
   app.option("--log", "FILE", o.log,

@@ -35,21 +35,20 @@ cli::Manual manual() {
   return {
       "vam-sim-stage",
       "simulate a rotation stage on a pseudo-terminal",
-      {"Behaves like a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a "
-       "pseudo-terminal, prints its path, and answers GCS 2.0 commands until a signal ends it. The table has inertia "
-       "and limits, must be switched on and referenced, and refuses with the error codes of the controller.",
-       "Its log tells what really happened, to judge the tools by: one JSON line per command received, per start, "
-       "standstill and zeroing of the table, and the true angle every 10 ms while it moves, all on CLOCK_MONOTONIC.",
-       "libserialport, which vam-stage uses, accepts no pseudo-terminals; a small library to preload changes its mind. "
-       "--shim prints where it is."},
-      {{"A stage, asked who it is",
+      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a "
+       "pseudo-terminal, prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia "
+       "and limits, must be powered and referenced, and rejects commands with the error codes of the controller.",
+       "Its log is the reference for tests of the tools: one JSON line per received command, per start, standstill and "
+       "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
+       "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded, whose path "
+       "--shim prints."},
+      {{"Identify a simulated stage",
         "vam-sim-stage --link stage --die-with-parent >path & while [ ! -s path ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-stage identify --device gcs:$(cat path)"}},
-      {"Faults. --fault KIND@COMMAND[:N] spoils the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): garbage, "
-       "truncated, late (3 s) or silent answers, wrong-sender (an answer of controller 7), error (the command is "
-       "refused), unplug (the cable is pulled; the motion goes on, as with the real one) and power-loss (the "
-       "controller dies and the table coasts to a stop) and block (the table is held fast while the controller talks "
-       "on)."},
+      {"Faults. --fault KIND@COMMAND[:N] injects a fault at the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): "
+       "garbage, truncated, late (3 s) or silent answers, wrong-sender (an answer of controller 7), error (the command "
+       "is rejected), unplug (the cable is disconnected; the motion continues), power-loss (the controller fails and "
+       "the stage coasts to a stop) and block (the stage is blocked while the controller keeps answering)."},
       {"vam-stage", "vam-sim-camera"},
       {},
       cli::device_statuses};
@@ -57,32 +56,32 @@ cli::Manual manual() {
 
 void declare(cli::App& app, Options& options) {
   auto& motor = options.stage.motor;
-  app.group("The table");
-  app.option("--acceleration", "DEG/S2", motor.acceleration_deg_s2, {1, 10000}, "Of ramps and smooth stops.");
-  app.option("--speed-error", "PART", motor.speed_error, {-0.5, 0.5}, "Relative: 0.01 turns 1 % too fast.");
+  app.group("Stage");
+  app.option("--acceleration", "DEG/S2", motor.acceleration_deg_s2, {1, 10000},
+             "Acceleration of ramps and smooth stops.");
+  app.option("--speed-error", "PART", motor.speed_error, {-0.5, 0.5}, "Relative speed error: 0.01 turns 1 % too fast.");
   app.option("--ripple", "PART", motor.ripple, {0, 0.5},
              "Relative amplitude of a speed error that repeats every 30 degrees.");
   app.option("--max-speed", "DEG/S", options.stage.max_speed_deg_s, {1, 10000},
-             "Faster commands are refused with error 8.");
+             "Maximum speed; faster commands are rejected with error 8.");
   app.option("--min", "DEG", options.stage.min_deg, {-1e7, 0},
-             "Lower limit; below it commands are refused with error 7.");
-  app.option("--max", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit.");
-  app.option("--at", "DEG", options.stage.home_deg, {-180, 180},
-             "Where the table stands at power-on, from its reference.");
-  app.group("The line");
+             "Lower limit of travel; commands below it are rejected with error 7.");
+  app.option("--max", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.");
+  app.option("--at", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
+  app.group("Serial line");
   app.choice("--protocol", options.protocol, {"gcs", "grbl"},
-             "A PI controller, or a GRBL 1.1 board with the table on X.");
-  app.option("--latency", "MS", options.latency_ms, {0, 1000}, "From question to answer.");
+             "A PI controller, or a GRBL 1.1 board with the stage on axis X.");
+  app.option("--latency", "MS", options.latency_ms, {0, 1000}, "Time from question to answer.");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
-             "Random part more, before and after the controller looks at its axis.");
-  app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Understand nothing at any other rate.");
-  app.option("--address", "N", options.stage.address, {1, 16}, "Of the controller in a daisy chain.");
-  app.option("--fault", "FAULT", options.faults, "Something that goes wrong, as KIND@COMMAND[:N]; may be repeated.");
-  app.group("The program");
-  app.option("--seed", "N", options.seed, {0, 1e9}, "Of the random numbers.");
-  app.option("--log", "FILE", options.log, "Append what happens, one JSON line an event.");
-  app.option("--link", "FILE", options.link, "Make this symbolic link to the pseudo-terminal; removed at the end.");
-  app.flag("--shim", options.shim, "Print the path of the library to preload, and end.");
+             "Additional random time, before and after the angle is sampled.");
+  app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept this rate only.");
+  app.option("--address", "N", options.stage.address, {1, 16}, "Address of the controller in a daisy chain.");
+  app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N]; may be repeated.");
+  app.group("Program");
+  app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");
+  app.option("--log", "FILE", options.log, "Append one JSON line per event.");
+  app.option("--link", "FILE", options.link, "Create this symbolic link to the pseudo-terminal; removed at the end.");
+  app.flag("--shim", options.shim, "Print the path of the library to preload and exit.");
   app.flag("--die-with-parent", options.with_parent, "End when the process that started this one ends.");
 }
 
@@ -93,7 +92,7 @@ std::string shim_path() {
     const auto candidate = prefix / folder / "vam-pty-shim.so";
     if (std::filesystem::exists(candidate)) return candidate;
   }
-  throw Error{Fault::no_input, "vam-pty-shim.so: not beside this program; install it again"};
+  throw Error{Fault::no_input, "vam-pty-shim.so: not found beside this program; reinstall the tools"};
 }
 
 class Link {
@@ -103,7 +102,7 @@ class Link {
     std::error_code problem;
     if (std::filesystem::is_symlink(path)) std::filesystem::remove(path, problem);
     std::filesystem::create_symlink(target, path, problem);
-    if (problem) throw Error{Fault::no_output, path + ": cannot make the link (" + problem.message() + ")"};
+    if (problem) throw Error{Fault::no_output, path + ": cannot create the link (" + problem.message() + ")"};
   }
   ~Link() {
     std::error_code none;
@@ -128,7 +127,7 @@ void run(Options& options) {
   sim::Pty pty;
   const Link link(options.link, pty.path());
   device::print_line(pty.path());
-  device::hurry(device::Urgency::driver);  // a controller has nothing else to do
+  device::hurry(device::Urgency::driver);  // a controller has no other task
   sim::serve(pty, *stage, options.baud);
 }
 

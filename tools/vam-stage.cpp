@@ -1,4 +1,4 @@
-// vam-stage: turns the rotation stage and says where it is.
+// vam-stage: turns the rotation stage and reports its angle.
 #include <functional>
 #include <map>
 #include <optional>
@@ -38,40 +38,43 @@ cli::Manual manual() {
   return {
       "vam-stage",
       "turn the rotation stage and report its angle",
-      {"Drives a rotation stage and prints where it is. spin makes the motion of a print: it ramps up, turns one "
-       "run-up turn at constant speed, then the whole turns of the print, and stops. While it turns it prints one JSON "
-       "line a sample, {\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, "
+      {"Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
+       "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
+       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, "
        "which all processes of the machine share, the angle at that time, and its standard deviation in degrees. "
-       "vam-project --follow reads these lines. The angle is 0 where the light may go on, negative before, and 360 "
-       "times the turns where it must be off again. An angle of 0 is always the same position of the table: its "
+       "vam-project --follow reads these lines. The angle is 0 where the projection may begin, negative before, and "
+       "360 "
+       "times the number of turns where it must have ended. Angle 0 is always the same position of the stage: its "
        "reference after home.",
        "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
-       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is found by asking unless ?baud=115200 is "
-       "given; ?address=2 talks to one controller of a daisy chain and ?axis=NAME to an axis of another name. "
-       "grbl:/dev/ttyACM0 is a GRBL 1.1 board with the table on axis X, in degrees (?axis=Y for another). "
-       "tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial number may be left "
-       "out when there is one. sim: is the PI controller simulated inside the tool; its options speed_error, ripple "
-       "(relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log make it as "
-       "bad as wanted. vam-sim-stage(1) puts this simulator behind a pseudo-terminal.",
-       "A device has one user at a time: the second one exits with status 75 and names the process that has it."},
-      {{"Which controller is it, and what can it do?", "vam-stage identify"},
-       {"Find the reference and turn to 20 degrees from it", "vam-stage move --home --to 20"},
-       {"A turn of a simulated stage that is 1 % too fast and answers up to 5 ms late",
+       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is "
+       "given; ?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. "
+       "grbl:/dev/ttyACM0 is a GRBL 1.1 board with the stage on axis X, in degrees (?axis=Y for another). "
+       "tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial number may be "
+       "omitted "
+       "if there is only one. sim: is the PI controller simulated inside the tool; its options speed_error, ripple "
+       "(relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log inject "
+       "faults. vam-sim-stage(1) serves this simulator on a pseudo-terminal."
+       " Protocols and fault handling are described in vam-devices(7).",
+       "A device has one user at a time: a second one exits with status 75 and names the process that holds it."},
+      {{"Identify the controller and its limits", "vam-stage identify"},
+       {"Find the reference and move to 20 degrees", "vam-stage move --home --to 20"},
+       {"One turn of a simulated stage that is 1 % too fast and answers up to 5 ms late",
         "vam-stage spin --device 'sim:?speed_error=0.01&jitter_ms=5' --speed 90 --run-up 0.25 --rate 10 "
         ">angles.jsonl"}},
-      {"Safety. Before the table moves, a child process (the guardian) holds the order to stop it. When vam-stage dies "
-       "of anything, SIGKILL and a crash included, or makes no progress for 0.5 s, the guardian sends the order: the "
-       "table begins to stop within 100 ms. This is software and no interlock: it needs a running kernel and a plugged "
-       "cable. A cable that is pulled leaves the controller to finish its last motion, which is never longer than the "
-       "turns asked for. Wire a hardware interlock that cuts the light and the motor where people can reach either.",
-       "Accuracy. A sample's time is the middle of question and answer; sigma is what the time between them leaves "
-       "open. spin refuses to begin printing (status 76) when the speed is off by more than --speed-tolerance, and "
-       "ends when the table leaves its own line by more than 2 degrees. The port's latency matters: at 25 deg/s, 16 ms "
+      {"Safety. Before the stage moves, a child process (the guardian) receives the stop command. When vam-stage ends "
+       "for any reason, SIGKILL and a crash included, or makes no progress for 0.5 s, the guardian sends it: the stage "
+       "begins to stop within 100 ms. This is software and no interlock: it needs a running kernel and a connected "
+       "cable. A disconnected controller finishes its last motion, which is never longer than the requested turns. "
+       "Install a hardware interlock that cuts lamp and motor where people can reach either.",
+       "Accuracy. A sample's time is the middle between question and answer; sigma follows from the time between "
+       "them. spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the "
+       "stage deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at 25 deg/s, 16 "
+       "ms "
        "(the FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
-       "Priority. On a machine that is busy with other things an answer may be read too late to be of use. As root, or "
-       "with leave for a real-time priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for "
-       "the "
-       "members of that group from their next login), vam-stage and its guardian go before all others.",
+       "Priority. On a busy machine an answer may be read too late. As root, or with permission for a real-time "
+       "priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the "
+       "members of that group from their next login), vam-stage and its guardian run before other programs.",
        "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
       {"vam-project", "vam-sim-stage", "vam-capture"},
       {},
@@ -92,32 +95,32 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   app.subcommand("ports", "print the serial ports of this machine as JSON", chosen);
   auto& home = app.subcommand("home", "find the reference; it becomes 0 degrees", chosen);
   add_common(home, options);
-  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Give up after so many seconds.");
-  auto& move = app.subcommand("move", "turn to an angle and wait until the table stands", chosen);
+  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Time-out.");
+  auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
   add_common(move, options);
-  move.option("--to", "DEG", options.angle_deg, {-1e6, 1e6}, "The angle; several turns are several times 360.");
-  move.flag("--relative", options.relative, "The angle counts from where the table is.");
+  move.option("--to", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; several turns are several times 360.");
+  move.flag("--relative", options.relative, "The angle is relative to the present one.");
   move.flag("--home", options.home_first, "Find the reference first.");
-  move.option("--speed", "DEG/S", options.move_speed_deg_s, {0.001, 1000}, "Speed of the table.");
-  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Give up after so many seconds.");
-  auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line a sample", chosen);
+  move.option("--speed", "DEG/S", options.move_speed_deg_s, {0.001, 1000}, "Speed of the stage.");
+  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Time-out.");
+  auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample", chosen);
   add_common(spin, options);
   spin.option("--turns", "N", options.plan.turns, {1, 100000}, "Turns of the print, after the run-up.");
-  spin.option("--speed", "DEG/S", options.plan.speed_deg_s, {0.001, 1000}, "Speed of the table.");
+  spin.option("--speed", "DEG/S", options.plan.speed_deg_s, {0.001, 1000}, "Speed of the stage.");
   spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
   spin.option("--direction", "SIGN", options.plan.direction, {-1, 1},
-              "1, or -1 for the other way; the angle printed grows either way.");
+              "1, or -1 to reverse; the reported angle increases either way.");
   spin.option("--speed-tolerance", "PART", options.plan.speed_tolerance, {1e-6, 1},
-              "Largest relative error of the speed before angle 0.");
-  spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples a second.");
+              "Largest relative speed error before angle 0.");
+  spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
   spin.flag("--home", options.home_first, "Find the reference first.");
-  auto& stop = app.subcommand("stop", "stop the table and wait until it stands", chosen);
+  auto& stop = app.subcommand("stop", "stop the stage and wait for standstill", chosen);
   add_common(stop, options);
-  stop.flag("--abrupt", options.abrupt, "As hard as the controller can, instead of its normal deceleration.");
-  auto& follow = app.subcommand("follow", "print one JSON line a sample without moving anything", chosen);
+  stop.flag("--abrupt", options.abrupt, "Stop as fast as the controller can, instead of its normal deceleration.");
+  auto& follow = app.subcommand("follow", "print one JSON line per sample without motion", chosen);
   add_common(follow, options);
-  follow.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples a second.");
-  follow.option("--seconds", "S", options.seconds, cli::positive, "End after so long; without it, at a signal.");
+  follow.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
+  follow.option("--seconds", "S", options.seconds, cli::positive, "Duration.").default_is("until a signal");
 }
 
 void drive(const std::string& command, Options& options) {

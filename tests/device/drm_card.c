@@ -1,6 +1,6 @@
 // A graphics card for LD_PRELOAD: answers what the kernel would, so that the unmodified libdrm finds /dev/dri/card0 with
 // the screens eDP-1 (on, by CRTC 31), HDMI-A-1 (64 x 48 at 60 Hz, off) and HDMI-A-2 (nothing plugged in).
-// $FAKE_DRM is a folder: "log" gets a JSON line for every picture with the vertical blank at which it is on, "memory"
+// $FAKE_DRM is a folder: "log" gets a JSON line for every image with the vertical blank at which it is on, "memory"
 // is the card's. $FAKE_DRM_FAULT=KIND[:N] spoils something, at the N-th page flip (buffer for no-memory) and after it:
 // not-master, no-memory, no-mode, gamma (stays as it is), busy, lost (to another master), gone, silent (no event), late
 // (the event comes after 0.3 s), skip (every N-th flip is one blank late).
@@ -24,7 +24,7 @@
 #include <drm_mode.h>
 
 enum { EDP = 11, HDMI = 12, EMPTY = 13, ENCODER = 20, CRTC = 31, BUFFERS = 4096, GAMMA = 256, MEMORY = 1 << 28 };
-enum { COLUMNS = 64, ROWS = 48, PITCH = 320, ROOM = 1 << 14 };  // rows are padded, pictures begin on a page
+enum { COLUMNS = 64, ROWS = 48, PITCH = 320, ROOM = 1 << 14 };  // rows are padded, images begin on a page
 static const double period_s = 1.0 / 60;
 
 // Shared by the tool and its guardian, which inherits it.
@@ -76,7 +76,7 @@ static int refuse(int reason) {
   return -1;
 }
 
-static const char *shade(unsigned framebuffer) {  // what a picture looks like; the fourth byte of a pixel is not shown
+static const char *shade(unsigned framebuffer) {  // what an image looks like; the fourth byte of a pixel is not shown
   const size_t offset = (size_t)card->handle_of[framebuffer - 100] * ROOM;
   const int memory = in_folder("memory", O_RDONLY);
   uint32_t row[PITCH / 4];

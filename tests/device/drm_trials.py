@@ -24,7 +24,7 @@ def lines(path):
 
 
 def picture(memory, framebuffer):
-    """Row-major grey of a picture in the card's memory."""
+    """Row-major grey of an image in the card's memory."""
     start = (framebuffer - 100) * ROOM
     rows = [memory[start + y * PITCH:start + y * PITCH + 4 * COLUMNS] for y in range(ROWS)]
     assert all(row[0::4] == row[1::4] == row[2::4] for row in rows)
@@ -53,7 +53,7 @@ def pictures(frames, flips):
 
 
 class Trial:
-    """A print on a card of its own, until a picture is on."""
+    """A print on a card of its own, until an image is on."""
 
     def __init__(self, folder, card, cause):
         self.cause = cause

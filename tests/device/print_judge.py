@@ -1,4 +1,4 @@
-"""How far the frames shown were from the angle of the table, by the simulator's own log.
+"""How far the frames shown were from the angle of the stage, by the simulator's own log.
 usage: print_judge.py TRUTH FLIPS; frames are those of 3600 a turn at 60 Hz and 25 deg/s. Prints JSON."""
 
 import bisect

@@ -1,4 +1,4 @@
-"""Ends vam-project in every way a program can end while a picture is on, again and again, and reads from the memory of
+"""Ends vam-project in every way a program can end while an image is on, again and again, and reads from the memory of
 a virtual screen when it was black. usage: project_trials.py TRIALS, in a folder with part.exr and printer.toml. Prints a
 table; exit status 1 when one trial took too long."""
 
@@ -35,7 +35,7 @@ def wait(condition, limit_s):
 
 
 def angles(table):
-    """Lines of a table that turns at 30 deg/s, up to now. table: the last line's time and the start's."""
+    """Lines of a stage that turns at 30 deg/s, up to now. table: the last line's time and the start's."""
     now = time.monotonic()
     lines = []
     while table[0] < now:
@@ -45,7 +45,7 @@ def angles(table):
 
 
 class Feeder(threading.Thread):
-    """Says where a table is, until told to stop or until nobody listens."""
+    """Says where a stage is, until told to stop or until nobody listens."""
 
     def __init__(self, pipe):
         super().__init__(daemon=True)
@@ -67,7 +67,7 @@ class Feeder(threading.Thread):
 
 
 def begin(venue):
-    """A tool that has had a picture on for 50 ms, and what feeds it; or None for a tool."""
+    """A tool that has had an image on for 50 ms, and what feeds it; or None for a tool."""
     tool = subprocess.Popen(["vam-project", "part.exr", "-o", "sdl:0", "--follow", "-", "--turns", "9", "--missed", "1"],
                             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                             env=venue.environment)

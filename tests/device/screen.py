@@ -1,4 +1,4 @@
-"""The picture on an Xvfb screen: now from its memory-mapped file (Xvfb -fbdir), which tells how late it is, without
+"""The image on an Xvfb screen: now from its memory-mapped file (Xvfb -fbdir), which tells how late it is, without
 asking the X server; to watch it by the X server of $DISPLAY, which never shows half an update.
 usage: screen.py FILE now                 prints "black" or the number of lit pixels
        screen.py FILE watch SECONDS IDLE  prints each new picture as hex of its grey bytes; ends after SECONDS, or when
@@ -37,8 +37,8 @@ class Screen:
 
 
 class Server:
-    """The same picture by way of the X server (X protocol 11, GetImage), which answers between two updates: never half
-    a picture, however late it is itself."""
+    """The same image by way of the X server (X protocol 11, GetImage), which answers between two updates: never half
+    an image, however late it is itself."""
 
     def __init__(self, display):
         self.socket = socket.socket(socket.AF_UNIX)
@@ -74,7 +74,7 @@ class Server:
 
 
 def settled(screen):
-    """A picture that two readings agree on: an update may be under way."""
+    """An image that two readings agree on: an update may be under way."""
     while True:
         try:
             first = screen.grey()

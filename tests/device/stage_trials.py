@@ -1,7 +1,7 @@
 """Ends vam-stage spin in every way a program can end, again and again, and lets the simulator's own log say when the
 table stood. usage: stage_trials.py TRIALS. Prints a table; exit status 1 when one trial took too long.
 
-The table turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the table's own."""
+The stage turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the stage's own."""
 
 import concurrent.futures
 import os
@@ -39,7 +39,7 @@ def tool(path, environment):
 
 
 def running_tool(path, environment, log):
-    """A tool whose table turns at full speed; the guardian of the one before may hold the device a moment longer."""
+    """A tool whose stage turns at full speed; the guardian of the one before may hold the device a moment longer."""
     for _ in range(100):
         process = tool(path, environment)
         while process.poll() is None:

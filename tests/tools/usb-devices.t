@@ -35,7 +35,7 @@ for fault in silent late garbage truncated wrong-sender; do  # when it is told t
   begin $fault "dlpc900:?fault=$fault&fault_after=$prepared" $grey 0.05 --light dlpc900:
 done
 
-# One user at a time, told by whom; a killed one leaves the engine dark and asleep.
+# One user at a time, named to the second; a killed one leaves the engine dark and in standby.
 mkdir killed; : >killed/truth
 on dlpc900: killed/truth $grey 60 --light dlpc900: 2>killed/err & first=$!
 await grep -q '"bits":4' killed/truth
@@ -59,8 +59,8 @@ for engine in dlpc350 dlpc900; do
     "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current":\[85,85,85\]')" 1
   is "$engine: and asleep at the end" "$(asleep $engine)" 1
 done
-ended asked-too-much 64 'above the cap of 50'
-ended found-too-bright 76 'its current is 120, above the cap of 100'
+ended asked-too-much 64 'above the limit of 50'
+ended found-too-bright 76 'LED current is 120, above the limit of 100'
 ended stuck-grey 76 'video pattern mode was set to 02 but reads back as 00'
 ended error 76 'was refused'
 ended unplug 69 'NO_DEVICE'
@@ -69,7 +69,7 @@ for name in asked-too-much found-too-bright stuck-grey error unplug; do
 done
 ended silent 75 'sent no report .LIBUSB_ERROR_TIMEOUT'
 ended late 75 'sent no report .LIBUSB_ERROR_TIMEOUT'
-for name in garbage truncated wrong-sender; do ended $name 76 'something else was'; done
+for name in garbage truncated wrong-sender; do ended $name 76 'answered with another command'; done
 for name in silent late garbage truncated wrong-sender; do
   is "$name: dark again" "$(bits $name)" '"bits":0 "bits":4 "bits":0 '
   is "$name: and asleep" "$(asleep $name)" 1

@@ -20,12 +20,12 @@ fails 64 'name them with --from' vam-calibrate edges
 fails 66 'missing' vam-calibrate edges --from missing
 fails 64 'needs --flips' vam-calibrate latency --from ramp
 fails 64 'needs --pixel' vam-calibrate beam --from beam
-fails 64 'leave out --first and --step' vam-calibrate beam --from beam --side --step 1
-fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames 160 x 32' vam-calibrate beam --from beam --side --dark ramp/00000.png
+fails 64 'omit --first and --step' vam-calibrate beam --from beam --side --step 1
+fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames have 160 x 32' vam-calibrate beam --from beam --side --dark ramp/00000.png
 fails 65 'at least 32 are needed' vam-calibrate beam --from ramp --side
 fails 65 'looks at 45 degrees to the light' vam-calibrate beam --from beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-calibrate check
-fails 65 'are not 16 levels' vam-calibrate response --from ramp --steps 16
+fails 65 'cannot be split into 16 levels' vam-calibrate response --from ramp --steps 16
 for azimuth in 0 -45 100 180; do
   fails 65 "looks at $azimuth degrees to the light" vam-calibrate edges --from sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
 done
@@ -76,7 +76,7 @@ is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "t
 
 # Stale, foreign and missing records.
 fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --need latency
-fails 64 'none of edges' vam-calibrate check --need edge
+fails 64 'expected one of edges' vam-calibrate check --need edge
 fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
 fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
 ok 'without them all goes on' vam-project --print-printer --set calibration.folder= -o plain.toml

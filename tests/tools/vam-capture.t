@@ -4,12 +4,12 @@
 sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
 take="vam-capture --device $sim --binning 12 --fps 10"
 
-fails 64 'how many images' $take --log why -o views.exr
-fails 64 'streams; name no folder' $take --live -o views/
-fails 64 'no angles to choose by' $take --every 10 --log why -o views/
-fails 64 'counts with --every only' $take --frames 3 --turns 2 -o views.exr
-fails 64 'says how many' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
-fails 64 'tells the angle already' $take --frames 3 --follow - --speed 90 -o views.exr
+fails 64 'number of images' $take --log why -o views.exr
+fails 64 'a stream cannot go to a folder' $take --live -o views/
+fails 64 'have no angles' $take --every 10 --log why -o views/
+fails 64 'needs --every' $take --frames 3 --turns 2 -o views.exr
+fails 64 'conflicts with --turns' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
+fails 64 'conflicts with --follow' $take --frames 3 --follow - --speed 90 -o views.exr
 fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
@@ -36,7 +36,7 @@ is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 lossy='sim:?pace=virtual&lose=3,4&cut=6'
 vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said
 is 'a capture with losses ends well' $? 0
-ok 'what was lost is said' grep -q '2 frames were dropped and 1 came incomplete' said
+ok 'what was lost is said' grep -q '2 frames dropped and 1 incomplete' said
 is 'and reported' "$(json lossy.json frames) $(json lossy.json dropped) $(json lossy.json incomplete)" '10 2 1'
 is 'and logged' "$(grep -c '"event":"dropped","first":3,"last":4' lossy.log) $(grep -c '"event":"incomplete","number":6' lossy.log)" '1 1'
 python3 - "$VAM_SOURCE" >marks <<'PY'
@@ -74,10 +74,10 @@ is 'no picture was written again' "$(find half -name '*.png' -newermt 2002-01-01
 mkdir other; touch other/file
 fails 73 'holds other things' vam-capture --device replay:views.exr --frames 12 -o other/
 
-# A camera that sends pictures of another size: said at once, what came before is kept and gone on with.
+# A camera that sends images of another size: said at once, what came before is kept and gone on with.
 shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6 -o shrunk/; }
 shrinking '&shrink=4' 2>said
-is 'another size' "$? $(grep -c ': sends pictures of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
+is 'another size' "$? $(grep -c ': sends images of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
 is 'four frames are kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl) $(ls shrunk | grep -c png)" '4 4'
 quiet 'the rest is taken' shrinking ''
 is 'all six' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" 6

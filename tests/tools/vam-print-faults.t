@@ -15,7 +15,7 @@ spoilt garbage 76 'was answered' garbage@POS?:250
 spoilt truncated 75 'no end of the answer' truncated@POS?:250
 spoilt late 75 'no answer' late@POS?:250
 spoilt wrong-sender 76 'controller 7 instead of 1' wrong-sender@POS?:250
-spoilt blocked 76 'was due|is blocked' block@POS?:250
+spoilt blocked 76 'was expected|is blocked' block@POS?:250
 spoilt unplugged 69 'unplugged' unplug@POS?:250
 launch refused --fault error@VEL
 aborted 76 'stage failed' 'refused with error 17'

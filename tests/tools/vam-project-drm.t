@@ -25,9 +25,9 @@ is 'blanks are missed' $? 0
 $judge pictures frames flips >judged
 holds 'and all counted' "$(cut -d' ' -f3 judged) >= 5"
 
-fails 69 'there are eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-2
+fails 69 'connectors: eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-2
 fails 64 'unknown option' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?hz=60'
-fails 65 'do not fit the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
+fails 65 'do not match the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
 
 # Each answer of the card wrong in turn. Who loses the card cannot blacken it: its light goes off then.
 dark_after() {  # seconds from the last picture until the last black, by the card's log
@@ -47,13 +47,13 @@ spoilt() {  # spoilt STATUS REGEX LAST-SHADE FAULT
     is "$4: the light is off" "$(grep -o '"bits":[0-9]*' leds | tail -n 1)" '"bits":0'
 }
 wrong() { fails "$1" "$2" env LD_PRELOAD="$card" FAKE_DRM_FAULT="$3" vam-project part.exr -o drm:HDMI-A-1 --light sim:; }
-wrong 75 'the card is in use' not-master
-wrong 69 'does not take its own mode' no-mode
-spoilt 71 "no room in the card's memory for frame 10" black no-memory:12
+wrong 75 'the GPU is in use' not-master
+wrong 69 'the connector rejects its own mode' no-mode
+spoilt 71 "no GPU memory for frame 10" black no-memory:12
 spoilt 76 'gamma table' black gamma
-spoilt 75 'refused a page flip' black busy:20
-spoilt 75 'refused a page flip' '' lost:20
-spoilt 69 'refused a page flip' '' gone:20
+spoilt 75 'rejected a page flip' black busy:20
+spoilt 75 'rejected a page flip' '' lost:20
+spoilt 69 'rejected a page flip' '' gone:20
 spoilt 75 'no flip within 0.25 s' black silent:20
 spoilt 75 'no flip within 0.25 s' black late:20
 spoilt 75 'missed 1 vertical blanks' black skip:20 0.001
@@ -66,7 +66,7 @@ fails 75 "in use by process $first;" env LD_PRELOAD="$card" vam-project part.exr
 kill -9 $first; wait $first 2>/dev/null
 is 'a killed print is killed' $? 137
 tries=0; until grep -q guardian killed || [ $tries -ge 100 ]; do tries=$((tries + 1)); sleep 0.02; done
-is 'its guardian says what it did' "$(grep -c "process $first ended without a word; screen safe" killed) $(shown)" '1 "shade":"black"'
+is 'its guardian says what it did' "$(grep -c "process $first ended unexpectedly; screen safe" killed) $(shown)" '1 "shade":"black"'
 print --missed 1 --speed 720
 is 'the screen is free again' $? 0
 done_testing

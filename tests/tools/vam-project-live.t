@@ -15,13 +15,13 @@ fails 64 'out of range' vam-project part.exr -o null: --missed 2
 fails 66 'cannot be opened' vam-project part.exr -o null: --follow missing
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
-fails 64 'above the cap' vam-project part.exr -o null: --light 'sim:?current=120' --log why
-fails 64 'above the cap of 50' vam-project part.exr -o null: --light 'sim:?current=60&max_current=200' --set projector.max_led_current=50
+fails 64 'above the limit' vam-project part.exr -o null: --light 'sim:?current=120' --log why
+fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?current=60&max_current=200' --set projector.max_led_current=50
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 
 # Test pictures, to files and to a dry run.
 fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
-fails 64 'out of range' vam-project --pattern grey --level 2 -o grey/
+fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
 ok 'a dry run tells which pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
@@ -61,13 +61,13 @@ is 'a stage that ends is an error' $? 75
 ok 'which is named' grep -q 'ended after line 550' errors2
 is 'and the light is off' "$(grep -o '"bits":[0-9]*' leds2 | tail -n 1)" '"bits":0'
 wait $fast
-is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % off, allowed 1 %' errors3)" '75 1'
+is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % error, limit 1 %' errors3)" '75 1'
 is 'the light never came on, and all was black' "$(grep -c '"bits":[1-9]' leds3) $(grep -c '"frame":[0-9]' flips3)" '0 0'
 
 # A real window, on a virtual screen whose picture is a file.
 screen_up 64 48
 
-fails 65 'do not fit the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
+fails 65 'do not match the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
 fails 69 'no such screen' vam-project part.exr -o sdl:7
 vam-project part.exr -o frames/ --fps 1 --speed 10
 vam-project part.exr -o sdl:0 --speed 90 --log shown --missed 0.5 2>errors &

@@ -36,12 +36,12 @@ vam-project slices.exr $screen --print-speed 2000 -o fast.exr --compression none
 is "another print speed" "$($exr attr fast.exr vam:fps) $($exr attr fast.exr vam:speed_mm_h)" "11.1111111 2000"
 quiet "live, by elapsed time" vam-project levels $screen --fps 200 -o null: --missed 1 --report live.json
 holds "shown for 53 / 200 s, about 16 blanks" "$(json live.json lit_flips) >= 10 && $(json live.json lit_flips) <= 24"
-fails 64 'each gives the slices. rate' vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
-fails 64 'levels does not say its slice height; give --fps' vam-project levels $screen --print-speed 1000 -o x/
+fails 64 'both set the slice rate' vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
+fails 64 'levels does not state its slice height; give --fps' vam-project levels $screen --print-speed 1000 -o x/
 fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o x/
 fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o null: --log why
 vam-slice --shape disc-grid --voxel 0.4 | vam-sinogram --filter ram-lak --negative clip | vam-resample | vam-project --bits 8 --speed 120 --fps 2 -o turn.exr
-fails 65 'belong to stage angles' vam-project turn.exr -o x/
+fails 65 'frames of stage angles' vam-project turn.exr -o x/
 fails 65 'voxels of 0.05 mm are not the projector.s pixels of 0.065 mm' vam-project slices.exr -o x/
 fails 65 'row -[0-9]+ do not fit in 240 x 200' vam-project levels $screen --set projector.axis_row=3 -o x/
 rm levels/frames.csv

@@ -67,10 +67,10 @@ vam-project part.exr --set projector.response=curve.csv -o curved/
 # Slice 0 wants 1/3 of full, 4/3 of the table's units: above grey 128 on the curve, where the straight line has 85.
 holds "the inverse response" "$($png get curved/00000.png 44 5) > 140 && $($png get curved/00000.png 44 5) < 160"
 is "the straight line" "$($png get frames/00000.png 44 5)" 85
-vam-project part.exr --peak 6 -o half/
-is "--peak halves" "$($png get half/00000.png 44 3)" 127
-ok "clipping succeeds" vam-project part.exr --intensity 3 -o clipped/ --report clipped.json
-is "and says so in one line" "$(grep -c 'beyond full intensity' .log/err)" 1
+vam-project part.exr --full-scale 6 -o half/
+is "--full-scale halves" "$($png get half/00000.png 44 3)" 127
+ok "clipping succeeds" vam-project part.exr --gain 3 -o clipped/ --report clipped.json
+is "and says so in one line" "$(grep -c 'exceed full intensity' .log/err)" 1
 holds "and in the report" "$(json clipped.json clipped_fraction) > 0.1"
 
 # Flatland
@@ -100,7 +100,7 @@ printf '0,0\n9,2\n10,1\n' >falls.csv
 fails 65 'falls.csv:3: intensity 1 at grey 10 is below 2' vam-project part.exr --set projector.response=falls.csv -o x/
 fails 66 'none.exr' vam-project none.exr -o x/
 fails 64 'not to .avi' vam-project part.exr -o x.avi
-fails 64 'none of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
+fails 64 'not one of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
 fails 64 'frames a turn' vam-project part.exr --speed 300 -o x/
 fails 64 'part.exr' vam-project part.exr -o part.exr
 mkdir other; echo hello >other/letter.txt

@@ -4,11 +4,11 @@
 shim=$(vam-sim-stage --shim)
 is 'the library to preload is there' "$(test -f "$shim" && echo yes)" yes
 
-fails 64 'kinds are' vam-sim-stage --fault broken
+fails 64 'kinds: ' vam-sim-stage --fault broken
 fails 64 'unknown option' vam-sim-stage --speed-eror 1
 fails 64 'out of range' vam-sim-stage --jitter -1
 fails 73 'cannot be written' vam-sim-stage --log missing/log
-fails 73 'cannot make the link' vam-sim-stage --link missing/link
+fails 73 'cannot create the link' vam-sim-stage --link missing/link
 
 vam-sim-stage --link stage --log truth --baud 19200 --at 33 --die-with-parent >path &
 simulator=$!

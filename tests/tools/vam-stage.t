@@ -89,7 +89,7 @@ stage_down
 
 # A GRBL board instead.
 stage_up --protocol grbl --acceleration 5000 --max-speed 720
-fails 64 'none of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
+fails 64 'not one of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
 LD_PRELOAD=$shim vam-stage spin --home --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 --rate 1 >samples
 is 'a sample a second is no reason to be taken for dead' $? 0
 holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
@@ -113,7 +113,7 @@ spoilt 76 'controller 7 instead of 1' wrong-sender@POS?:20
 spoilt 76 'refused with error 17' error@VEL
 spoilt 69 'unplugged' unplug@POS?:20
 spoilt 69 'unplugged' power-loss@POS?:20
-spoilt 76 'was due' block@POS?:80
+spoilt 76 'was expected' block@POS?:80
 spoilt 76 'is blocked' block@POS?:2
 
 # A full disk behind the samples.

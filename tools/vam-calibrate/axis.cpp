@@ -27,8 +27,8 @@ Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},
                 "mm", method);
   if (found.column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the axis is known to " + format_number(found.column.sigma, 3) + " px only, not " +
-                         format_number(wanted_axis_sigma_px));
+    finding.fail_because("the standard deviation of the axis is " + format_number(found.column.sigma, 3) +
+                         " px, above " + format_number(wanted_axis_sigma_px));
   }
   return finding;
 }

@@ -24,7 +24,7 @@ class Dark {
   void take_off(Image& image) const {
     if (image_.values.empty()) return;
     if (image.width != image_.width || image.height != image_.height) {
-      throw Error{Fault::data, path_ + ": has " + size_text(image_) + " pixels, the frames " + size_text(image)};
+      throw Error{Fault::data, path_ + ": has " + size_text(image_) + " pixels, the frames have " + size_text(image)};
     }
     for (std::size_t i = 0; i < image.size(); ++i) image.values[i] -= image_.values[i];
   }
@@ -40,7 +40,7 @@ class Dark {
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
   if (options.pixel_mm <= 0 || options.step_mm == 0) {
     throw Error{Fault::usage,
-                "beam: needs --pixel, the sensor's pitch, and --first and --step, where the planes are; or "
+                "beam: needs --pixel, the sensor's pitch, and --first and --step, the positions of the planes; or "
                 "--side"};
   }
   const Dark dark(options.dark);
@@ -58,7 +58,7 @@ metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Pr
 
 metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Printer& printer) {
   if (options.step_mm != 0 || options.first_mm != 0) {
-    throw Error{Fault::usage, "beam: --side sees all planes at once; leave out --first and --step"};
+    throw Error{Fault::usage, "beam: --side covers all planes; omit --first and --step"};
   }
   metrology::FrameMean frames;
   metrology::SideView view;
@@ -95,8 +95,8 @@ Finding scan_beam(const ScanOptions& options, const model::Printer& printer) {
   finding.facts["planes"] = planes;
   finding.facts["settings"] = {{"seen", options.side ? "from the side, in resin" : "on a bare sensor"}};
   if (found.axis_fwhm_mm.sigma > wanted_width_sigma * found.axis_fwhm_mm.value) {
-    finding.fail_because("the width at the axis is known to " +
-                         format_number(100 * found.axis_fwhm_mm.sigma / found.axis_fwhm_mm.value, 3) + " % only, not " +
+    finding.fail_because("the standard deviation of the width at the axis is " +
+                         format_number(100 * found.axis_fwhm_mm.sigma / found.axis_fwhm_mm.value, 3) + " %, above " +
                          format_number(100 * wanted_width_sigma));
   }
   return finding;

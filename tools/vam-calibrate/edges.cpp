@@ -30,12 +30,12 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
   };
   if (std::abs(change) > allowed_radius_change) {
     tell("the radius changed by " + format_number(100 * change, 3) + " % against " + before->path +
-         "; another vial has another calibration.vial");
+         "; a different vial needs its own calibration.vial");
   }
   if (std::abs(shift_px) > allowed_shift_px) {
-    tell("the vial's middle moved by " + format_number(shift_px, 3) + " px against " + before->path);
+    tell("the centre of the vial moved by " + format_number(shift_px, 3) + " px against " + before->path);
   } else if (std::abs(shift_px) > 3 * sigma_px) {
-    finding.warn_because("the vial's middle moved by " + format_number(shift_px, 3) + " px, " +
+    finding.warn_because("the centre of the vial moved by " + format_number(shift_px, 3) + " px, " +
                          format_number(std::abs(shift_px) / sigma_px, 3) + " sigma");
   }
 }
@@ -79,12 +79,12 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
       {"positions", scan.column.size()},        {"heights", options.bands},
       {"pixel_mm", printer.projector.pixel_mm}, {"throw_mm", model::lens_distance_mm(printer.projector).value_or(0)}};
   if (found.axis_column.sigma > wanted_axis_sigma_px) {
-    finding.fail_because("the middle is known to " + format_number(found.axis_column.sigma, 3) + " px only, not " +
-                         format_number(wanted_axis_sigma_px));
+    finding.fail_because("the standard deviation of the centre is " + format_number(found.axis_column.sigma, 3) +
+                         " px, above " + format_number(wanted_axis_sigma_px));
   }
   if (found.radius_mm.sigma > wanted_radius_sigma * found.radius_mm.value) {
-    finding.fail_because("the radius is known to " +
-                         format_number(100 * found.radius_mm.sigma / found.radius_mm.value, 3) + " % only, not " +
+    finding.fail_because("the standard deviation of the radius is " +
+                         format_number(100 * found.radius_mm.sigma / found.radius_mm.value, 3) + " %, above " +
                          format_number(100 * wanted_radius_sigma));
   }
   compare_edges(options, printer.calibration, found, finding);

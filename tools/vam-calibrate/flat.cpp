@@ -25,11 +25,11 @@ Finding scan_flat(const ScanOptions& options, const model::Printer& printer) {
   each_frame(options, printer, [&](const ScanFrame& frame) { frames.add(frame.image); });
   metrology::FrameMean darkness;
   Image dark;
-  double dark_sigma = 0;  // of one picture it is not known
+  double dark_sigma = 0;  // of one image it is not known
   if (!options.dark.empty()) {
-    const bool picture = io::is_picture(options.dark);
-    if (!picture) darkness = frames_of(options.dark);
-    dark = picture ? io::read_field(options.dark) : darkness.mean();
+    const bool image = io::is_picture(options.dark);
+    if (!image) darkness = frames_of(options.dark);
+    dark = image ? io::read_field(options.dark) : darkness.mean();
     if (darkness.count() > 1) dark_sigma = darkness.noise() / std::sqrt(darkness.count());
   }
   const auto field = metrology::flat_field(frames, dark, dark_sigma);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
 
-// The picture that was on from begin to end; nothing when it changed meanwhile or was black.
+// The image that was on from begin to end; nothing when it changed meanwhile or was black.
 int shown_between(const std::vector<Showing>& flips, double begin_s, double end_s) {
   const auto later = [](double t_s, const Showing& showing) { return t_s < showing.t_s; };
   const auto first = std::upper_bound(flips.begin(), flips.end(), begin_s, later);
@@ -32,16 +32,16 @@ std::vector<Showing> read_flips(const std::string& path) {
     if (line.empty()) continue;
     const Json event = Json::parse(line, nullptr, false);
     if (!event.is_object()) {
-      throw Error{Fault::data, path + ":" + std::to_string(number) + ": is no line of a log of vam-project"};
+      throw Error{Fault::data, path + ":" + std::to_string(number) + ": not a line of a vam-project log"};
     }
     if (event.value("event", "") != "flip") continue;
     if (!event.contains("t_monotonic_s") || !event.contains("frame")) {
-      throw Error{Fault::data, path + ":" + std::to_string(number) + ": a flip without time or frame"};
+      throw Error{Fault::data, path + ":" + std::to_string(number) + ": flip without time or frame"};
     }
     const Showing showing{event["t_monotonic_s"].get<double>(), event["frame"].get<int>()};
     if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
   }
-  if (flips.empty()) throw Error{Fault::data, path + ": holds no flips; give the log of vam-project"};
+  if (flips.empty()) throw Error{Fault::data, path + ": contains no flips; give the log of vam-project"};
   return flips;
 }
 
@@ -50,7 +50,7 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
   const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
-  // A folder of pictures asks for angles, which only the scan `axis` needs.
+  // A folder of images asks for angles, which only the scan `axis` needs.
   const bool needs_angles = options.command == "axis";
   io::ViewSource source(options.from, needs_angles ? options.step_deg : 1);
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
@@ -59,7 +59,7 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
     ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
     if (!flips.empty()) {
       if (frame.time_s == 0) {
-        throw Error{Fault::usage, frame.name + ": has no time, which --flips needs; capture with vam-capture"};
+        throw Error{Fault::usage, frame.name + ": has no time, required by --flips; use frames of vam-capture"};
       }
       scan.shown = shown_between(flips, frame.time_s - latency_s - half_s - margin_s,
                                  frame.time_s - latency_s + half_s + margin_s);

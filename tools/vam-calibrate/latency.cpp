@@ -32,7 +32,8 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
   Finding finding;
   finding.value("latency", found.ms, "ms", "blinking screen");
   finding.facts["contrast"] = found.contrast;
-  if (found.ms.sigma > 1) finding.fail_because("known to " + format_number(found.ms.sigma, 3) + " ms only, not 1");
+  if (found.ms.sigma > 1)
+    finding.fail_because("standard deviation is " + format_number(found.ms.sigma, 3) + " ms, above 1");
   return finding;
 }
 

@@ -54,9 +54,9 @@ Json hashes(const ScanOptions& options) {
 // {"camera": {"serial": ...}, "stage": {...}}: what the tools' identify says.
 Json read_devices(const std::string& path) {
   Json devices = Json::parse(io::read_all(path), nullptr, false);
-  if (!devices.is_object()) throw Error{Fault::data, path + ": is no JSON object of devices"};
+  if (!devices.is_object()) throw Error{Fault::data, path + ": not a JSON object of devices"};
   for (const auto& [name, device] : devices.items()) {
-    if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is no JSON object"};
+    if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is not a JSON object"};
     if (device.contains(name)) device = Json(device[name]);  // vam-capture says more than the camera's own
   }
   return devices;
@@ -111,7 +111,7 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
     io::write_record(calibration, scan, facts, now_s);
   }
   if (!finding.failures_.empty()) {
-    throw Error{Fault::judged, scan + ": " + join(finding.failures_, "; ") + "; not made current"};
+    throw Error{Fault::judged, scan + ": " + join(finding.failures_, "; ") + "; not put in force"};
   }
   for (const auto& reason : finding.warnings_) warn(scan + ": " + reason);
 }
@@ -121,7 +121,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
   const auto& scans = io::calibration_scans();
   for (const auto& name : options.needed) {
     if (std::find(scans.begin(), scans.end(), name) == scans.end()) {
-      throw Error{Fault::usage, "--need " + name + ": is none of " + join(scans, ", ")};
+      throw Error{Fault::usage, "--need " + name + ": expected one of " + join(scans, ", ")};
     }
   }
   const Json devices = options.devices.empty() ? Json::object() : read_devices(options.devices);

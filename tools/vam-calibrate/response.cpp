@@ -25,8 +25,8 @@ Finding scan_response(const ScanOptions& options, const model::Printer& printer)
   std::map<int, std::vector<double>> by_level;
   if (options.flips.empty()) {
     if (readings.size() % static_cast<std::size_t>(options.steps) != 0) {
-      throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames are not " +
-                                   std::to_string(options.steps) + " levels of equally many; see --steps"};
+      throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames cannot be split into " +
+                                   std::to_string(options.steps) + " levels of equal length; see --steps"};
     }
     const int each = static_cast<int>(readings.size()) / options.steps;
     for (const auto& [n, light] : readings) by_level[n / each].push_back(light.front());

@@ -56,7 +56,7 @@ GreyImage to_levels(const Image& image, int bits, const std::string& what) {
   for (std::size_t i = 0; i < image.size(); ++i) {
     const float value = image.values[i];
     if (value < 0 || value > 1) {
-      throw Error{Fault::data, what + ": a pixel is outside 0 to 1, so it is no fraction of full scale"};
+      throw Error{Fault::data, what + ": a pixel is outside 0 to 1 and thus not a fraction of full scale"};
     }
     levels.values[i] = static_cast<std::uint16_t>(std::lround(value * static_cast<float>(levels.full())));
   }

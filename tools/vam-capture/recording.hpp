@@ -7,7 +7,7 @@
 
 namespace vam::capture_tool {
 
-/// A folder of vam-capture, a folder of numbered pictures, or an EXR frame stack. Values of a stack are fractions of
+/// A folder of vam-capture, a folder of numbered images, or an EXR frame stack. Values of a stack are fractions of
 /// full scale, and become 16-bit levels unless all are whole 255ths. Throws as the readers do.
 [[nodiscard]] device::CameraFeed open_recording(const std::string& place);
 

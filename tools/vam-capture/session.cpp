@@ -36,13 +36,14 @@ device::CapturePlan plan_of(const Options& o) {
   if (o.max_lost) plan.max_lost = *o.max_lost;
   plan.frames = o.frames.value_or(0);
   if (!o.every_deg) {
-    if (o.turns) throw Error{Fault::usage, "--turns: counts with --every only; say --frames"};
+    if (o.turns) throw Error{Fault::usage, "--turns: needs --every; else give --frames"};
     return plan;
   }
   const double places = 360 * o.turns.value_or(1) / *o.every_deg;
-  if (o.frames && o.turns) throw Error{Fault::usage, "--frames: with --every, --turns says how many"};
+  if (o.frames && o.turns)
+    throw Error{Fault::usage, "--frames: conflicts with --turns, which determines the number of frames"};
   if (!o.frames) plan.frames = std::lround(places);
-  if (plan.frames < 1) throw Error{Fault::usage, "--every: no multiple of it in that turn; give a smaller angle"};
+  if (plan.frames < 1) throw Error{Fault::usage, "--every: no multiple within --turns; give a smaller angle"};
   return plan;
 }
 
@@ -89,26 +90,25 @@ std::string device_of(const Options& o, const model::Printer& printer) {
 bool is_recording(const std::string& device) { return device.rfind("replay:", 0) == 0; }
 
 void check(const Options& o, const model::Printer& printer) {
-  if (!o.follow.empty() && o.speed_deg_s) throw Error{Fault::usage, "--speed: --follow tells the angle already"};
+  if (!o.follow.empty() && o.speed_deg_s)
+    throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
-    throw Error{Fault::usage, "--every: a camera's frames have no angles to choose by; give --follow or --speed"};
+    throw Error{Fault::usage, "--every: camera frames have no angles; give --follow or --speed"};
   }
-  if (is_folder(o.output) && o.live) throw Error{Fault::usage, "--live: streams; name no folder"};
+  if (is_folder(o.output) && o.live) throw Error{Fault::usage, "--live: a stream cannot go to a folder"};
   if (is_folder(o.output) || o.live || o.frames || o.every_deg) return;
-  throw Error{Fault::usage,
-              "--frames: a stack says beforehand how many images it has; give it, or --live, or a folder"};
+  throw Error{Fault::usage, "--frames: a stack needs the number of images in advance; give it, or --live, or a folder"};
 }
 
 // What was lost is said, whatever else happens; what is missing is an error.
 void conclude(const Options& o, const device::CaptureTally& tally, long wanted) {
   std::string lost;
   if (tally.dropped + tally.incomplete > 0) {
-    lost = std::to_string(tally.dropped) + " frames were dropped and " + std::to_string(tally.incomplete) +
-           " came incomplete";
+    lost = std::to_string(tally.dropped) + " frames dropped and " + std::to_string(tally.incomplete) + " incomplete";
   }
   if (tally.missing > 0) {
     const std::string remedy =
-        is_folder(o.output) ? "run it again to take them" : "a folder (-o views/) keeps what there is";
+        is_folder(o.output) ? "repeat the command to capture them" : "a folder (-o views/) keeps the captured frames";
     throw Error{Fault::busy, o.output + ": " + std::to_string(tally.missing) + " of " + std::to_string(wanted) +
                                  " frames are missing" + (lost.empty() ? "" : " (" + lost + ")") + "; " + remedy};
   }

@@ -22,7 +22,7 @@ cli::Manual manual() {
        "--full-scale, is taken as projector.max_intensity_mw_cm2, and the report says how many turns and seconds the "
        "print takes at stage.speed_deg_s. With --exposure-plan the dose is that of a whole print: the fewest turns in "
        "which the middle of the process window reaches the critical dose, with the light dimmed to reach it exactly; "
-       "vam-project --peak takes the report's peak_value.",
+       "vam-project --full-scale takes the report's peak_value.",
        "The point spread of the beam (resin.psf_mm) and the diffusion of dose while it prints (resin.diffusion_mm2_s) "
        "blur the volume; beyond its faces it is taken as dark."},
       {{"Will the disc grid print?",

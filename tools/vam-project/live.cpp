@@ -16,7 +16,7 @@ Live::Live(const LiveOptions& options, const std::string& output, const device::
   const auto mode = display_->mode();
   log_("display", {{"device", output}, {"columns", mode.columns}, {"rows", mode.rows}, {"hz", mode.hz}});
   if (light_ == nullptr) return;
-  light_->prepare();  // after the display: a DLPC900 looks for its picture
+  light_->prepare();  // after the display: a DLPC900 looks for its image
   log_("light", light_->identify());
 }
 

@@ -1,4 +1,4 @@
-// vam-project's live half: a display, a light engine and the table's angle behind the sink that files have, too.
+// vam-project's live half: a display, a light engine and the stage's angle behind the sink that files have, too.
 #pragma once
 
 #include <functional>

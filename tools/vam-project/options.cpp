@@ -11,32 +11,34 @@ namespace {
 void add_live(cli::App& app, LiveOptions& options) {
   app.group("Live output");
   app.option("--follow", "FILE", options.follow,
-             "Take the stage's angle from these lines of vam-stage spin, a FIFO or - (then name the sinogram).");
+             "Read the stage angle from this output of vam-stage spin, a FIFO or - (then name the sinogram).");
   app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
-  app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000},
-             "Frames to preload; without it one for each angle of the sinogram.");
-  app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
-             "From the vertical blank to the light; without it projector.latency_ms.");
-  app.option("--missed", "PART", options.allowed_missed, {0, 1}, "End when more of all vertical blanks are missed.");
+  app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
+      .default_is("one for each angle of the sinogram");
+  app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
+      .default_is("projector.latency_ms");
+  app.option("--missed", "PART", options.allowed_missed, {0, 1}, "Largest allowed fraction of missed vertical blanks.");
   app.option("--log", "FILE", options.log,
-             "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and what "
-             "ended it; - for standard error.");
+             "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
+             "reason of the end; - is standard error.");
   app.flag("--die-with-parent", options.with_parent, "Go black and end when the process that started this one ends.");
 }
 
 void add_patterns(cli::App& app, PatternOptions& options) {
   options.plan.name.clear();
-  app.group("Test pictures (instead of a sinogram)");
+  app.group("Test patterns (instead of a sinogram)");
   app.option(
       "--pattern", "NAME", options.plan.name,
       "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) or "
       "row (a line at z = 0, for vam-calibrate beam).");
-  app.option("--level", "PART", options.plan.level, {0, 1}, "Grey of lines and fields, as a part of full grey.");
-  app.option("--pitch", "PX", options.plan.pitch_px, {1, 100000}, "Of grid lines, and step of the sweep.");
-  app.option("--width", "PX", options.plan.width_px, {1, 100000}, "Of lines.");
+  app.option("--grey", "PART", options.plan.level, {0, 1},
+             "Grey level of lines and fields, as a fraction of full grey.")
+      .was("--level");
+  app.option("--pitch", "PX", options.plan.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.");
+  app.option("--width", "PX", options.plan.width_px, {1, 100000}, "Width of lines.");
   app.option("--steps", "N", options.plan.steps, {2, 65536}, "Levels of the ramp.");
-  app.option("--hold", "S", options.hold_s, {0.001, 86400}, "How long each picture is shown.");
-  app.flag("--repeat", options.repeat, "Begin again after the last picture, until a signal comes.");
+  app.option("--hold", "S", options.hold_s, {0.001, 86400}, "Duration of each frame.");
+  app.flag("--repeat", options.repeat, "Repeat from the first frame, until a signal.");
 }
 
 }  // namespace
@@ -44,28 +46,33 @@ void add_patterns(cli::App& app, PatternOptions& options) {
 void declare(cli::App& app, Options& options) {
   app.positional("SINOGRAM", options.input,
                  "Sinogram stack (EXR) for the projector, with --flatland a virtual one; or the slices of "
-                 "vam-curethrough, a frame stack (EXR) or a folder of pictures.");
+                 "vam-curethrough, a frame stack (EXR) or a folder of images.");
   cli::add_output(app, options.output);
   app.group("Time");
-  app.option("--fps", "HZ", options.fps, cli::positive,
-             "Frames per second; without it projector.fps, or for slices print speed / slice height.");
-  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive,
-             "Speed of the platform, for slices; without it what the stack says.");
-  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed; without it stage.speed_deg_s.");
-  app.option("--turns", "N", options.turns, cli::positive, "Turns, whole or not; without it stage.turns.");
-  app.group("Place");
+  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second.")
+      .default_is("projector.fps; for slices print speed / slice height");
+  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive, "Speed of the platform, for slices.")
+      .default_is("as stated in the stack");
+  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed.").default_is("stage.speed_deg_s");
+  app.option("--turns", "N", options.turns, cli::positive, "Number of turns, also fractional.")
+      .default_is("stage.turns");
+  app.group("Position");
   app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
-             "How the projector is mounted; without it projector.orientation.");
+             "Mounting of the projector.")
+      .default_is("projector.orientation");
   app.option("--column-offset", "PX", options.column_offset, {-65536, 65536},
-             "Move the light to the right, by fractions too.");
-  app.option("--row-offset", "PX", options.row_offset, {-65536, 65536}, "Move the light down, by fractions too.");
+             "Shift of the image to the right, also fractional.");
+  app.option("--row-offset", "PX", options.row_offset, {-65536, 65536}, "Shift of the image down, also fractional.");
   app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
   app.group("Grey");
-  app.option("--bits", "N", options.bits, {1, 16}, "1, 2, 4, 8, 10 or 16 bits a pixel; without it projector.bits.");
-  app.option("--peak", "VALUE", options.peak, cli::positive,
-             "The value that becomes full intensity; without it the largest of the stack, for slices 1.");
-  app.option("--intensity", "FACTOR", options.intensity, cli::positive,
-             "Multiplies all light; beyond full it is clipped.");
+  app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
+      .default_is("projector.bits");
+  app.option("--full-scale", "VALUE", options.peak, cli::positive, "Value that is shown at full intensity.")
+      .was("--peak")
+      .default_is("maximum of the stack, for slices 1");
+  app.option("--gain", "FACTOR", options.intensity, cli::positive,
+             "Factor on the intensity; values above full intensity are clipped.")
+      .was("--intensity");
   add_live(app, options.live);
   add_patterns(app, options.pattern);
   cli::add_printer(app, options.printer);
@@ -83,7 +90,7 @@ model::Printer settle(Options& options) {
   if (!options.orientation.empty()) printer.projector.orientation = options.orientation;
   const int bits = printer.projector.bits;
   if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 10 && bits != 16) {
-    throw Error{Fault::usage, "--bits: " + std::to_string(bits) + " is none of 1, 2, 4, 8, 10, 16"};
+    throw Error{Fault::usage, "--bits: " + std::to_string(bits) + " is not one of 1, 2, 4, 8, 10, 16"};
   }
   options.live.max_led_current = printer.projector.max_led_current;
   if (!options.live.latency_ms) options.live.latency_ms = printer.projector.latency_ms;

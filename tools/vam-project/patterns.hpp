@@ -1,4 +1,4 @@
-// Test pictures to a screen or to files.
+// Test images to a screen or to files.
 #pragma once
 
 #include "cli/app.hpp"

@@ -34,10 +34,10 @@ void play_slices(const cli::App& app, const Options& options, const model::Print
 int whole_turns(const Options& options, const model::Printer& printer) {
   const double turns = options.turns.value_or(printer.stage.turns);
   if (turns == std::floor(turns)) return static_cast<int>(turns);
-  throw Error{Fault::usage, "--turns: a live print has whole turns, not " + format_number(turns)};
+  throw Error{Fault::usage, "--turns: a live print needs whole turns, not " + format_number(turns)};
 }
 
-// One turn's frames into the display, then the print: the angle of the table chooses the frame.
+// One turn's frames into the display, then the print: the angle of the stage chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, int turns,
                 io::StackReader& reader, Live& live) {
   const Light light = read_light(options, reader, printer.projector);

@@ -7,7 +7,7 @@
 
 namespace vam::project {
 
-/// A sinogram by the table's angle, or slices by time. Throws Fault::usage for turns that are not whole.
+/// A sinogram by the stage's angle, or slices by time. Throws Fault::usage for turns that are not whole.
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer);
 
 }  // namespace vam::project

@@ -29,7 +29,7 @@ void require_slices(const SliceStack& stack) {
   for (const model::ImageInfo& about : stack.about) {
     if (about.angle_deg == stack.about.front().angle_deg) continue;
     throw Error{Fault::data, stack.name +
-                                 ": its frames belong to stage angles; vam-project needs their sinogram, or the slices "
+                                 ": frames of stage angles; vam-project needs a sinogram, or the slices "
                                  "of vam-curethrough"};
   }
 }
@@ -37,20 +37,20 @@ void require_slices(const SliceStack& stack) {
 double slices_per_s(const SliceStack& stack, const Options& options) {
   require_slices(stack);
   if (options.fps && options.print_speed_mm_h) {
-    throw Error{Fault::usage, "--fps, --print-speed: each gives the slices' rate; leave one out"};
+    throw Error{Fault::usage, "--fps, --print-speed: conflict, both set the slice rate; omit one"};
   }
   if (options.fps) return *options.fps;
   const auto slice_mm = fact(stack.info, "vam:slice_mm");
   const auto speed_mm_h = options.print_speed_mm_h ? options.print_speed_mm_h : fact(stack.info, "vam:speed_mm_h");
   if (slice_mm && speed_mm_h) return *speed_mm_h / 3600 / *slice_mm;
   if (options.print_speed_mm_h) {
-    throw Error{Fault::usage, "--print-speed: " + stack.name + " does not say its slice height; give --fps"};
+    throw Error{Fault::usage, "--print-speed: " + stack.name + " does not state its slice height; give --fps"};
   }
   const auto& about = stack.about;
   if (about.size() > 1 && about.front().has_time && about.back().time_s > about.front().time_s) {
     return static_cast<double>(about.size() - 1) / (about.back().time_s - about.front().time_s);
   }
-  throw Error{Fault::data, stack.name + ": says neither print speed and slice height nor times; give --fps"};
+  throw Error{Fault::data, stack.name + ": states neither print speed and slice height nor times; give --fps"};
 }
 
 Frames frames_of(const SliceStack& stack, double fps, const Options& options, const model::Projector& projector) {
@@ -99,7 +99,7 @@ Frames slices_in_time(const cli::App& app, const Options& options, const model::
   for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow"}) {
     if (!app.given(option)) continue;
     throw Error{Fault::usage, std::string(option) + ": " + slices.name +
-                                  " holds slices, which are shown once, by time; leave it out"};
+                                  " contains slices, which are shown once, by time; omit the option"};
   }
   return frames_of(slices, slices_per_s(slices, options), options, printer.projector);
 }

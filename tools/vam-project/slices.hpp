@@ -23,13 +23,13 @@ struct SliceStack {
   std::function<bool(Image&)> next;     // in printing order
 };
 [[nodiscard]] SliceStack slices_of(const std::string& path, io::StackReader& reader);
-/// A folder of pictures; its values are grey.
+/// A folder of images; its values are grey.
 [[nodiscard]] SliceStack slice_folder(const std::string& path);
 
-/// Whether slices are a folder of pictures, not a stack.
+/// Whether slices are a folder of images, not a stack.
 [[nodiscard]] bool is_folder(const std::string& path);
 
-/// The slices in the projector's picture, as fractions of full intensity, one after the other: they know no stage.
+/// The slices in the projector's image, as fractions of full intensity, one after the other: they know no stage.
 /// Slices per second are as the options say, or print speed / slice height, or by the times of the slices. Throws
 /// Fault::usage for options of the stage, when both fps and speed are given, or the height is not known to a given
 /// speed; Fault::data when nothing is known, or the frames belong to stage angles.

@@ -166,7 +166,7 @@ class AravisCamera final : public Camera {
     for (;;) {
       check_interrupted();
       if (ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), 50000)) return take(buffer);
-      if (lost_) throw Error{Fault::absent, name_ + ": the camera is gone; look at its cable and power"};
+      if (lost_) throw Error{Fault::absent, name_ + ": the camera is gone; check cable and power"};
       if (clock_.now_s() < limit_s) continue;
       Problem problem;  // silent, or gone? It tells its width or it does not.
       arv_camera_get_integer(camera_.get(), "Width", problem);
@@ -175,7 +175,7 @@ class AravisCamera final : public Camera {
         throw Error{Fault::absent, name_ + ": the camera is gone (" + problem.text() + ")"};
       }
       throw Error{Fault::busy, name_ + ": no frame within " + format_number(patience_s, 3) +
-                                   " s, though the camera answers; is it triggered?"};
+                                   " s, although the camera responds; check the trigger"};
     }
   }
 
@@ -196,7 +196,7 @@ class AravisCamera final : public Camera {
   void same(const std::string& what, double wanted, double got) const {
     if (std::abs(wanted - got) <= 0.01 * std::abs(wanted)) return;
     throw Error{Fault::protocol, name_ + ": " + what + " reads back as " + format_number(got) + " instead of " +
-                                     format_number(wanted) + "; ask for what the camera can"};
+                                     format_number(wanted) + "; choose a supported value"};
   }
 
   void choose_format() {
@@ -219,7 +219,7 @@ class AravisCamera final : public Camera {
     arv_camera_set_pixel_format(camera_.get(), format_.code, problem);
     check(problem, "pixel format");
     if (arv_camera_get_pixel_format(camera_.get(), problem) != format_.code) {
-      throw Error{Fault::protocol, name_ + ": took another pixel format than " + format_.name};
+      throw Error{Fault::protocol, name_ + ": pixel format set to another value than " + format_.name};
     }
   }
 
@@ -349,7 +349,7 @@ class AravisCamera final : public Camera {
     }
     last_s_ = frame.time_s;
     last_number_ = frame.number;
-    const auto other =  // Aravis tells the size of whole pictures only
+    const auto other =  // Aravis tells the size of whole images only
         frame.complete ? another_size(mode_, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer))
                        : std::nullopt;
     const auto* bytes = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, nullptr));
@@ -357,7 +357,7 @@ class AravisCamera final : public Camera {
         to_grey({bytes, payload_}, mode_.columns, mode_.rows, 0, format_.layout, format_.bits, frame.levels);
     frame.complete = frame.complete && whole;
     give_back(buffer);
-    if (other) throw Error{Fault::protocol, name_ + ": sends pictures of " + *other + "; run it again"};
+    if (other) throw Error{Fault::protocol, name_ + ": sends images of " + *other + "; run it again"};
     return frame;
   }
 

@@ -1,4 +1,4 @@
-// The camera as the tools see it; one backend per file (aravis_camera, v4l2_camera, replay_camera, sim_camera) [devices §6].
+// The camera as the tools see it [devices §6]; one backend per file (aravis_camera, v4l2_camera, replay_camera).
 #pragma once
 
 #include <functional>
@@ -40,18 +40,18 @@ struct CameraMode {
   int binning = 1;
 };
 
-/// A picture with the facts of its taking.
+/// An image with the facts of its taking.
 struct CameraFrame {
   GreyImage levels;                 // 8 or 16 bits; depths between are spread over 16
   long number = 0;                  // frames since start(), those counted that the camera made but nobody received
   double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, were the stamp set at its end
   std::optional<double> device_s;   // the time stamp on the camera's own clock
-  bool complete = true;             // false: parts of the picture did not arrive and are not of this moment
+  bool complete = true;             // false: parts of the image did not arrive and are not of this moment
   std::optional<double> angle_deg;  // as recorded; replay: only
 };
 
-/// A source of pictures. Calls return within their time-out and throw Error: absent (gone), busy (no frame in time),
-/// protocol (a setting that does not read back, a picture of another size), data (a recorded picture of another size),
+/// A source of images. Calls return within their time-out and throw Error: absent (gone), busy (no frame in time),
+/// protocol (a setting that does not read back, an image of another size), data (a recorded image of another size),
 /// usage (a setting that it does not have). next() throws Interrupted after a signal.
 class Camera {
  public:
@@ -60,7 +60,7 @@ class Camera {
   virtual Json identify() = 0;
   [[nodiscard]] virtual CameraMode mode() const = 0;
   virtual void start() = 0;
-  /// Takes a picture; only with trigger "software".
+  /// Takes an image; only with trigger "software".
   virtual void trigger() = 0;
   /// The next frame, in order; nothing when a recording has ended.
   virtual std::optional<CameraFrame> next() = 0;
@@ -78,7 +78,7 @@ using CameraFeed = std::function<bool(CameraFrame&)>;
 struct CameraBench {
   std::function<CameraFeed(const std::string& place)> open_recording;
   model::Printer printer;
-  std::vector<GreyImage> pictures;  // that the projector shows, by frame index
+  std::vector<GreyImage> images;  // that the projector shows, by frame index
 };
 
 }  // namespace vam::device

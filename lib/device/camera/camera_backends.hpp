@@ -18,7 +18,7 @@ namespace vam::device {
 [[nodiscard]] std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraSettings& settings,
                                                          const CameraBench& bench, Clock& clock);
 
-/// "8 x 4 pixels instead of 8 x 8" when a picture has another size than the camera said.
+/// "8 x 4 pixels instead of 8 x 8" when an image has another size than the camera said.
 [[nodiscard]] std::optional<std::string> another_size(const CameraMode& mode, int columns, int rows);
 
 /// The option pace. Throws Fault::usage unless it is real or virtual.

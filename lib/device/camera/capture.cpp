@@ -27,7 +27,7 @@ class Series {
     return std::nullopt;
   }
   std::optional<long> place_of(const Shot& shot);
-  // Is the first a better picture of its place than the second?
+  // Is the first a better image of its place than the second?
   [[nodiscard]] bool better(const Shot& one, const Shot& other) const {
     if (one.frame.complete != other.frame.complete) return one.frame.complete;
     const double at_deg = static_cast<double>(one.place) * *plan_.every_deg;
@@ -48,7 +48,7 @@ class Series {
 std::optional<long> Series::place_of(const Shot& shot) {
   if (plan_.every_deg) {
     if (!shot.angle && angles_ == nullptr) {
-      throw Error{Fault::usage, "--every: the frames have no angles to choose by; give --follow or --speed"};
+      throw Error{Fault::usage, "--every: the frames have no angles; give --follow or --speed"};
     }
     if (!shot.angle) return std::nullopt;
     const long place = std::lround(shot.angle->angle_deg / *plan_.every_deg);
@@ -70,7 +70,7 @@ bool Series::take(CameraFrame&& frame) {
   if (lost > plan_.max_lost.value_or(lost)) {
     throw Error{Fault::busy, "camera: " + std::to_string(tally_.dropped) + " frames dropped and " +
                                  std::to_string(tally_.incomplete) + " incomplete, at frame " +
-                                 std::to_string(frame.number) + "; lower the frame rate, or end other programs"};
+                                 std::to_string(frame.number) + "; reduce the frame rate or stop other programs"};
   }
   frame.time_s -= plan_.latency_s;
   Shot shot{std::move(frame), {}, 0};

@@ -13,7 +13,7 @@ class ReplayCamera final : public Camera {
  public:
   ReplayCamera(const std::string& place, bool in_step, const CameraBench& bench, Clock& clock)
       : place_(place), in_step_(in_step), clock_(clock), feed_(bench.open_recording(place)) {
-    if (!feed_(first_)) throw Error{Fault::data, place + ": a recording without frames"};
+    if (!feed_(first_)) throw Error{Fault::data, place + ": the recording has no frames"};
     mode_.columns = first_.levels.width;
     mode_.rows = first_.levels.height;
     mode_.bits = first_.levels.bits;
@@ -64,7 +64,7 @@ std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraS
   address.allow({"pace"});
   if (settings.exposure_us || settings.fps || settings.binning || settings.trigger != "free") {
     throw Error{Fault::usage,
-                "device '" + address.text + "': a recording has its exposure, rate, binning and trigger already"};
+                "device '" + address.text + "': exposure, rate, binning and trigger of a recording are fixed"};
   }
   return std::make_unique<ReplayCamera>(address.place, in_real_pace(address, "virtual"), bench, clock);
 }

@@ -119,7 +119,7 @@ class V4l2Camera final : public Camera {
       if (left_s <= 0) {
         throw Error{Fault::busy, path_ + ": no frame within " +
                                      format_number(settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1), 3) +
-                                     " s; is it triggered, or another stream running?"};
+                                     " s; check the trigger and other streams"};
       }
       const int ready = driver_->wait(std::min(left_s, 0.2));
       if (ready < 0) throw gone();
@@ -154,7 +154,7 @@ class V4l2Camera final : public Camera {
     ask(VIDIOC_QUERYCAP, &what, "is no video device (VIDIOC_QUERYCAP)");
     const std::uint32_t able = (what.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? what.device_caps : what.capabilities;
     if ((able & V4L2_CAP_VIDEO_CAPTURE) == 0 || (able & V4L2_CAP_STREAMING) == 0) {
-      throw Error{Fault::usage, path_ + ": cannot stream pictures; a camera has several nodes, try the next"};
+      throw Error{Fault::usage, path_ + ": cannot stream images; a camera has several nodes, try the next"};
     }
     const auto text = [](const __u8* bytes) { return std::string(reinterpret_cast<const char*>(bytes)); };
     about_ = {{"maker", text(what.driver)}, {"model", text(what.card)}, {"serial", text(what.bus_info)}};
@@ -180,17 +180,17 @@ class V4l2Camera final : public Camera {
     });
     if (chosen == formats.end()) {
       throw Error{Fault::usage, path_ + ": no pixel format " +
-                                    (settings_.format.empty() ? "of grey" : settings_.format) + "; it has " +
-                                    (offered.empty() ? "none that is known" : join(offered, ", "))};
+                                    (settings_.format.empty() ? "for grey" : settings_.format) + "; it has " +
+                                    (offered.empty() ? "no supported one" : join(offered, ", "))};
     }
     format_ = *chosen;
     auto size = cleared<v4l2_format>();
     size.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    ask(VIDIOC_G_FMT, &size, "does not tell its format (VIDIOC_G_FMT)");
+    ask(VIDIOC_G_FMT, &size, "does not report its format (VIDIOC_G_FMT)");
     size.fmt.pix.pixelformat = format_.code;
-    ask(VIDIOC_S_FMT, &size, "refuses the format (VIDIOC_S_FMT)");
+    ask(VIDIOC_S_FMT, &size, "rejects the format (VIDIOC_S_FMT)");
     if (size.fmt.pix.pixelformat != format_.code) {
-      throw Error{Fault::protocol, path_ + ": took another pixel format than " + format_.name};
+      throw Error{Fault::protocol, path_ + ": pixel format set to another value than " + format_.name};
     }
     mode_.columns = static_cast<int>(size.fmt.pix.width);
     mode_.rows = static_cast<int>(size.fmt.pix.height);
@@ -208,7 +208,7 @@ class V4l2Camera final : public Camera {
       manual.value = V4L2_EXPOSURE_MANUAL;
       driver_->control(VIDIOC_S_CTRL, &manual);  // a camera without automatics does not have it
       value.value = static_cast<int>(std::lround(*settings_.exposure_us / 100));
-      ask(VIDIOC_S_CTRL, &value, "does not take an exposure (VIDIOC_S_CTRL)");
+      ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
     }
     if (driver_->control(VIDIOC_G_CTRL, &value) == 0) mode_.exposure_us = 100.0 * value.value;
     if (settings_.exposure_us) check("exposure", *settings_.exposure_us, mode_.exposure_us, 100);
@@ -220,7 +220,7 @@ class V4l2Camera final : public Camera {
     auto& period = rate.parm.capture.timeperframe;
     if (settings_.fps) {
       period = {1000, static_cast<__u32>(std::lround(1000 * *settings_.fps))};
-      ask(VIDIOC_S_PARM, &rate, "does not take a frame rate (VIDIOC_S_PARM)");
+      ask(VIDIOC_S_PARM, &rate, "rejects the frame rate (VIDIOC_S_PARM)");
     } else if (driver_->control(VIDIOC_G_PARM, &rate) != 0) {
       return;
     }
@@ -231,7 +231,7 @@ class V4l2Camera final : public Camera {
   void check(const std::string& what, double wanted, double got, double grain) const {
     if (std::abs(wanted - got) <= 0.01 * wanted + grain) return;
     throw Error{Fault::protocol, path_ + ": the " + what + " reads back as " + format_number(got) + " instead of " +
-                                     format_number(wanted) + "; ask for what it can"};
+                                     format_number(wanted) + "; choose a supported value"};
   }
 
   void map_buffers(int count) {
@@ -239,21 +239,21 @@ class V4l2Camera final : public Camera {
     wanted.count = static_cast<std::uint32_t>(count);
     wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
     wanted.memory = V4L2_MEMORY_MMAP;
-    ask(VIDIOC_REQBUFS, &wanted, "gives no buffers (VIDIOC_REQBUFS)");
+    ask(VIDIOC_REQBUFS, &wanted, "provides no buffers (VIDIOC_REQBUFS)");
     for (std::uint32_t i = 0; i < wanted.count; ++i) {
       auto buffer = capture_buffer();
       buffer.index = i;
-      ask(VIDIOC_QUERYBUF, &buffer, "does not show its buffers (VIDIOC_QUERYBUF)");
+      ask(VIDIOC_QUERYBUF, &buffer, "does not describe its buffers (VIDIOC_QUERYBUF)");
       void* start = driver_->map(buffer.length, buffer.m.offset);
       if (start == MAP_FAILED) throw Error{Fault::memory, path_ + ": a buffer cannot be mapped"};
       mappings_.push_back({start, buffer.length});
-      ask(VIDIOC_QBUF, &buffer, "does not take a buffer (VIDIOC_QBUF)");
+      ask(VIDIOC_QBUF, &buffer, "rejects a buffer (VIDIOC_QBUF)");
     }
-    if (mappings_.empty()) throw Error{Fault::memory, path_ + ": gives no buffers"};
+    if (mappings_.empty()) throw Error{Fault::memory, path_ + ": provides no buffers"};
   }
 
   CameraFrame take(v4l2_buffer& buffer) {
-    if (buffer.index >= mappings_.size()) throw Error{Fault::protocol, path_ + ": hands out a buffer of nobody"};
+    if (buffer.index >= mappings_.size()) throw Error{Fault::protocol, path_ + ": returned an unknown buffer"};
     const Mapping& mapping = mappings_[buffer.index];
     CameraFrame frame;
     frame.number = count_.number(buffer.sequence);
@@ -268,7 +268,7 @@ class V4l2Camera final : public Camera {
     const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,
                                stride_, format_.layout, format_.bits, frame.levels);
     frame.complete = frame.complete && whole;
-    ask(VIDIOC_QBUF, &buffer, "does not take a buffer back (VIDIOC_QBUF)");
+    ask(VIDIOC_QBUF, &buffer, "rejects a returned buffer (VIDIOC_QBUF)");
     return frame;
   }
 
@@ -293,7 +293,7 @@ std::unique_ptr<Camera> open_v4l2_camera(const Address& address, const CameraSet
                                          std::unique_ptr<V4l2Driver> driver, Clock& clock) {
   address.allow({"buffers"});
   if (settings.binning.value_or(1) != 1 || settings.trigger != "free") {
-    throw Error{Fault::usage, "device '" + address.text + "': V4L2 knows neither binning nor triggers"};
+    throw Error{Fault::usage, "device '" + address.text + "': V4L2 supports neither binning nor triggers"};
   }
   return std::make_unique<V4l2Camera>(address, settings, std::move(driver), clock);
 }

@@ -46,7 +46,7 @@ std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian*
   address.allow({"baud", "axis"});
   const std::string axis = address.word("axis", "X");
   if (axis != "X" && axis != "Y" && axis != "Z") {
-    throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is none of X, Y, Z"};
+    throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is not one of X, Y, Z"};
   }
   auto lock = lock_device(address.place, guardian);
   auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
@@ -60,7 +60,7 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
   const double steps_per_deg = address.number("steps_per_deg", 0, -1e6, 1e6);
   if (steps_per_deg == 0) {
     throw Error{Fault::usage,
-                "device '" + address.text + "': needs ?steps_per_deg=N, the microsteps a degree of the table"};
+                "device '" + address.text + "': needs ?steps_per_deg=N, the microsteps per degree of the stage"};
   }
   auto link = open_usb(tic_id(address.place), -1);
   auto lock = lock_device(link->name(), guardian);

@@ -63,7 +63,7 @@ DeviceLock::DeviceLock(const std::string& name) {
   }
   if (fd_ < 0) {
     throw Error{Fault::no_output, path + ": cannot lock the device (" + std::strerror(errno) +
-                                      "); point VAM_LOCK_DIR at a folder that all its users can write"};
+                                      "); set VAM_LOCK_DIR to a folder writable by all users"};
   }
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     const std::string pid = holder(fd_);

@@ -51,8 +51,8 @@ void shorten_latency(const std::string& path) {
   std::ofstream(file) << 1;
   std::ifstream(file) >> latency_ms;
   if (latency_ms > 1) {
-    warn(path + ": its latency timer is " + std::to_string(latency_ms) + " ms, which blurs the angle; write 1 to " +
-         file);
+    warn(path + ": its latency timer is " + std::to_string(latency_ms) +
+         " ms, which adds to the angle error; write 1 to " + file);
   }
 }
 
@@ -65,7 +65,8 @@ class SerialPort final : public Port {
     const double deadline_s = real_clock().now_s() + write_timeout_s;
     while (!bytes.empty()) {
       if (!wait(POLLOUT, deadline_s)) {
-        throw Error{Fault::busy, path_ + ": takes no bytes (" + std::to_string(bytes.size()) + " left after 0.5 s)"};
+        throw Error{Fault::busy,
+                    path_ + ": does not accept data (" + std::to_string(bytes.size()) + " left after 0.5 s)"};
       }
       const int written = sp_nonblocking_write(port_.get(), bytes.data(), bytes.size());
       if (written < 0) throw unplugged();
@@ -101,7 +102,7 @@ class SerialPort final : public Port {
   }
 
   [[nodiscard]] Error unplugged() const {
-    return {Fault::absent, path_ + ": unplugged; what was moving runs to the end of its last command"};
+    return {Fault::absent, path_ + ": unplugged; the device finishes its last motion command"};
   }
 
   std::string path_;
@@ -120,7 +121,7 @@ std::unique_ptr<Port> open_serial(const std::string& path, int baud) {
   PortHandle port(found);
   status = sp_open(port.get(), SP_MODE_READ_WRITE);
   if (status == SP_ERR_FAIL && sp_last_error_code() == EBUSY) {
-    throw Error{Fault::busy, path + ": another program has it open; end that first"};
+    throw Error{Fault::busy, path + ": opened by another program; end that program first"};
   }
   if (status != SP_OK) throw refused(path, status, "be opened");
   int handle = -1;

@@ -57,7 +57,7 @@ class LibusbLink final : public UsbLink {
     name_ = "usb:" + about_["usb_id"].get<std::string>() + ":" + about_["serial"].get<std::string>();
     if (interface_ < 0) return;
     libusb_set_auto_detach_kernel_driver(handle_.get(), 1);
-    require(libusb_claim_interface(handle_.get(), interface_), "cannot be taken over");
+    require(libusb_claim_interface(handle_.get(), interface_), "cannot claim the interface");
   }
 
   ~LibusbLink() override {
@@ -68,7 +68,7 @@ class LibusbLink final : public UsbLink {
     require(libusb_control_transfer(handle_.get(), vendor_request, static_cast<std::uint8_t>(request),
                                     static_cast<std::uint16_t>(value), static_cast<std::uint16_t>(index), nullptr, 0,
                                     timeout_ms),
-            "did not take request " + std::to_string(request));
+            "did not accept request " + std::to_string(request));
   }
 
   std::string control_in(int request, int value, int index, int length) override {
@@ -91,9 +91,9 @@ class LibusbLink final : public UsbLink {
     int sent = 0;
     require(libusb_interrupt_transfer(handle_.get(), report_out_endpoint,
                                       reinterpret_cast<unsigned char*>(bytes.data()), report_bytes, &sent, timeout_ms),
-            "did not take a report");
+            "did not accept a report");
     if (sent != report_bytes)
-      throw Error{Fault::protocol, name_ + ": took only " + std::to_string(sent) + " of 64 bytes"};
+      throw Error{Fault::protocol, name_ + ": accepted only " + std::to_string(sent) + " of 64 bytes"};
   }
 
   std::string read_report() override {
@@ -168,16 +168,15 @@ std::unique_ptr<UsbLink> open_usb(const UsbId& id, int interface) {
   const std::string what =
       "usb:" + ids_text(id.vendor, id.products.front()) + (id.serial.empty() ? "" : ":" + id.serial);
   if (found.empty()) {
-    throw Error{Fault::absent,
-                what + (closed > 0 ? ": may not be opened; give your user access by a udev rule for vendor " +
-                                         ids_text(id.vendor, 0).substr(0, 4)
-                                   : ": no such device; check power and cable")};
+    throw Error{Fault::absent, what + (closed > 0 ? ": access denied; add a udev rule for vendor " +
+                                                        ids_text(id.vendor, 0).substr(0, 4)
+                                                  : ": no such device; check power and cable")};
   }
   if (found.size() > 1) {
     std::vector<std::string> serials;
     for (const auto& one : found) serials.push_back(one.about["serial"]);
-    throw Error{Fault::usage, what + ": there are " + std::to_string(found.size()) +
-                                  "; choose by serial number: " + join(serials, ", ")};
+    throw Error{Fault::usage, what + ": found " + std::to_string(found.size()) +
+                                  "; select one by serial number: " + join(serials, ", ")};
   }
   return std::make_unique<LibusbLink>(std::move(context), std::move(found.front().handle), interface,
                                       std::move(found.front().about));

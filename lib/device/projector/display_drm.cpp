@@ -31,7 +31,7 @@ Fault fault_of_card() {
   return Fault::io;
 }
 
-// A picture in the card's memory.
+// An image in the card's memory.
 struct Buffer {
   std::uint32_t handle = 0;
   std::uint32_t framebuffer = 0;
@@ -45,13 +45,13 @@ class DrmDisplay final : public Display {
       const std::string why = reason();
       close(output_.card);
       throw Error{Fault::busy,
-                  name_ + ": the card is in use, by a desktop for instance; log out of it or use sdl:" + why};
+                  name_ + ": the GPU is in use, for example by a desktop; log out of it or use sdl:" + why};
     }
     mode_ = {output_.mode.hdisplay, output_.mode.vdisplay,
              output_.mode.clock * 1000.0 / (output_.mode.htotal * output_.mode.vtotal)};
     black_ =
         load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * static_cast<std::size_t>(mode_.rows)));
-    if (!show_black()) throw Error{Fault::absent, name_ + ": does not take its own mode" + reason()};
+    if (!show_black()) throw Error{Fault::absent, name_ + ": the connector rejects its own mode" + reason()};
     straighten_gamma(output_, name_);
   }
 
@@ -85,7 +85,7 @@ class DrmDisplay final : public Display {
     order.flags = DRM_MODE_PAGE_FLIP_EVENT;
     order.user_data = ++asked_;
     if (drmIoctl(output_.card, DRM_IOCTL_MODE_PAGE_FLIP, &order) != 0) {
-      throw Error{fault_of_card(), name_ + ": the card refused a page flip" + reason()};
+      throw Error{fault_of_card(), name_ + ": the GPU rejected a page flip" + reason()};
     }
     wait_for_flip();
     if (index < 0) unwatch();
@@ -99,8 +99,7 @@ class DrmDisplay final : public Display {
     make.height = output_.mode.vdisplay;
     make.bpp = 32;
     if (drmIoctl(output_.card, DRM_IOCTL_MODE_CREATE_DUMB, &make) != 0) {
-      throw Error{Fault::memory,
-                  name_ + ": no room in the card's memory for frame " + std::to_string(frames_.size()) + reason()};
+      throw Error{Fault::memory, name_ + ": no GPU memory for frame " + std::to_string(frames_.size()) + reason()};
     }
     Buffer buffer{make.handle, 0};
     drm_mode_map_dumb where{};
@@ -112,7 +111,7 @@ class DrmDisplay final : public Display {
       pixels =
           mmap(nullptr, make.size, PROT_READ | PROT_WRITE, MAP_SHARED, output_.card, static_cast<off_t>(where.offset));
     }
-    if (pixels == MAP_FAILED) throw Error{Fault::memory, name_ + ": a frame cannot be written to the card" + reason()};
+    if (pixels == MAP_FAILED) throw Error{Fault::memory, name_ + ": cannot write a frame to GPU memory" + reason()};
     for (std::uint32_t y = 0; y < make.height; ++y) {
       auto* row =
           reinterpret_cast<std::uint32_t*>(static_cast<char*>(pixels) + static_cast<std::size_t>(y) * make.pitch);
@@ -138,7 +137,7 @@ class DrmDisplay final : public Display {
   void read_events() {
     alignas(drm_event_vblank) std::array<char, 1024> bytes{};
     const ssize_t size = read(output_.card, bytes.data(), bytes.size());
-    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the card is gone"};
+    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the GPU is gone"};
     for (std::size_t at = 0; at + sizeof(drm_event_vblank) <= static_cast<std::size_t>(size);) {
       drm_event_vblank event{};
       std::memcpy(&event, bytes.data() + at, sizeof event);
@@ -163,7 +162,7 @@ class DrmDisplay final : public Display {
     check_interrupted();
   }
 
-  // The guardian shares the opened card, so that the pictures outlive the tool until black is on.
+  // The guardian shares the opened card, so that the images outlive the tool until black is on.
   void watch(bool lit) {
     if (guardian_ == nullptr) return;
     if (lit && action_ == 0) {

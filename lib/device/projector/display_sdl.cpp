@@ -47,7 +47,7 @@ class SdlDisplay final : public Display {
   SdlDisplay(int screen, Clock& clock, Guardian* guardian) : clock_(clock), guardian_(guardian) {
     SDL_Rect bounds{};
     if (SDL_GetDisplayBounds(screen, &bounds) != 0) {
-      throw Error{Fault::absent, "sdl:" + std::to_string(screen) + ": no such screen; there are " +
+      throw Error{Fault::absent, "sdl:" + std::to_string(screen) + ": no such screen; number of screens: " +
                                      std::to_string(SDL_GetNumVideoDisplays())};
     }
     SDL_DisplayMode current{};
@@ -72,7 +72,7 @@ class SdlDisplay final : public Display {
     try {
       present(-1);
     } catch (...) {
-      // The window goes next, and its picture with it.
+      // The window goes next, and its image with it.
     }
   }
 
@@ -134,7 +134,7 @@ class SdlDisplay final : public Display {
     }
   }
 
-  // While a picture is on, a tool that hangs must be killed: its window goes with it.
+  // While an image is on, a tool that hangs must be killed: its window goes with it.
   void watch(bool lit) {
     if (guardian_ == nullptr) return;
     if (lit && action_ == 0) action_ = guardian_->add({{"do", "nothing"}, {"order", 0}, {"name", "window"}});
@@ -167,7 +167,7 @@ std::unique_ptr<Display> open_sdl_display(const Address& address, const DisplayM
   try {
     if (!address.place.empty()) screen = std::stoi(address.place);
   } catch (const std::exception&) {
-    throw Error{Fault::usage, "device '" + address.text + "': '" + address.place + "' is not the number of a screen"};
+    throw Error{Fault::usage, "device '" + address.text + "': '" + address.place + "' is not a screen number"};
   }
   const char* desktop = std::getenv("DISPLAY");
   auto lock = std::make_unique<DeviceLock>(std::string("sdl-") + (desktop != nullptr ? desktop : "") + "-" +

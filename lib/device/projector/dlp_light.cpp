@@ -18,7 +18,7 @@ namespace {
 
 using enum DlpCommand;
 
-constexpr double patience_s = 15;  // to wake, to find the picture
+constexpr double patience_s = 15;  // to wake, to find the image
 constexpr double mode_s = 2;       // to take up a mode: some tenths of a second
 constexpr int asleep = 1;
 constexpr int from_video_port = 0;
@@ -46,13 +46,13 @@ class DlpLight final : public LightEngine {
       : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
     if (settings.current.value_or(0) > settings.max_current) {
       throw Error{Fault::usage, link_.name() + ": current " + std::to_string(*settings.current) +
-                                    " is above the cap of " + std::to_string(settings.max_current) +
-                                    "; raise projector.max_led_current only within what the LEDs bear"};
+                                    " is above the limit of " + std::to_string(settings.max_current) +
+                                    "; raise projector.max_led_current only within the rating of the LEDs"};
     }
     for (const char led : settings.leds) {
       const std::size_t bit = std::string("rgb").find(led);
       if (bit == std::string::npos)
-        throw Error{Fault::usage, link_.name() + ": leds=" + settings.leds + " is not made of r, g and b"};
+        throw Error{Fault::usage, link_.name() + ": leds=" + settings.leds + " must consist of r, g and b"};
       led_bits_ |= 1 << bit;
     }
   }
@@ -95,7 +95,7 @@ class DlpLight final : public LightEngine {
       require_capped(link_.ask(led_current, 3));
     }
     if ((link_.ask(hardware_status) & 1) == 0) {
-      throw Error{Fault::protocol, link_.name() + ": its own start-up check failed; switch it off and on again"};
+      throw Error{Fault::protocol, link_.name() + ": start-up self-test failed; switch it off and on"};
     }
   }
 
@@ -122,7 +122,7 @@ class DlpLight final : public LightEngine {
   void wake() {
     awake_ = true;
     link_.tell(power, {0});
-    require_soon([&] { return link_.ask(power) == 0; }, "does not wake", "switch it off and on again");
+    require_soon([&] { return link_.ask(power) == 0; }, "does not leave standby", "switch it off and on");
   }
 
   void stop_patterns() {
@@ -130,13 +130,13 @@ class DlpLight final : public LightEngine {
   }
 
   // A DLPC900 cannot be told to leave its gamma. Its grey is linear where it takes a frame for three patterns of 8
-  // bits, its colours one after the other, which it does only with a picture that it has found.
+  // bits, its colours one after the other, which it does only with an image that it has found.
   void show_patterns() {
     unless_refused([&] {  // by a board without a receiver
       if (link_.ask(video_receiver) == 0) link_.tell(video_receiver, {from_hdmi});
     });
-    require_soon([&] { return (link_.ask(main_status) & picture_found) != 0; }, "finds no picture at its input",
-                 "check the video cable and the screen's mode");
+    require_soon([&] { return (link_.ask(main_status) & picture_found) != 0; }, "finds no video signal at its input",
+                 "check the video cable and the screen mode");
     link_.set(display_mode, {video_pattern_mode}, "video pattern mode", mode_s);
     for (int colour = 0; colour < 3; ++colour) {
       const int begins_with_frame = colour == 0 ? 0x80 : 0;
@@ -146,8 +146,8 @@ class DlpLight final : public LightEngine {
     }
     link_.tell(pattern_table, {3, 0, 0, 0, 0, 0});  // all three, for ever
     link_.tell(pattern_start_stop, {start});
-    require_soon([&] { return (link_.ask(main_status) & sequencer_runs) != 0; }, "does not start its patterns",
-                 "check the screen's mode: at most 60 Hz");
+    require_soon([&] { return (link_.ask(main_status) & sequencer_runs) != 0; }, "does not start its pattern sequence",
+                 "check the screen mode: at most 60 Hz");
   }
 
   void require_soon(const std::function<bool()>& done, const std::string& problem, const std::string& remedy) {
@@ -158,8 +158,8 @@ class DlpLight final : public LightEngine {
   void require_capped(const DlpBytes& currents) const {
     for (std::size_t led = 0; led < 3; ++led) {
       if ((led_bits_ >> led & 1) == 0 || currents[led] <= settings_.max_current) continue;
-      throw Error{Fault::protocol, link_.name() + ": its current is " + std::to_string(currents[led]) +
-                                       ", above the cap of " + std::to_string(settings_.max_current) +
+      throw Error{Fault::protocol, link_.name() + ": LED current is " + std::to_string(currents[led]) +
+                                       ", above the limit of " + std::to_string(settings_.max_current) +
                                        "; give current=N"};
     }
   }

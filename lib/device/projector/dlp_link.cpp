@@ -45,7 +45,7 @@ DlpBytes DlpLink::exchange(int flags, DlpCommand command, const DlpBytes& data) 
     const auto first = answer.begin() + header_bytes;
     return {first, first + static_cast<std::ptrdiff_t>(length)};
   }
-  throw wrong(command, "not answered, but something else was");
+  throw wrong(command, "answered with another command");
 }
 
 Error DlpLink::wrong(DlpCommand command, const std::string& what) const {

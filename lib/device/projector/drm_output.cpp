@@ -91,8 +91,7 @@ DrmOutput open_drm_output(const std::string& connector) {
     close(card);
   }
   throw Error{Fault::absent, "drm:" + connector + ": no such connected screen" +
-                                 (seen.empty() ? "; there is no graphics card that may be opened"
-                                               : "; there are " + join(seen, ", "))};
+                                 (seen.empty() ? "; no GPU can be opened" : "; connectors: " + join(seen, ", "))};
 }
 
 void straighten_gamma(const DrmOutput& output, const std::string& name) {
@@ -107,7 +106,7 @@ void straighten_gamma(const DrmOutput& output, const std::string& name) {
   drmModeCrtcSetGamma(output.card, output.crtc, size, red.data(), green.data(), blue.data());
   const int read = drmModeCrtcGetGamma(output.card, output.crtc, size, red.data(), green.data(), blue.data());
   if (read == 0 && red == straight && green == straight && blue == straight) return;
-  throw Error{Fault::protocol, name + ": the card keeps its own gamma table, so grey would not be linear; use sdl:"};
+  throw Error{Fault::protocol, name + ": the GPU's gamma table cannot be set to linear; use sdl:"};
 }
 
 }  // namespace vam::device

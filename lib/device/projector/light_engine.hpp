@@ -24,13 +24,13 @@ struct LightSettings {
 };
 
 /// A DLP controller on USB. Between on() and dark() the guardian holds the order to darken. Throws Error: absent, busy
-/// (no answer), protocol (NACK, wrong answer, or a setting that does not read back), usage (current above the cap).
+/// (no answer), protocol (NACK, wrong answer, or a setting that does not read back), usage (current above the limit).
 class LightEngine {
  public:
   virtual ~LightEngine() = default;
   /// Model, firmware, status bits.
   virtual Json identify() = 0;
-  /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs a picture at its
+  /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs an image at its
   /// input) and current set, each read back. LEDs stay off.
   virtual void prepare() = 0;
   virtual void on() = 0;

@@ -16,7 +16,7 @@ namespace {
 constexpr double light_lead_s = 0.1;  // the engine's own time to come on
 constexpr double told_late_s = 0.002;
 
-// Black and dark on every way out, and said so: who reads the log must not take the last picture for still on.
+// Black and dark on every way out, and said so: who reads the log must not take the last image for still on.
 class DarkOnExit {
  public:
   DarkOnExit(Display& display, LightEngine* light, const std::function<void(const FlipRecord&)>& log)
@@ -106,7 +106,8 @@ void require_flips(const PlayTally& tally, double expected, double allowed, cons
   if (static_cast<double>(tally.missed) <= allowed * expected) return;
   throw Error{Fault::busy, "display: missed " + std::to_string(tally.missed) + " vertical blanks " + when +
                                " (allowed " + format_number(100 * allowed) + " % of " +
-                               format_number(std::floor(expected)) + "); end other programs or choose a slower mode"};
+                               format_number(std::floor(expected)) +
+                               "); stop other programs or use a lower refresh rate"};
 }
 
 }  // namespace
@@ -145,7 +146,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
     if (predicted->angle_deg >= end_deg) break;
     const bool lit = predicted->angle_deg >= 0;
     if (!light_is_on && predicted->angle_deg >= -light_lead_s * speed_deg_s && speed_deg_s > 0) {
-      require_flips(presenter.tally(), expected, plan.allowed_missed, "in the dry run-up");
+      require_flips(presenter.tally(), expected, plan.allowed_missed, "in the run-up");
       if (light != nullptr) light->on();
       light_is_on = switched = true;
     }

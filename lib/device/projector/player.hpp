@@ -1,4 +1,4 @@
-// A print's light: at every vertical blank the frame that belongs to the table's angle.
+// A print's light: at every vertical blank the frame that belongs to the stage's angle.
 #pragma once
 
 #include <functional>

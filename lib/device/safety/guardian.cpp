@@ -50,8 +50,8 @@ void Guardian::send(char kind, int id, const std::string& text, int handle) {
     std::memcpy(CMSG_DATA(header), &handle, sizeof(int));
   }
   if (sendmsg(socket_, &message, MSG_NOSIGNAL | MSG_DONTWAIT) < 0) {
-    throw Error{Fault::bug, "guardian: process " + std::to_string(child_) + " does not listen (" +
-                                std::strerror(errno) + "); nothing may move or shine without it"};
+    throw Error{Fault::bug, "guardian: process " + std::to_string(child_) + " does not respond (" +
+                                std::strerror(errno) + "); motion and projection are disabled without it"};
   }
 }
 

@@ -4,7 +4,7 @@
 //   {"do": "usb", "order": 1, "usb_id": "1ffb:00b3", "serial": "0031", "interface": -1,
 //    "control": [[137, 0, 0]], "reports": ["..."]}   sends vendor requests (request, value, index), then HID reports
 //    (hex)
-//   {"do": "drm", "order": 0, "crtc": 7, "framebuffer": 3}   flips the card behind the handle to that (black) picture
+//   {"do": "drm", "order": 0, "crtc": 7, "framebuffer": 3}   flips the card behind the handle to that (black) image
 //   {"do": "nothing"}                          for a window, which goes with its tool: only hanging must be noticed
 // `order`: 0 for light, 1 for motion; lower first.
 #pragma once

@@ -87,8 +87,8 @@ std::string carry_all_out(const std::map<int, Action>& actions) {
   std::string report;
   for (const Action* action : sorted) {
     const bool done = carry_out(action->what, action->handle);
-    report += (report.empty() ? "" : ", ") + action->what.value("name", std::string("device")) +
-              (done ? " safe" : " DID NOT TAKE IT");
+    report +=
+        (report.empty() ? "" : ", ") + action->what.value("name", std::string("device")) + (done ? " safe" : " FAILED");
   }
   return report;
 }
@@ -100,7 +100,7 @@ void guard(int socket, int parent, double stall_s) {
   hurry(Urgency::guardian);
   std::map<int, Action> actions;
   double last_beat_s = real_clock().now_s();
-  const char* reason = "ended without a word";
+  const char* reason = "ended unexpectedly";
   bool quietly = false;
   for (;;) {
     int wait_ms = -1;
@@ -112,7 +112,7 @@ void guard(int socket, int parent, double stall_s) {
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0) {
       kill(parent, SIGKILL);  // a tool that hangs must not wake up and undo what follows
-      reason = "made no progress and was killed";
+      reason = "stopped responding and was killed";
       break;
     }
     Packet packet = receive(socket);

@@ -1,4 +1,4 @@
-// The guardian's order to stop a table: standing from the moment it is told to move until it is known to stand.
+// The guardian's order to stop a stage: standing from the moment it is told to move until it is known to stand.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ class StopOrder {
   /// Without a guardian the order is only remembered.
   explicit StopOrder(Guardian* guardian) : guardian_(guardian) {}
 
-  /// Before the command that sets the table moving: bytes that stop it, to be written to its port. A simulated port
+  /// Before the command that sets the stage moving: bytes that stop it, to be written to its port. A simulated port
   /// has no handle (-1) and ends with the tool; then the order is only remembered.
   void give(const std::string& bytes, int handle) {
     if (handle < 0)
@@ -28,7 +28,7 @@ class StopOrder {
     standing_ = true;
     if (guardian_ != nullptr && !action_) action_ = guardian_->add(action, handle);
   }
-  /// The table stands.
+  /// The stage stands.
   void withdraw() {
     standing_ = false;
     if (action_) guardian_->forget(*action_);

@@ -32,7 +32,7 @@ AngleSample parse_angle_line(const std::string& line, long number) {
   const auto read = [&](const char* key, double& target) {
     if (!parsed.is_object() || !parsed.contains(key) || !parsed[key].is_number()) {
       throw Error{Fault::data, "stage angles: line " + std::to_string(number) + ": no number '" + key +
-                                   "' in it; expected the output of vam-stage spin or follow"};
+                                   "'; expected the output of vam-stage spin or follow"};
     }
     target = parsed[key].get<double>();
     if (!std::isfinite(target)) {

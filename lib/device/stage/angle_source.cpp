@@ -49,7 +49,7 @@ class FollowedAngle final : public AngleSource {
       std::array<char, 4096> bytes{};
       const ssize_t count = read(fd_, bytes.data(), bytes.size());
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw Error{Fault::busy, "stage angles: ended" + so_far() + "; vam-stage says why"};
+      if (count <= 0) throw Error{Fault::busy, "stage angles: input ended" + so_far() + "; see the error of vam-stage"};
       buffer_.append(bytes.data(), static_cast<std::size_t>(count));
       take_lines();
     }
@@ -81,7 +81,7 @@ class FollowedAngle final : public AngleSource {
   }
 
   std::string so_far() const {
-    return lines_ == 0 ? " before the first"
+    return lines_ == 0 ? " before the first sample"
                        : " after line " + std::to_string(lines_) + ", at " + format_number(last_.angle_deg, 7) + " deg";
   }
 

@@ -1,4 +1,4 @@
-// Where the player learns the angle of the table from.
+// Where the player learns the angle of the stage from.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace vam::device {
 class AngleSource {
  public:
   virtual ~AngleSource() = default;
-  /// Takes in what has become known. Throws when the table can no longer be followed.
+  /// Takes in what has become known. Throws when the stage can no longer be followed.
   virtual void update() = 0;
   /// The angle at a moment of the near future; nothing before it is known.
   [[nodiscard]] virtual std::optional<AngleSample> at(double t_s) const = 0;

@@ -85,7 +85,7 @@ std::string GcsLink::read_more(const std::string& question, const std::string& s
                                  (settings_.address ? ", baud rate and address" : " and baud rate")};
   }
   if (so_far.size() + bytes.size() > longest_answer)
-    throw nonsense(question, so_far, "more than 64 KiB without an end");
+    throw nonsense(question, so_far, "more than 64 KiB without a terminator");
   return bytes;
 }
 
@@ -120,7 +120,7 @@ GcsAnswer GcsLink::ask(const std::string& text) {
     std::string line = received.substr(0, end);
     received.erase(0, end + 1);
     if (line.empty()) continue;  // the LF that may follow the byte of #7
-    if (!printable(line)) throw nonsense(text, line, "which is not text; check the baud rate");
+    if (!printable(line)) throw nonsense(text, line, "which is not printable text; check the baud rate");
     const bool last = line.back() != ' ';
     if (!last) line.pop_back();
     answer.lines.push_back(without_sender(text, line));

@@ -73,8 +73,8 @@ class GcsStage final : public Stage {
   void enable() override {
     const std::string wrong = unit();
     if (!wrong.empty() && wrong.rfind("deg", 0) != 0) {
-      throw Error{Fault::data, link_.port().name() + ": its axis counts in " + wrong +
-                                   ", not in degrees; load the parameters of a rotation stage into the controller"};
+      throw Error{Fault::data, link_.port().name() + ": unit of the axis is " + wrong +
+                                   ", not degrees; load the parameters of a rotation stage into the controller"};
     }
     order("SVO " + axis_ + " 1");
   }

@@ -73,7 +73,7 @@ class GrblStage final : public Stage {
     const std::string line = next_line(0.05, false);
     if (line.empty()) {
       if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + timeout_s) {
-        throw Error{Fault::busy, port_->name() + ": no answer to '$H', though it idles"};
+        throw Error{Fault::busy, port_->name() + ": no answer to '$H' although the board is idle"};
       }
       port_->write("?");
       return false;
@@ -115,7 +115,8 @@ class GrblStage final : public Stage {
     drain();
     const std::string report = status();
     const std::string state = state_of(report);
-    if (state == "Alarm") throw Error{Fault::protocol, port_->name() + ": is in alarm; home it, or unlock it with $X"};
+    if (state == "Alarm")
+      throw Error{Fault::protocol, port_->name() + ": alarm state; home the axis or unlock the board with $X"};
     const bool moves = state != "Idle";
     if (!moves) stop_order_.withdraw();
     return moves;
@@ -250,7 +251,7 @@ class GrblStage final : public Stage {
     const auto value = parts.size() == 3 ? parse_number(parts[static_cast<std::size_t>(axis_)]) : std::nullopt;
     if (!value || !std::isfinite(*value)) {
       throw Error{Fault::protocol,
-                  port_->name() + ": its status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
+                  port_->name() + ": status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
     }
     return *value;
   }

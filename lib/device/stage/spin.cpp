@@ -20,12 +20,12 @@ constexpr double settle_s = 1.6;  // at speed before angle 0: the fit's window, 
 struct Course {
   double start_deg;  // of printing coordinates
   double end_deg;
-  double cruise_deg;  // from here on the table keeps its speed
+  double cruise_deg;  // from here on the stage keeps its speed
   double cruise_s;    // and this long after the start it must have got there
 };
 
-// Where the run starts: early enough for ramp and run-up, and congruent with the table's present angle, so that angle 0
-// is at the table's zero.
+// Where the run starts: early enough for ramp and run-up, and congruent with the stage's present angle, so that angle 0
+// is at the stage's zero.
 Course plot(const SpinPlan& plan, const StageCaps& caps, double here_deg) {
   const double acceleration = caps.acceleration_deg_s2 > 0 ? caps.acceleration_deg_s2 : assumed_acceleration_deg_s2;
   const double ramp_deg = plan.speed_deg_s * plan.speed_deg_s / (2 * acceleration);
@@ -35,33 +35,34 @@ Course plot(const SpinPlan& plan, const StageCaps& caps, double here_deg) {
   course.start_deg = phase - 360 * std::ceil((before_deg + phase) / 360);
   course.cruise_deg = course.start_deg + 1.2 * ramp_deg + 0.2 * plan.speed_deg_s;
   course.cruise_s = 2 * (plan.speed_deg_s / acceleration + 0.2) + 1;
-  // Beyond the last turn, so that the table is still at full speed when that ends.
+  // Beyond the last turn, so that the stage is still at full speed when that ends.
   course.end_deg = 360.0 * plan.turns + 1.5 * ramp_deg + 0.5 * plan.speed_deg_s;
   const double low = std::min(plan.direction * course.start_deg, plan.direction * course.end_deg);
   const double high = std::max(plan.direction * course.start_deg, plan.direction * course.end_deg);
   if (low < caps.min_deg || high > caps.max_deg) {
-    throw Error{Fault::data, std::to_string(plan.turns) + " turns need travel from " + format_number(low) + " to " +
+    throw Error{Fault::data, std::to_string(plan.turns) + " turns require travel from " + format_number(low) + " to " +
                                  format_number(high) + " deg, but the controller allows " +
                                  format_number(caps.min_deg) + " to " + format_number(caps.max_deg) +
-                                 "; take fewer turns or widen its limits"};
+                                 "; use fewer turns or extend the limits of travel"};
   }
   return course;
 }
 
 void require_speed(const SpinPlan& plan, const AngleFit& fit) {
   if (!fit.ready()) {
-    throw Error{Fault::protocol, "stage: gave too few angles during the run-up to know its speed"};
+    throw Error{Fault::protocol, "stage: too few angle samples in the run-up to determine the speed"};
   }
   const double off = std::abs(fit.speed_deg_s() - plan.speed_deg_s);
   if (off > plan.speed_tolerance * plan.speed_deg_s + 3 * fit.speed_sigma_deg_s()) {
-    throw Error{Fault::protocol, "stage: turns at " + format_number(fit.speed_deg_s(), 4) + " deg/s instead of " +
+    throw Error{Fault::protocol, "stage: speed is " + format_number(fit.speed_deg_s(), 4) + " deg/s instead of " +
                                      format_number(plan.speed_deg_s) + " (" +
-                                     format_number(100 * off / plan.speed_deg_s, 2) + " % off, allowed " +
-                                     format_number(100 * plan.speed_tolerance) + " %); check load and parameters"};
+                                     format_number(100 * off / plan.speed_deg_s, 2) + " % error, limit " +
+                                     format_number(100 * plan.speed_tolerance) +
+                                     " %); check load and controller parameters"};
   }
 }
 
-// A blocked or slipping table leaves its line long before a turn is over.
+// A blocked or slipping stage leaves its line long before a turn is over.
 void require_on_line(const AngleFit& fit, const AngleSample& now) {
   if (!fit.ready()) return;
   const AngleSample expected = fit.at(now.t_s);
@@ -69,7 +70,7 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
   if (std::abs(expected.angle_deg - now.angle_deg) > allowed_deg) {
     throw Error{Fault::protocol, "stage: is at " + format_number(now.angle_deg, 7) + " deg where " +
                                      format_number(expected.angle_deg, 7) +
-                                     " was due; it slipped, was blocked or stopped"};
+                                     " was expected; it slipped, was blocked or stopped"};
   }
 }
 
@@ -78,7 +79,7 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report) {
   const StageCaps caps = stage.caps();
   if (caps.max_speed_deg_s > 0 && plan.speed_deg_s > caps.max_speed_deg_s) {
-    throw Error{Fault::data, format_number(plan.speed_deg_s) + " deg/s is more than the stage's " +
+    throw Error{Fault::data, format_number(plan.speed_deg_s) + " deg/s exceeds the stage's maximum of " +
                                  format_number(caps.max_speed_deg_s)};
   }
   StopOnExit stopper(stage);
@@ -105,16 +106,16 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
       require_on_line(fit, now);
       fit.add(now);
     } else if (clock.now_s() - start_s > course.cruise_s) {
-      throw Error{Fault::protocol, "stage: turned only " + format_number(now.angle_deg - course.start_deg, 4) +
+      throw Error{Fault::protocol, "stage: moved only " + format_number(now.angle_deg - course.start_deg, 4) +
                                        " deg in " + format_number(course.cruise_s, 3) +
-                                       " s; it is blocked, or its drive is off"};
+                                       " s; it is blocked or its drive is off"};
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;
     if (ended || look++ % std::lround(looks) == 0) report(now);
     if (ended) break;
     if (clock.now_s() - start_s > longest_s) {
       throw Error{Fault::busy, "stage: " + format_number(now.angle_deg, 6) + " deg after " + format_number(longest_s) +
-                                   " s, where " + std::to_string(360 * plan.turns) + " was due"};
+                                   " s, where " + std::to_string(360 * plan.turns) + " was expected"};
     }
   }
   stage.stop(Stop::smooth);

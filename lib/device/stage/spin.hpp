@@ -9,7 +9,7 @@
 
 namespace vam::device {
 
-/// A table that moves is asked at least so often: a good answer tells the guardian that all is well.
+/// A stage that moves is asked at least so often: a good answer tells the guardian that all is well.
 constexpr double heartbeat_s = 0.1;
 
 struct SpinPlan {
@@ -18,25 +18,25 @@ struct SpinPlan {
   double run_up_turns = 1;        // at constant speed, before angle 0
   int direction = 1;              // +1 or -1: the sign of the controller's angle
   double period_s = 0.01;         // of the samples reported
-  double speed_tolerance = 0.01;  // of the speed reached before angle 0; a slower or faster table is refused
+  double speed_tolerance = 0.01;  // of the speed reached before angle 0; a slower or faster stage is refused
 };
 
-/// Turns the table and reports its angle. Angles count from 0 where printing begins: negative during ramp and run-up,
-/// past 360 * turns when it ends. Angle 0 is the table's own zero (its reference after homing), whatever the number of
+/// Turns the stage and reports its angle. Angles count from 0 where printing begins: negative during ramp and run-up,
+/// past 360 * turns when it ends. Angle 0 is the stage's own zero (its reference after homing), whatever the number of
 /// runs before. One long motion, inside the controller's limits, re-zeroed before each run.
 /// Throws Fault::data (limits too narrow for so many turns), Fault::protocol (speed off by more than the tolerance
-/// shortly before angle 0, or a table that does not follow its own line), and what the stage throws. Stops the table
+/// shortly before angle 0, or a stage that does not follow its own line), and what the stage throws. Stops the stage
 /// whenever it leaves.
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report);
 
-/// Waits until the table stands, sampling every period_s. Throws Fault::busy after timeout_s.
+/// Waits until the stage stands, sampling every period_s. Throws Fault::busy after timeout_s.
 void wait_until_standing(Stage& stage, Clock& clock, double period_s, double timeout_s,
                          const std::function<void(const AngleSample&)>& report = {});
 
-/// Turns to an absolute angle, or by an angle, and waits until the table stands.
+/// Turns to an absolute angle, or by an angle, and waits until the stage stands.
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s);
 
-/// Stops the table and waits until it stands.
+/// Stops the stage and waits until it stands.
 void halt(Stage& stage, Clock& clock, Stop how);
 
 /// Reports the angle every period_s, for `seconds` or until a signal, and moves nothing.

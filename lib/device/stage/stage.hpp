@@ -15,7 +15,7 @@
 
 namespace vam::device {
 
-/// What the controller knows about itself. Angles and speeds are those of the table, in degrees.
+/// What the controller knows about itself. Angles and speeds are those of the stage, in degrees.
 struct StageCaps {
   double min_deg = 0;  // travel in the controller's present coordinates
   double max_deg = 0;
@@ -32,9 +32,9 @@ struct StageSample {
 
 enum class Stop { smooth, abrupt };
 
-/// A turning table. Calls return within their time-out and throw Error: absent (unplugged), busy (no answer in time),
-/// protocol (nonsense, or an error code of the controller). From the first motion until the table is known to stand,
-/// the guardian holds the order to stop it; every good answer is a heartbeat. The destructor stops a table that still
+/// A turning stage. Calls return within their time-out and throw Error: absent (unplugged), busy (no answer in time),
+/// protocol (nonsense, or an error code of the controller). From the first motion until the stage is known to stand,
+/// the guardian holds the order to stop it; every good answer is a heartbeat. The destructor stops a stage that still
 /// moves.
 class Stage {
  public:
@@ -48,13 +48,13 @@ class Stage {
   virtual void start_homing() = 0;
   virtual bool homed() = 0;
   virtual void set_speed(double deg_s) = 0;
-  /// Declares the present angle of a standing table to be angle_deg.
+  /// Declares the present angle of a standing stage to be angle_deg.
   virtual void set_angle(double angle_deg) = 0;
   /// Starts a motion to an absolute angle; several turns are several times 360.
   virtual void start_move(double angle_deg) = 0;
   virtual StageSample sample() = 0;
   virtual bool moving() = 0;
-  /// Sends the order; moving() tells when the table stands.
+  /// Sends the order; moving() tells when the stage stands.
   virtual void stop(Stop how) = 0;
   /// The controller's error since the last call, empty when there is none.
   virtual std::optional<std::string> fault() = 0;

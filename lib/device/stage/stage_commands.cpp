@@ -16,7 +16,7 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
   const double deadline_s = clock.now_s() + timeout_s;
   while (stage.moving()) {
     if (clock.now_s() > deadline_s) {
-      throw Error{Fault::busy, "stage: still moves after " + format_number(timeout_s) + " s"};
+      throw Error{Fault::busy, "stage: still moving after " + format_number(timeout_s) + " s"};
     }
     if (report) report(to_angle_sample(stage.sample(), 0));
     clock.sleep_until(clock.now_s() + std::min(period_s, heartbeat_s));
@@ -30,7 +30,7 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
   const double deadline_s = clock.now_s() + timeout_s;
   while (!stage.homed()) {
     if (clock.now_s() > deadline_s) {
-      throw Error{Fault::busy, "stage: found no reference within " + format_number(timeout_s) + " s"};
+      throw Error{Fault::busy, "stage: no reference found within " + format_number(timeout_s) + " s"};
     }
     clock.sleep_until(clock.now_s() + 0.05);
   }

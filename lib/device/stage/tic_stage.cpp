@@ -86,7 +86,7 @@ class TicStage final : public Stage {
   void enable() override {
     order(energize, 0);
     order(exit_safe_start, 0);
-    if (const auto problem = fault()) throw Error{Fault::protocol, link_->name() + ": does not start: " + *problem};
+    if (const auto problem = fault()) throw Error{Fault::protocol, link_->name() + ": motor not enabled: " + *problem};
   }
 
   void start_homing() override {
@@ -107,7 +107,8 @@ class TicStage final : public Stage {
   void set_speed(double deg_s) override {
     const double hz = deg_s * std::abs(steps_per_deg_);
     if (hz > 50000) {
-      throw Error{Fault::data, format_number(deg_s) + " deg/s are " + format_number(hz) + " steps/s; a Tic does 50000"};
+      throw Error{Fault::data,
+                  format_number(deg_s) + " deg/s is " + format_number(hz) + " steps/s; the maximum of a Tic is 50000"};
     }
     order(set_max_speed, static_cast<std::int32_t>(std::lround(hz / speed_unit_hz)));
   }
@@ -183,7 +184,7 @@ class TicStage final : public Stage {
     const int state = static_cast<unsigned char>(bytes[0]);
     const int flags = static_cast<unsigned char>(bytes[1]);
     if (state > state_normal || state % 2 != 0 || (flags & unused_flags) != 0) {
-      throw Error{Fault::protocol, link_->name() + ": its state " + to_hex(bytes) + " is none of a Tic's"};
+      throw Error{Fault::protocol, link_->name() + ": its state " + to_hex(bytes) + " is unknown"};
     }
     stop_order_.beat();
     return {state, flags};

@@ -110,49 +110,49 @@ double LitRow::mean(double from, double to) const {
   return (upto(middle + half) - upto(middle - half)) / (2 * half);
 }
 
-LitPicture::LitPicture(const GreyImage& picture, double gamma) : picture_(picture), gamma_(gamma) {
-  const auto width = static_cast<std::size_t>(picture.width);
-  for (int row = 0; row < picture.height; ++row) {
-    const auto* values = picture.values.data() + static_cast<std::size_t>(row) * width;
+LitImage::LitImage(const GreyImage& image, double gamma) : image_(image), gamma_(gamma) {
+  const auto width = static_cast<std::size_t>(image.width);
+  for (int row = 0; row < image.height; ++row) {
+    const auto* values = image.values.data() + static_cast<std::size_t>(row) * width;
     const bool same = row > 0 && std::equal(values, values + width, values - width);
     twin_.push_back(same ? twin_.back() : row);
   }
 }
 
-double LitPicture::light(int column, int row) const {
-  const auto level = picture_(column, row);
+double LitImage::light(int column, int row) const {
+  const auto level = image_(column, row);
   if (level == 0) return 0;
-  const double part = static_cast<double>(level) / picture_.full();
+  const double part = static_cast<double>(level) / image_.full();
   return gamma_ == 1 ? part : std::pow(part, gamma_);
 }
 
-int LitPicture::uniform(double top, double bottom, double sigma_px) const {
+int LitImage::uniform(double top, double bottom, double sigma_px) const {
   const double more = reach * sigma_px;
   const auto first = static_cast<int>(std::floor(top - more + 0.5));
   const auto last = static_cast<int>(std::floor(bottom + more + 0.5));
-  if (last < 0 || first >= picture_.height) return picture_.height;  // all dark
-  if (first < 0 || last >= picture_.height) return -1;
+  if (last < 0 || first >= image_.height) return image_.height;  // all dark
+  if (first < 0 || last >= image_.height) return -1;
   const int twin = twin_[static_cast<std::size_t>(first)];
   return twin_[static_cast<std::size_t>(last)] == twin ? twin : -1;
 }
 
-LitRow LitPicture::between(double top, double bottom, double sigma_px) const {
+LitRow LitImage::between(double top, double bottom, double sigma_px) const {
   const double more = reach * sigma_px;
-  std::vector<double> sum(static_cast<std::size_t>(picture_.width));
-  const auto last = std::min(static_cast<int>(std::floor(bottom + more + 0.5)), picture_.height - 1);
+  std::vector<double> sum(static_cast<std::size_t>(image_.width));
+  const auto last = std::min(static_cast<int>(std::floor(bottom + more + 0.5)), image_.height - 1);
   for (int row = std::max(static_cast<int>(std::floor(top - more + 0.5)), 0); row <= last; ++row) {
     const double part = share(row, top, bottom, sigma_px);
-    for (int c = 0; c < picture_.width; ++c) sum[static_cast<std::size_t>(c)] += part * light(c, row);
+    for (int c = 0; c < image_.width; ++c) sum[static_cast<std::size_t>(c)] += part * light(c, row);
   }
   return LitRow(sigma_px > 0 ? blurred(sum, sigma_px) : sum);
 }
 
-double LitPicture::mean() const {
+double LitImage::mean() const {
   double sum = 0;
-  for (int row = 0; row < picture_.height; ++row) {
-    for (int c = 0; c < picture_.width; ++c) sum += light(c, row);
+  for (int row = 0; row < image_.height; ++row) {
+    for (int c = 0; c < image_.width; ++c) sum += light(c, row);
   }
-  return sum / static_cast<double>(std::max<std::size_t>(picture_.values.size(), 1));
+  return sum / static_cast<double>(std::max<std::size_t>(image_.values.size(), 1));
 }
 
 }  // namespace vam::sim

@@ -43,7 +43,8 @@ std::vector<SimBody> parse_bodies(const std::string& text) {
       good = good && set_key(body, kind == "cylinder", pair);
     }
     if (!good) {
-      throw Error{Fault::usage, "part '" + one + "': not like sphere:x=2,diameter=4 or cylinder:diameter=6,height=3"};
+      throw Error{Fault::usage,
+                  "part '" + one + "': expected a form like sphere:x=2,diameter=4 or cylinder:diameter=6,height=3"};
     }
     bodies.push_back(body);
   }

@@ -136,23 +136,23 @@ struct SimScene::State {
   [[nodiscard]] Image light(const SimMoment& moment) const;
 };
 
-// Rows of camera pixels that see the same rows of the picture glow alike.
+// Rows of camera pixels that see the same rows of the image glow alike.
 class GlowingRow {
  public:
-  GlowingRow(const SimScene::State& scene, const GreyImage* picture, double shift)
+  GlowingRow(const SimScene::State& scene, const GreyImage* image, double shift)
       : scene_(scene), shift_(shift), light_(static_cast<std::size_t>(scene.columns)) {
-    if (picture != nullptr) picture_.emplace(*picture, scene.bench.gamma);
+    if (image != nullptr) image_.emplace(*image, scene.bench.gamma);
   }
   // Between two heights, top first.
   const std::vector<double>& light(double top_mm, double bottom_mm) {
-    if (!picture_) return light_;
+    if (!image_) return light_;
     const auto& projector = scene_.bench.printer.projector;
     const double top = projector.axis_row - top_mm / projector.pixel_mm;
     const double bottom = projector.axis_row - bottom_mm / projector.pixel_mm;
-    const int twin = picture_->uniform(top, bottom, scene_.blurs_px.back());
+    const int twin = image_->uniform(top, bottom, scene_.blurs_px.back());
     if (twin < 0 || twin != twin_) {
       std::vector<LitRow> lit;
-      for (const double blur : scene_.blurs_px) lit.push_back(picture_->between(top, bottom, blur));
+      for (const double blur : scene_.blurs_px) lit.push_back(image_->between(top, bottom, blur));
       light_ = scene_.glow(lit, shift_);
     }
     twin_ = twin;
@@ -162,7 +162,7 @@ class GlowingRow {
  private:
   const SimScene::State& scene_;
   double shift_;
-  std::optional<LitPicture> picture_;
+  std::optional<LitImage> image_;
   std::vector<double> light_;
   int twin_ = -1;
 };
@@ -171,7 +171,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
   const auto& printer = bench.printer;
   Image image(columns, rows);
   if (bench.card) {
-    const double even = moment.picture == nullptr ? 0 : LitPicture(*moment.picture, bench.gamma).mean();
+    const double even = moment.image == nullptr ? 0 : LitImage(*moment.image, bench.gamma).mean();
     std::fill(image.values.begin(), image.values.end(), static_cast<float>(bench.glow * even));
     return image;
   }
@@ -184,7 +184,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
   // Heights in the vial look enlarged [OST22 eq S6].
   const double enlarged = 1 / (1 - printer.vial.radius_mm * (1 - printer.bath.index / printer.camera.index_resin) /
                                        printer.camera.distance_mm);
-  GlowingRow glowing(*this, moment.picture, bench.centre_px + aside_mm / printer.projector.pixel_mm);
+  GlowingRow glowing(*this, moment.image, bench.centre_px + aside_mm / printer.projector.pixel_mm);
   for (int r = 0; r < rows; ++r) {
     const double z_mm = (0.5 * (rows - 1) - r) * pixel_mm / enlarged;
     const double half_mm = 0.5 * pixel_mm / enlarged;
@@ -192,7 +192,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
                             std::tan(bench.tilt_deg * rad_per_deg) * (r - 0.5 * (rows - 1));
     const std::vector<double>& row_glow = glowing.light(z_mm + half_mm, z_mm - half_mm);
     for (int c = 0; c < columns; ++c) {
-      // The picture of a vial that stands moved_px to the right, between two computed columns.
+      // The image of a vial that stands moved_px to the right, between two computed columns.
       const double from = c - moved_px;
       const auto left = static_cast<int>(std::floor(from));
       const double part = from - left;

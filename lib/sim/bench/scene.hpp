@@ -1,4 +1,4 @@
-// What a camera beside the vial would see, for simulated cameras: the projector's picture as fluorescence in the resin,
+// What a camera beside the vial would see, for simulated cameras: the projector's image as fluorescence in the resin,
 // and the print, which scatters; or an even card in the vial's place. Geometry of its own, so that it can judge what is
 // made with lib/optics.
 #pragma once
@@ -20,12 +20,12 @@ struct SimBench {
   double axis_column = 0;     // of the rotation axis in the image, from the middle of the sensor, sensor pixels
   double tilt_deg = 0;        // lean of the axis in the image, its lower end towards higher columns
   double centre_px = 0;       // of the vial in the projector's columns, from printer.projector.axis_column
-  double wobble_mm = 0;       // the vial's axis goes round the table's axis, at this distance
+  double wobble_mm = 0;       // the vial's axis goes round the stage's axis, at this distance
   double wobble_deg = 0;      // and stands towards +x of the lab at this stage angle
   double beam_mm = 0;         // full width at half maximum of the blur where the projector is in focus, a Gaussian
   double focus_mm = 0;        // where that is, along the light from the axis
   double divergence_deg = 0;  // growth of the full width per distance from there
-  bool card = false;          // an even card stands in the vial's place: it shines by the picture's mean
+  bool card = false;          // an even card stands in the vial's place: it shines by the image's mean
   double glow = 0.6;          // of full scale in 20 ms, for full light all through the vial
   double gamma = 1;           // intensity = (grey / full)^gamma
   double vignetting = 0;      // part of the light that the corners of the image lack
@@ -38,10 +38,10 @@ struct SimBench {
 
 /// The state of the bench at a moment.
 struct SimMoment {
-  double angle_deg = 0;                // of the table
-  const GreyImage* picture = nullptr;  // that the projector shows; none: black
-  double lit_s = 0;                    // how long there was light so far
-  double share = 1;                    // of the exposure
+  double angle_deg = 0;              // of the stage
+  const GreyImage* image = nullptr;  // that the projector shows; none: black
+  double lit_s = 0;                  // how long there was light so far
+  double share = 1;                  // of the exposure
 };
 
 /// Renders frames of one size.

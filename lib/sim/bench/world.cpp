@@ -32,10 +32,10 @@ std::vector<Json> LogTail::fresh() {
 SimWorld::SimWorld(SimSources sources, double start_s)
     : sources_(std::move(sources)), start_s_(start_s), angles_(sources_.angles), shown_(sources_.shown) {}
 
-// What the camera sees of it; with a filter that lets no projector light through (no pictures), nothing.
-const GreyImage* SimWorld::picture(int frame) const {
-  if (frame < 0 || sources_.pictures.empty()) return nullptr;
-  return &sources_.pictures[std::min(static_cast<std::size_t>(frame), sources_.pictures.size() - 1)];
+// What the camera sees of it; with a filter that lets no projector light through (no images), nothing.
+const GreyImage* SimWorld::image(int frame) const {
+  if (frame < 0 || sources_.images.empty()) return nullptr;
+  return &sources_.images[std::min(static_cast<std::size_t>(frame), sources_.images.size() - 1)];
 }
 
 void SimWorld::read_logs() {
@@ -43,13 +43,13 @@ void SimWorld::read_logs() {
     const std::string event = line.value("event", "");
     const double t_s = line.value("t_monotonic_s", 0.0);
     if (event == "angle") {
-      table_.push_back({t_s, line.value("angle_deg", 0.0), line.value("speed_deg_s", 0.0)});
+      stage_.push_back({t_s, line.value("angle_deg", 0.0), line.value("speed_deg_s", 0.0)});
     } else if (event == "zeroed" || event == "standing") {
-      table_.push_back({t_s, line.value("angle_deg", table_.empty() ? 0.0 : table_.back().angle_deg), 0});
+      stage_.push_back({t_s, line.value("angle_deg", stage_.empty() ? 0.0 : stage_.back().angle_deg), 0});
     }
   }
   for (const Json& line : shown_.fresh()) {
-    if (line.value("event", "") == "pattern" && sources_.draw) sources_.pictures = sources_.draw(line);
+    if (line.value("event", "") == "pattern" && sources_.draw) sources_.images = sources_.draw(line);
     if (line.value("event", "") != "flip") continue;
     const double t_s = line.value("t_monotonic_s", 0.0);
     double lit_s = 0;
@@ -59,17 +59,17 @@ void SimWorld::read_logs() {
     }
     flips_.push_back({t_s, line.value("frame", -1), lit_s});
   }
-  while (table_.size() > 2 && table_[1].t_s < table_.back().t_s - kept_s) table_.pop_front();
+  while (stage_.size() > 2 && stage_[1].t_s < stage_.back().t_s - kept_s) stage_.pop_front();
   while (flips_.size() > 2 && flips_[1].t_s < flips_.back().t_s - kept_s) flips_.pop_front();
 }
 
 double SimWorld::angle_deg(double t_s) const {
   if (sources_.angles.empty()) return sources_.speed_deg_s * (t_s - start_s_);
   const auto after =
-      std::find_if(table_.begin(), table_.end(), [&](const TableSample& sample) { return sample.t_s > t_s; });
-  if (after == table_.begin()) return table_.empty() ? 0 : table_.front().angle_deg;
+      std::find_if(stage_.begin(), stage_.end(), [&](const TableSample& sample) { return sample.t_s > t_s; });
+  if (after == stage_.begin()) return stage_.empty() ? 0 : stage_.front().angle_deg;
   const TableSample& before = *(after - 1);
-  const double later_s = std::min(t_s - before.t_s, 0.1);  // longer than any silence of a table that moves
+  const double later_s = std::min(t_s - before.t_s, 0.1);  // longer than any silence of a stage that moves
   return before.angle_deg + before.speed_deg_s * later_s;
 }
 
@@ -77,7 +77,7 @@ SimMoment SimWorld::moment(double t_s) const {
   SimMoment moment;
   moment.angle_deg = angle_deg(t_s);
   if (sources_.shown.empty()) {
-    moment.picture = picture(0);
+    moment.image = image(0);
     moment.lit_s = std::max(0.0, t_s - start_s_);
     return moment;
   }
@@ -86,7 +86,7 @@ SimMoment SimWorld::moment(double t_s) const {
   const Shown& now = *(after - 1);
   moment.lit_s = now.lit_before_s;
   if (now.frame >= 0) moment.lit_s += t_s - now.t_s;
-  moment.picture = picture(now.frame);
+  moment.image = image(now.frame);
   return moment;
 }
 

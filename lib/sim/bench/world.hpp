@@ -26,10 +26,10 @@ class LogTail {
 };
 
 struct SimSources {
-  double speed_deg_s = 0;           // of the table when there is no log of its angles; 0 deg at the start
-  std::string angles;               // log of vam-sim-stage (or of sim: of vam-stage): the true angle
-  std::string shown;                // log of vam-project: which frame was on when; without it the first is always on
-  std::vector<GreyImage> pictures;  // that glow in the resin, by frame index; none: the print alone is seen
+  double speed_deg_s = 0;         // of the stage when there is no log of its angles; 0 deg at the start
+  std::string angles;             // log of vam-sim-stage (or of sim: of vam-stage): the true angle
+  std::string shown;              // log of vam-project: which frame was on when; without it the first is always on
+  std::vector<GreyImage> images;  // that glow in the resin, by frame index; none: the print alone is seen
   std::function<std::vector<GreyImage>(const Json& event)> draw;  // of the test pattern that `shown` says comes next
 };
 
@@ -39,7 +39,7 @@ class SimWorld {
   SimWorld(SimSources sources, double start_s);
   /// The moment t_s; times must not fall by more than a second from call to call.
   SimMoment at(double t_s);
-  /// What an exposure sees: cut where the picture changes, and so finely that the table turns by half a degree at most
+  /// What an exposure sees: cut where the image changes, and so finely that the stage turns by half a degree at most
   /// in a part (but into no more than eight).
   std::vector<SimMoment> during(double from_s, double to_s);
 
@@ -53,7 +53,7 @@ class SimWorld {
     double lit_before_s;  // light there had been until then
   };
   void read_logs();
-  [[nodiscard]] const GreyImage* picture(int frame) const;
+  [[nodiscard]] const GreyImage* image(int frame) const;
   [[nodiscard]] double angle_deg(double t_s) const;
   [[nodiscard]] SimMoment moment(double t_s) const;
 
@@ -61,7 +61,7 @@ class SimWorld {
   double start_s_;
   LogTail angles_;
   LogTail shown_;
-  std::deque<TableSample> table_;
+  std::deque<TableSample> stage_;
   std::deque<Shown> flips_;
 };
 

@@ -53,7 +53,7 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   sim.sources.speed_deg_s = address.number("speed_deg_s", 0, -1000, 1000);
   sim.sources.angles = address.word("angles", "");
   sim.sources.shown = address.word("shown", "");
-  sim.sources.pictures = room.pictures;
+  sim.sources.images = room.images;
   sim.fps = asked.fps.value_or(sim.fps);
   sim.exposure_us = asked.exposure_us.value_or(sim.exposure_us);
   sim.bits = address.integer("bits", 8, 16).value_or(sim.bits);
@@ -89,7 +89,7 @@ class SimCamera final : public device::Camera {
     world_.emplace(sim_.sources, start_s_);
   }
   void trigger() override {
-    if (!triggered_) throw Error{Fault::usage, "sim: waits for no trigger; ask for trigger software"};
+    if (!triggered_) throw Error{Fault::usage, "sim: not in trigger mode; use --trigger software"};
     trigger_s_ = clock_.now_s();
   }
 
@@ -99,16 +99,15 @@ class SimCamera final : public device::Camera {
       frame.number = next_++;
       frame.time_s = start_s_ + static_cast<double>(frame.number) / sim_.fps;
       if (triggered_) {
-        if (!trigger_s_) throw Error{Fault::busy, "sim: no frame, because it was not triggered"};
+        if (!trigger_s_) throw Error{Fault::busy, "sim: no frame, since no trigger was sent"};
         frame.time_s = *std::exchange(trigger_s_, std::nullopt) + 0.5e-6 * sim_.exposure_us;
       }
       if (in_step_) clock_.sleep_until(frame.time_s + 0.5e-6 * sim_.exposure_us);
       clock_.sleep_until(0);  // a signal ends this, too
-      if (frame.number == sim_.vanish)
-        throw Error{Fault::absent, "sim: the camera is gone; look at its cable and power"};
+      if (frame.number == sim_.vanish) throw Error{Fault::absent, "sim: the camera is gone; check cable and power"};
       if (frame.number == sim_.shrink) {
         const auto other = device::another_size(mode(), scene_.columns(), scene_.rows() / 2);
-        throw Error{Fault::protocol, "sim: sends pictures of " + *other + "; run it again"};
+        throw Error{Fault::protocol, "sim: sends images of " + *other + "; run it again"};
       }
       if (sim_.lose.contains(frame.number) && !triggered_) continue;
       const double middle_s = frame.time_s - sim_.lag_s;
@@ -155,7 +154,8 @@ std::set<long> parse_frames(const std::string& text) {
   for (const auto& word : split(text, ',')) {
     const auto value = parse_number(word);
     if (!value || *value < 0 || *value > 1e9 || *value != std::floor(*value)) {
-      throw Error{Fault::usage, "frames '" + text + "': '" + word + "' is no frame number; write them like 3,7"};
+      throw Error{Fault::usage,
+                  "frames '" + text + "': '" + word + "' is not a frame number; expected a list like 3,7"};
     }
     numbers.insert(static_cast<long>(*value));
   }
@@ -177,9 +177,10 @@ std::string fingerprint(const GreyImage& levels) {
 std::unique_ptr<device::Camera> open_sim_camera(const device::Address& address, const device::CameraSettings& settings,
                                                 const device::CameraBench& bench, device::Clock& clock) {
   address.allow(option_names());
-  if (!address.place.empty()) throw Error{Fault::usage, "device '" + address.text + "': sim: has no place"};
+  if (!address.place.empty()) throw Error{Fault::usage, "device '" + address.text + "': sim: takes no place"};
   if (settings.trigger != "free" && settings.trigger != "software") {
-    throw Error{Fault::usage, "device '" + address.text + "': no trigger " + settings.trigger + "; it has software"};
+    throw Error{Fault::usage,
+                "device '" + address.text + "': no trigger " + settings.trigger + "; available: software"};
   }
   SimCameraSettings sim = settings_of(address, settings, bench);
   const int binning = settings.binning.value_or(1);

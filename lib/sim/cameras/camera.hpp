@@ -22,13 +22,13 @@ struct SimCameraSettings {
   std::set<long> lose;  // numbers of frames that never arrive
   std::set<long> cut;   // and of those whose lower half does not
   long vanish = -1;     // the camera is unplugged before this frame
-  long shrink = -1;     // from this frame on, one after the first, pictures are half as high
+  long shrink = -1;     // from this frame on, one after the first, images are half as high
 };
 
 /// "3,7" to numbers of frames. Throws Fault::usage.
 [[nodiscard]] std::set<long> parse_frames(const std::string& text);
 
-/// 16 hexadecimal digits that tell pictures apart (FNV-1a of the levels, low byte first), for logs and manifests.
+/// 16 hexadecimal digits that tell images apart (FNV-1a of the levels, low byte first), for logs and manifests.
 [[nodiscard]] std::string fingerprint(const GreyImage& levels);
 
 }  // namespace vam::sim

@@ -71,20 +71,20 @@ class DescriptionFile {
 
 // Aravis shares its port with whoever has it; then each gets some of the packets.
 void require_free(const std::string& address) {
-  const std::string subject = address + ": no camera can be served there, ";
+  const std::string subject = address + ": cannot serve a camera there: ";
   sockaddr_in place{};
   place.sin_family = AF_INET;
   place.sin_port = htons(3956);
   if (inet_pton(AF_INET, address.c_str(), &place.sin_addr) != 1) {
-    throw Error{Fault::usage, subject + "it is no IPv4 address"};
+    throw Error{Fault::usage, subject + "not an IPv4 address"};
   }
   const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const bool free = bind(probe, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0;
   const int reason = errno;
   close(probe);
   if (free) return;
-  if (reason == EADDRINUSE) throw Error{Fault::busy, subject + "UDP port 3956 is taken; end the camera that is there"};
-  throw Error{Fault::usage, subject + std::strerror(reason) + "; name an address of this machine"};
+  if (reason == EADDRINUSE) throw Error{Fault::busy, subject + "UDP port 3956 is in use; end the other camera"};
+  throw Error{Fault::usage, subject + std::strerror(reason) + "; use an address of this machine"};
 }
 
 }  // namespace
@@ -174,7 +174,7 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
   state_->server = arv_gv_fake_camera_new_full(address.c_str(), serial.c_str(), description.path());
   if (arv_gv_fake_camera_is_running(state_->server) == 0) {
     g_object_unref(state_->server);
-    throw Error{Fault::busy, address + ": no camera can be served there; is it an address of a network interface?"};
+    throw Error{Fault::busy, address + ": cannot serve a camera there; use the address of a network interface"};
   }
   ArvFakeCamera* camera = state_->registers();
   const auto set = [&](unsigned place, double value) { state_->set(place, static_cast<unsigned>(value)); };

@@ -84,8 +84,8 @@ class SimDlp final : public device::UsbLink {
   }
   [[nodiscard]] int value(int command) const { return static_cast<unsigned char>(registers_.at(command).at(0)); }
 
-  // A DLPC900 has a picture when it looks at its port and the receiver there is on.
-  [[nodiscard]] bool picture() const {
+  // A DLPC900 has an image when it looks at its port and the receiver there is on.
+  [[nodiscard]] bool image() const {
     return settings_.dlpc900 && !settings_.no_picture && (value(0x1A00) & 7) == 0 && value(0x1A01) != 0;
   }
   // Grey levels 0..255 are told apart by equal steps of light: by its own account, not by that of its user.
@@ -100,7 +100,7 @@ class SimDlp final : public device::UsbLink {
     if (slow && command == 0x0200) return std::string(1, '\1');
     if (slow && command == 0x1A1B && settings_.dlpc900) return std::string(1, '\0');
     if (command == 0x1A0C && settings_.dlpc900) {
-      return std::string(1, static_cast<char>((value(0x1A24) == 2 ? 0x02 : 0) | (picture() && !slow ? 0x18 : 0)));
+      return std::string(1, static_cast<char>((value(0x1A24) == 2 ? 0x02 : 0) | (image() && !slow ? 0x18 : 0)));
     }
     return registers_[command];
   }
@@ -109,7 +109,7 @@ class SimDlp final : public device::UsbLink {
   bool write(int command, const std::string& data) {
     const int first = data.empty() ? 0 : static_cast<unsigned char>(data[0]);
     if (settings_.stuck_grey && (command == 0x1A0E || (command == 0x1A1B && first == 2))) return true;
-    if (command == 0x1A1B && first == 2 && (!picture() || value(0x1A1B) != 0)) return false;
+    if (command == 0x1A1B && first == 2 && (!image() || value(0x1A1B) != 0)) return false;
     if (command == 0x1A24 && first == 2 && value(0x1A1B) != 2) return false;
     if (data.size() != registers_[command].size()) return false;
     const std::string before = std::exchange(registers_[command], data);

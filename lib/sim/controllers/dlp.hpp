@@ -11,7 +11,7 @@ namespace vam::sim {
 
 struct SimDlpSettings {
   bool dlpc900 = false;
-  int slow_reads = 0;  // so often it says that it still sleeps, has no picture yet, is in its old mode
+  int slow_reads = 0;  // so often it says that it still sleeps, has no image yet, is in its old mode
   int current = 40;
   bool stuck_grey = false;  // keeps its gamma on (DLPC350), its video mode (DLPC900), whatever it is told
   bool no_picture = false;  // at its input

@@ -226,7 +226,7 @@ SimFault parse_sim_fault(const std::string& text) {
   }
   if (!good || fault.command.empty()) {
     throw Error{Fault::usage,
-                "fault '" + text + "': not KIND@COMMAND[:N], e.g. truncated@POS?:3; kinds are " + join(kinds, ", ")};
+                "fault '" + text + "': expected KIND@COMMAND[:N], e.g. truncated@POS?:3; kinds: " + join(kinds, ", ")};
   }
   return fault;
 }

@@ -14,8 +14,8 @@ namespace vam::sim {
 /// One thing that goes wrong: at the n-th time (from 1) that the command (POS?, MOV, #7, ...) arrives.
 /// garbage: random bytes instead of the answer · truncated: half the answer and no LF · late: 3 s later · silent: never
 /// wrong-sender: as if controller 7 had answered · error: the command is refused · unplug: the cable is pulled, motion
-/// goes on · power-loss: the controller dies and the table coasts to a stop · block: the
-/// table is held fast while the controller talks on.
+/// goes on · power-loss: the controller dies and the stage coasts to a stop · block: the
+/// stage is held fast while the controller talks on.
 struct SimFault {
   std::string kind;
   std::string command;
@@ -30,12 +30,12 @@ struct SimGcsSettings {
   double max_speed_deg_s = 90;  // M-060.PD
   double min_deg = -36000;
   double max_deg = 36000;
-  double home_deg = 17;       // where the table stands at power-on, seen from its reference
+  double home_deg = 17;       // where the stage stands at power-on, seen from its reference
   double latency_s = 0.0005;  // from question to answer, half of it before the controller looks at its axis
   double jitter_s = 0;        // a random part more, of either half
   std::uint64_t seed = 1;
   int address = 1;
-  double log_period_s = 0.01;  // of the true angle, while the table moves
+  double log_period_s = 0.01;  // of the true angle, while the stage moves
   std::vector<SimFault> faults;
 };
 

@@ -26,7 +26,7 @@ void SimMotor::set_angle(double angle_deg) {
   target_deg_ = angle_deg;
 }
 
-// The fastest speed from which the table can still stop at the target: v^2 = 2 a s.
+// The fastest speed from which the stage can still stop at the target: v^2 = 2 a s.
 double SimMotor::wanted_speed_deg_s() const {
   if (mode_ != Mode::travelling) return 0;
   const double left_deg = target_deg_ - angle_deg_;

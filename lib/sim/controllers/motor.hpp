@@ -1,4 +1,4 @@
-// The mechanics of a simulated rotation stage: a table with inertia behind a speed-limited drive.
+// The mechanics of a simulated rotation stage: a stage with inertia behind a speed-limited drive.
 #pragma once
 
 namespace vam::sim {
@@ -22,12 +22,12 @@ class SimMotor {
   void halt() { mode_ = Mode::halting; }   // at the normal acceleration
   void brake() { mode_ = Mode::braking; }  // as hard as it can
   void cut_power() { mode_ = Mode::coasting; }
-  /// Declares the present angle of a standing table.
+  /// Declares the present angle of a standing stage.
   void set_angle(double angle_deg);
 
   [[nodiscard]] double angle_deg() const { return angle_deg_; }
   [[nodiscard]] double target_deg() const { return target_deg_; }
-  /// Of the table, what an observer would measure.
+  /// Of the stage, what an observer would measure.
   [[nodiscard]] double speed_deg_s() const;
   [[nodiscard]] bool moving() const { return mode_ != Mode::standing; }
 

@@ -36,7 +36,7 @@ Pty::Pty() {
   std::array<char, 128> name{};
   if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
       ptsname_r(master_, name.data(), name.size()) != 0) {
-    throw Error{Fault::absent, std::string("no pseudo-terminal to be had (") + std::strerror(errno) + ")"};
+    throw Error{Fault::absent, std::string("no pseudo-terminal available (") + std::strerror(errno) + ")"};
   }
   path_ = name.data();
   slave_ = open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);

@@ -52,11 +52,11 @@ TEST_CASE("The light engine wakes dark, shines when told, with linear grey, and 
   }
 }
 
-TEST_CASE("A DLPC900 without a picture at its input is waited for, for 15 s; no light comes") {
+TEST_CASE("A DLPC900 without an image at its input is waited for, for 15 s; no light comes") {
   LightLab lab({.dlpc900 = true, .no_picture = true});
   const double start_s = lab.clock.now_s();
   const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
-  CHECK(message.find("finds no picture at its input within 15 s") != std::string::npos);
+  CHECK(message.find("finds no video signal at its input within 15 s") != std::string::npos);
   CHECK(lab.clock.now_s() - start_s == doctest::Approx(15).epsilon(0.01));
   CHECK(lab.shining() == 0);
 }
@@ -130,7 +130,7 @@ TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bi
                                         "c00a0200001a",    //   then its port bits 0
                                         "c00b0200011a",    // video receiver: off,
                                         "400c0300011a01",  //   then HDMI
-                                        "c00d02000c1a",    // main status: a picture
+                                        "c00d02000c1a",    // main status: an image
                                         "400e03001b1a02",
                                         "c00f02001b1a",  // video pattern mode
                                         // Pattern, 5500 us, 8 bits and blue (the first: with the frame), dark 0 us,
@@ -151,7 +151,7 @@ TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bi
                                         "401e0300000201"};  // power 1: asleep
   CHECK(heard_by({.dlpc900 = true}) == wanted);
   // A board without a receiver of that kind refuses to tell of it.
-  CHECK(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy).find("no picture") !=
+  CHECK(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy).find("no video signal") !=
         std::string::npos);
 }
 
@@ -180,7 +180,7 @@ TEST_CASE("The current is capped, as given and as found") {
   sim.current = 200;
   LightLab found(sim);
   CHECK(fault_of([&] { found.light->prepare(); }) == Fault::protocol);
-  CHECK(message_of([&] { found.light->prepare(); }).find("above the cap of 100") != std::string::npos);
+  CHECK(message_of([&] { found.light->prepare(); }).find("above the limit of 100") != std::string::npos);
   LightSettings odd;
   odd.leds = std::string("bx");
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);

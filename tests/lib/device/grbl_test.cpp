@@ -68,7 +68,7 @@ TEST_CASE("Something else than GRBL is not taken for it") {
         Fault::busy);
 }
 
-TEST_CASE("Each answer of a GRBL board wrong in turn: the right fault, in time, and the table stands") {
+TEST_CASE("Each answer of a GRBL board wrong in turn: the right fault, in time, and the stage stands") {
   struct Case {
     const char* kind;
     Fault fault;

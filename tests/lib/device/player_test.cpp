@@ -260,7 +260,7 @@ TEST_CASE("A light engine that goes wrong in a print: the right fault, the scree
         const auto angles = elapsed_angle(90, clock);
         CHECK(fault_of([&] { play(display, light.get(), *angles, clock, plan, [](const FlipRecord&) {}); }) == fault);
         CHECK(display.shown == -1);
-        CHECK(display.lit == (after > 1));  // never a picture unless the light was known to be right
+        CHECK(display.lit == (after > 1));  // never an image unless the light was known to be right
         if (kind != std::string("unplug") && kind != std::string("error")) CHECK(leds.back()["bits"] == 0);
       }
     }

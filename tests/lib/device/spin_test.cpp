@@ -15,7 +15,7 @@ using namespace vam::sim;
 
 namespace {
 
-// The table's angle at a time, by the simulator's own log.
+// The stage's angle at a time, by the simulator's own log.
 double true_angle_deg(const std::vector<Json>& log, double t_s) {
   const Json* before = nullptr;
   for (const auto& line : log) {
@@ -33,7 +33,7 @@ double true_angle_deg(const std::vector<Json>& log, double t_s) {
 
 }  // namespace
 
-TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is the table's own") {
+TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is the stage's own") {
   for (const int direction : {1, -1}) {
     CAPTURE(direction);
     VirtualStage lab;
@@ -47,7 +47,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
     spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { samples.push_back(sample); });
     CHECK_FALSE(lab.truly_moves());
     REQUIRE(samples.size() > 100);
-    // It began where the table stood: 123 deg, or -123 seen the other way, and whole turns before zero.
+    // It began where the stage stood: 123 deg, or -123 seen the other way, and whole turns before zero.
     CHECK(std::abs(std::remainder(samples.front().angle_deg - direction * 123, 360.0)) < 0.1);
     CHECK(samples.front().angle_deg < -360);
     CHECK(samples.back().angle_deg >= 720);
@@ -67,7 +67,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
 }
 
 // [devices promise 2]
-TEST_CASE("However seldom a sample is wanted, a table that moves is asked every 200 ms") {
+TEST_CASE("However seldom a sample is wanted, a stage that moves is asked every 200 ms") {
   VirtualStage lab;
   SpinPlan plan;
   plan.speed_deg_s = 60;
@@ -120,7 +120,7 @@ TEST_CASE("More turns than the travel allows are refused before anything moves")
   CHECK(lab.commands("MOV") == 0);
 }
 
-TEST_CASE("A table 1 % off its speed may print, one 3 % off may not") {
+TEST_CASE("A stage 1 % off its speed may print, one 3 % off may not") {
   for (const double error : {-0.03, -0.01, 0.01, 0.03}) {
     CAPTURE(error);
     SimGcsSettings sim;
@@ -142,7 +142,7 @@ TEST_CASE("A table 1 % off its speed may print, one 3 % off may not") {
   }
 }
 
-TEST_CASE("A table that is held fast is noticed within a few degrees") {
+TEST_CASE("A stage that is held fast is noticed within a few degrees") {
   SimGcsSettings sim;
   sim.faults.push_back({"block", "POS?", 900});
   VirtualStage lab(sim);

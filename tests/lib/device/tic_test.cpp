@@ -69,7 +69,7 @@ TEST_CASE("The Tic's errors are named and stop the start") {
   CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
 }
 
-TEST_CASE("Each answer of a Tic wrong in turn: the right fault, in time, and the table stands") {
+TEST_CASE("Each answer of a Tic wrong in turn: the right fault, in time, and the stage stands") {
   const std::vector<std::pair<const char*, Fault>> cases{{"silent", Fault::busy},
                                                          {"error", Fault::protocol},
                                                          {"garbage", Fault::protocol},

@@ -8,7 +8,7 @@
 using vam::sim::MotorSettings;
 using vam::sim::SimMotor;
 
-TEST_CASE("The table keeps to the trapezium of speed") {
+TEST_CASE("The stage keeps to the trapezium of speed") {
   MotorSettings settings;
   settings.acceleration_deg_s2 = 50;
   SimMotor motor(settings, 0);

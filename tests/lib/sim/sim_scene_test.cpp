@@ -67,7 +67,7 @@ TEST_CASE("A ball on the axis looks as wide as refraction makes it, and grows wi
   CHECK(total(scene.render({0, nullptr, 0}, 20000, 0)) == 0);
 }
 
-TEST_CASE("What turns with the table is seen where x cos(theta + azimuth) + y sin(theta + azimuth) says") {
+TEST_CASE("What turns with the stage is seen where x cos(theta + azimuth) + y sin(theta + azimuth) says") {
   SimBench bench = small_bench();
   bench.bodies = parse_bodies("sphere:x=3,diameter=1");
   bench.lit_s = 1;
@@ -93,10 +93,10 @@ TEST_CASE("A lit column glows while it crosses resin: up to R_e = R / sqrt(1 - (
   bench.centre_px = 5;
   const SimScene scene(bench, 1, 16);
   const auto glow = [&](double from_axis_px) {
-    GreyImage picture(projector.columns, projector.rows, 8);
+    GreyImage image(projector.columns, projector.rows, 8);
     const auto column = static_cast<int>(std::floor(projector.axis_column + from_axis_px));
-    for (int row = 0; row < picture.height; ++row) picture(column, row) = 255;
-    return total(scene.render({0, &picture, 0}, 20000, 0));
+    for (int row = 0; row < image.height; ++row) image(column, row) = 255;
+    return total(scene.render({0, &image, 0}, 20000, 0));
   };
   CHECK(glow(5 + edge_px + 3) == 0);
   CHECK(glow(5 - edge_px - 3) == 0);
@@ -127,7 +127,7 @@ TEST_CASE("Noise is seeded by frame and has its spread; vignetting darkens the c
   CHECK(std::sqrt(squares / n - sum * sum / n / n) == doctest::Approx(0.01).epsilon(0.03));  // 5 of them
 }
 
-TEST_CASE("The world follows the logs as they grow: true angle, shown picture, seconds of light") {
+TEST_CASE("The world follows the logs as they grow: true angle, shown image, seconds of light") {
   const std::string folder = std::filesystem::temp_directory_path() / ("vam-world-" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   const std::string angles = folder + "/angles";
@@ -135,10 +135,10 @@ TEST_CASE("The world follows the logs as they grow: true angle, shown picture, s
   SimSources sources;
   sources.angles = angles;
   sources.shown = shown;
-  sources.pictures.resize(2, GreyImage(2, 2, 8));
+  sources.images.resize(2, GreyImage(2, 2, 8));
   SimWorld world(sources, 100);
   CHECK(world.at(100).angle_deg == 0);
-  CHECK(world.at(100).picture == nullptr);
+  CHECK(world.at(100).image == nullptr);
   std::ofstream table(angles);
   std::ofstream flips(shown);
   table << R"({"t_monotonic_s":100.0,"event":"angle","angle_deg":10,"speed_deg_s":20})"
@@ -158,15 +158,15 @@ TEST_CASE("The world follows the logs as they grow: true angle, shown picture, s
   CHECK(world.at(100.15).angle_deg == doctest::Approx(13));
   CHECK(world.at(105).angle_deg == doctest::Approx(14));
   CHECK(world.at(101).lit_s == doctest::Approx(1));
-  CHECK(world.at(101).picture != nullptr);
+  CHECK(world.at(101).image != nullptr);
   CHECK(world.at(102).lit_s == doctest::Approx(1.5));
-  CHECK(world.at(102).picture == nullptr);
-  // An exposure across the black flip at 101.5, while the table stands.
+  CHECK(world.at(102).image == nullptr);
+  // An exposure across the black flip at 101.5, while the stage stands.
   const auto exposure = world.during(101.4, 101.7);
   REQUIRE(exposure.size() == 2);
-  CHECK(exposure[0].picture != nullptr);
+  CHECK(exposure[0].image != nullptr);
   CHECK(exposure[0].share == doctest::Approx(1.0 / 3));
-  CHECK(exposure[1].picture == nullptr);
+  CHECK(exposure[1].image == nullptr);
   // And one while it turns by 2 degrees: four parts, their middles half a degree apart.
   const auto turning = world.during(100, 100.1);
   REQUIRE(turning.size() == 4);
@@ -186,16 +186,16 @@ TEST_CASE("The world shows the test pattern that the projector's log names") {
         << R"({"t_monotonic_s":100.0,"event":"flip","frame":0})"
         << "\n"
         << std::flush;
-  REQUIRE(world.at(100.5).picture != nullptr);
-  CHECK(world.at(100.5).picture->width == 7);
+  REQUIRE(world.at(100.5).image != nullptr);
+  CHECK(world.at(100.5).image->width == 7);
   flips << R"({"t_monotonic_s":101.0,"event":"pattern","name":"row","width_px":9})"
         << "\n"
         << std::flush;
-  CHECK(world.at(101.5).picture->width == 9);
+  CHECK(world.at(101.5).image->width == 9);
   std::filesystem::remove(shown);
 }
 
-TEST_CASE("An exposure is the sum of its parts; a card shines by the picture's mean and has the lens' shading") {
+TEST_CASE("An exposure is the sum of its parts; a card shines by the image's mean and has the lens' shading") {
   SimBench bench = small_bench();
   bench.bodies.clear();
   bench.card = true;

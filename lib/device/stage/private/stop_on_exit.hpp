@@ -1,4 +1,4 @@
-// Stops the table on the way out of a motion that fails.
+// Stops the stage on the way out of a motion that fails.
 #pragma once
 
 #include "device/stage/stage.hpp"

@@ -1,4 +1,4 @@
-// The projector's chief rays in the resin of a simulated vial, and how a picture of it lights them.
+// The projector's chief rays in the resin of a simulated vial, and how an image of it lights them.
 #pragma once
 
 #include <vector>
@@ -43,10 +43,10 @@ class LitRow {
   std::vector<double> sum_;
 };
 
-/// A picture as light: (grey / full)^gamma, blurred to different widths.
-class LitPicture {
+/// An image as light: (grey / full)^gamma, blurred to different widths.
+class LitImage {
  public:
-  LitPicture(const GreyImage& picture, double gamma);
+  LitImage(const GreyImage& image, double gamma);
   /// The light between two fractional rows, blurred by a Gaussian of that standard deviation (pixels) both ways.
   [[nodiscard]] LitRow between(double top, double bottom, double sigma_px) const;
   /// Are all rows that light a stretch of that height, and that blur, the same? Then a number that tells which, the
@@ -56,7 +56,7 @@ class LitPicture {
 
  private:
   [[nodiscard]] double light(int column, int row) const;
-  const GreyImage& picture_;
+  const GreyImage& image_;
   double gamma_;
   std::vector<int> twin_;  // of each row: the first of the equal rows that end with it
 };

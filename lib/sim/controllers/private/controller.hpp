@@ -18,7 +18,7 @@ class SimController : public SimDevice {
   [[nodiscard]] bool unplugged() const override { return unplugged_; }
 
  protected:
-  /// The table has come to rest.
+  /// The stage has come to rest.
   virtual void on_standing() {}
   void note(const std::string& event, const Json& facts);
   /// A command has arrived: lets the first half of the latency pass, logs it, and returns the fault that it has coming

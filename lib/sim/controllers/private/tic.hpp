@@ -1,4 +1,4 @@
-// A simulated Pololu Tic with a table on its motor.
+// A simulated Pololu Tic with a stage on its motor.
 #pragma once
 
 #include <memory>
