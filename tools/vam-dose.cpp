@@ -1,4 +1,4 @@
-// vam-dose: the dose that sinograms leave in the resin.
+// vam-dose: simulates the dose of a print.
 #include "base/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"

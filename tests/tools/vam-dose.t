@@ -3,15 +3,15 @@
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 
 ok "a part" vam-slice --shape disc-grid:height=0.4 --voxel 0.1 -o part.vdb
-ok "its projections" vam-sinogram part.vdb --filter ram-lak --negative clip -o virtual.exr
-ok "for the projector" vam-resample virtual.exr -o frames.exr
-quiet "the dose" vam-dose frames.exr --like part.vdb -o dose.vdb --report report.json
-is "by chief rays" "$(json report.json model)" "chief rays"
+ok "projections of the part" vam-sinogram part.vdb --filter ram-lak --negative clip -o virtual.exr
+ok "resampling to the projector" vam-resample virtual.exr -o frames.exr
+quiet "dose of projector sinograms" vam-dose frames.exr --like part.vdb -o dose.vdb --report report.json
+is "its model is chief rays" "$(json report.json model)" "chief rays"
 quiet "the parallel dose" vam-dose virtual.exr --like part.vdb -o parallel.vdb --report parallel.json
-is "by back-projection" "$(json parallel.json model)" parallel
+is "its model is back-projection" "$(json parallel.json model)" parallel
 a=$(json report.json part_dose_per_turn_mean_relative); b=$(json parallel.json part_dose_per_turn_mean_relative)
-holds "the corrected print takes the parallel dose" "($a / $b - 1)^2 < 0.02^2"
-ok "it prints" vam-score dose.vdb --target part.vdb --require 'iou>=0.95'
+holds "the corrected print receives the parallel dose" "($a / $b - 1)^2 < 0.02^2"
+ok "the simulated print matches the part" vam-score dose.vdb --target part.vdb --require 'iou>=0.95'
 vam-resample virtual.exr --set projector.telecentric=true | vam-dose --like part.vdb -o wrong.vdb
 fails 1 iou vam-score wrong.vdb --target part.vdb --require 'iou>=0.95'
 
@@ -21,73 +21,73 @@ ok "stdin to stdout" vam-score stdin.vdb --target part.vdb
 # The identity of an archive depends on its history, so the command must be the same: one core stands for one thread.
 taskset -c 0 vam-dose --like part.vdb frames.exr >one.vdb
 vam-dose --like part.vdb frames.exr >two.vdb
-ok "which is a volume" vam-score one.vdb --target part.vdb
+ok "the dose from a pipe is a volume" vam-score one.vdb --target part.vdb
 same "1 and 2 threads give identical bytes" one.vdb two.vdb
 
-# Misalignment, and its cure by the same options
-holds "a column offset spoils the dose" "$(vam-resample virtual.exr --column-offset 12 | vam-dose --like part.vdb | vam-score --target part.vdb | awk '/^iou/ { print $2 }') < 0.9"
+# Misalignment, and its compensation by the same options
+holds "a column offset degrades the dose" "$(vam-resample virtual.exr --column-offset 12 | vam-dose --like part.vdb | vam-score --target part.vdb | awk '/^iou/ { print $2 }') < 0.9"
 vam-resample virtual.exr --column-offset 12 --angle-offset 10 --reverse >moved.exr
 vam-dose moved.exr --column-offset 12 --angle-offset 10 --reverse --like part.vdb -o moved.vdb
-ok "which the same offset cures" vam-score moved.vdb --target part.vdb --require 'iou>=0.95'
+ok "the same offset compensates it" vam-score moved.vdb --target part.vdb --require 'iou>=0.95'
 
-# Absolute: even light of 3.8 mW/cm2 in a telecentric bath of the resin's index, 36 s a turn: on the axis
+# Absolute: uniform intensity of 3.8 mW/cm2 in a telecentric bath of the resin's index, 36 s a turn: on the axis
 # mu I 36 s e^{-mu R} = 0.5/cm * 3.8 * 36 * e^{-0.635} = 36.25 mJ/cm3, without the loss at the window.
 $exr make flat.exr space=projector width=1024 height=8 pixel=0.065 row=0.065 value=0.5 count=1
 flat="--set projector.telecentric=true --set bath.index=1.53 --set resin.absorption_per_mm=0.05 --set resin.critical_dose_mj_cm3=100"
 ok "absolute dose" vam-dose flat.exr $flat --size 0.065 -o flat.vdb --report flat.json
 window=$(vam-resample --explain --set projector.telecentric=true --set bath.index=1.53 | awk -F, 'NR == 500 { print $4 }')
-holds "on the axis" "($(json flat.json dose_per_turn_max_mj_cm3) / (36.2488 * $window) - 1)^2 < 1e-6"
+holds "closed form on the axis" "($(json flat.json dose_per_turn_max_mj_cm3) / (36.2488 * $window) - 1)^2 < 1e-6"
 is "turns" "$(json flat.json turns_to_critical_max)" 3.0
 is "seconds" "$(json flat.json seconds_to_critical_max)" 108.0
-ok "half the light at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
+ok "half the intensity at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
 holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
 
 # An exposure: whole turns, and the critical dose in the middle of the process window
 resin="--set resin.absorption_per_mm=0.01 --set resin.critical_dose_mj_cm3=100"
-ok "a turn in full light" vam-dose frames.exr --like part.vdb $resin -o turn.vdb --report turn.json
-ok "its score knows the exposure" vam-score turn.vdb --target part.vdb $resin --sinogram frames.exr --report turn-score.json
+ok "a turn at full intensity" vam-dose frames.exr --like part.vdb $resin -o turn.vdb --report turn.json
+ok "vam-score reports the exposure" vam-score turn.vdb --target part.vdb $resin --sinogram frames.exr --report turn-score.json
 quiet "a planned exposure" vam-dose frames.exr --like part.vdb $resin --exposure-plan -o planned.vdb --report plan.json
-ok "its score" vam-score planned.vdb --target part.vdb $resin --absolute --report planned.json
+ok "the score of the planned exposure" vam-score planned.vdb --target part.vdb $resin --absolute --report planned.json
 holds "the critical dose is in the middle of the window" \
   "(($(json planned.json min_part) + $(json planned.json max_void)) / 200 - 1)^2 < 1e-8 && $(json planned.json pw) > 0"
-holds "all cures, and nothing else" "$(json planned.json cured_wrong) == 0"
+holds "part cures, void does not" "$(json planned.json cured_wrong) == 0"
 is "whole turns, the same from either dose" "$(json turn-score.json turns) $(json planned.json turns)" "$(json plan.json turns).0 $(json plan.json turns).0"
-holds "no less would do" "$(json plan.json multiplier) <= 1 && $(json plan.json multiplier) * $(json plan.json turns) > $(json plan.json turns) - 1"
-holds "their time" "$(json plan.json seconds) == 36 * $(json plan.json turns)"
+holds "fewer turns do not suffice" "$(json plan.json multiplier) <= 1 && $(json plan.json multiplier) * $(json plan.json turns) > $(json plan.json turns) - 1"
+holds "duration of the print" "$(json plan.json seconds) == 36 * $(json plan.json turns)"
 holds "the brightest pixel" "($(json plan.json peak_intensity_mw_cm2) / (3.8 * $(json plan.json multiplier)) - 1)^2 < 1e-12"
 holds "light efficiency, from either tool" "($(json plan.json light_efficiency) / $(json turn-score.json efficiency) - 1)^2 < 1e-8"
-fails 64 'name its volume with --like' vam-dose frames.exr $resin --exposure-plan -o x.vdb
-fails 64 'needs resin.critical_dose_mj_cm3' vam-dose frames.exr --like part.vdb --exposure-plan -o x.vdb
+fails 64 'requires --like' vam-dose frames.exr $resin --exposure-plan -o x.vdb
+fails 64 'requires resin.critical_dose_mj_cm3' vam-dose frames.exr --like part.vdb --exposure-plan -o x.vdb
 fails 65 "has no grid 'target'" vam-dose frames.exr --like turn.vdb $resin --exposure-plan -o x.vdb
 
 # Blur
 ok "point spread and diffusion" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --set resin.diffusion_mm2_s=0.0005 --report blur.json -o blur.vdb
 holds "sqrt(0.3^2 + 2 * 0.0005 * 36)" "($(json blur.json blur_sigma_mm) - 0.3549648)^2 < 1e-12"
-holds "smears the dose" "$(json blur.json part_dose_per_turn_min_relative) < $(json report.json part_dose_per_turn_min_relative)"
-ok "none on demand" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --no-blur --report sharp.json -o sharp.vdb
-is "is none" "$(json sharp.json part_dose_per_turn_min_relative)" "$(json report.json part_dose_per_turn_min_relative)"
+holds "the blur lowers the least part dose" "$(json blur.json part_dose_per_turn_min_relative) < $(json report.json part_dose_per_turn_min_relative)"
+ok "--no-blur" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --no-blur --report sharp.json -o sharp.vdb
+is "neglects the blur" "$(json sharp.json part_dose_per_turn_min_relative)" "$(json report.json part_dose_per_turn_min_relative)"
 
-# Negative light
+# Negative intensities
 vam-sinogram part.vdb --filter ram-lak | vam-resample --keep-negative >negative.exr
-ok "negative light" vam-dose negative.exr --like part.vdb -o x.vdb; rm x.vdb
-is "is said to be taken as 0" "$(grep -c 'taken as 0' .log/err)" 1
+ok "negative intensities" vam-dose negative.exr --like part.vdb -o x.vdb; rm x.vdb
+is "negative intensities set to 0 are reported" "$(grep -c 'set to 0' .log/err)" 1
 
-# Around an insert (overprinting): as many voxels as 128 cubed, then coarsely by way of parallel light
+# Around an insert (overprinting): as many voxels as 128 cubed, then coarsely with a parallel beam
 vam-slice --shape handle --insert-shape screwdriver --voxel 0.106 -o fine.vdb
 vam-optimize --angles 180 fine.vdb -o fine.exr
 quiet "a handle around a screwdriver" vam-dose fine.exr --like fine.vdb --report fine.json -o fine-dose.vdb
-ok "is scored" vam-score fine-dose.vdb --target fine.vdb --report fine-score.json
-holds "98 % of its voxels are right" "1 - $(json fine-score.json ver) >= 0.98 && $(json fine-score.json iou) >= 0.995"
-is "none is in the dark" "$(json fine.json dark_part_voxels)" 0
+ok "its score" vam-score fine-dose.vdb --target fine.vdb --report fine-score.json
+holds "98 % of its voxels are correct" "1 - $(json fine-score.json ver) >= 0.98 && $(json fine-score.json iou) >= 0.995"
+is "no part voxel is in shadow" "$(json fine.json dark_part_voxels)" 0
 holds "only an insert has a shadow" "$(grep -c dark_part_voxels report.json) == 0"
 rm fine*
 vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb
 vam-optimize --geometry parallel --angles 180 handle.vdb -o around.exr
 vam-resample around.exr -o resampled.exr
-for light in around resampled; do
-  vam-dose $light.exr --like handle.vdb -o around.vdb
-  vam-score around.vdb --target handle.vdb --report $light.json >table
-  holds "parallel light prints it too ($light)" "1 - $(json $light.json ver) >= 0.98 && $(json $light.json iou) >= 0.99"
+for stack in around resampled; do
+  vam-dose $stack.exr --like handle.vdb -o around.vdb
+  vam-score around.vdb --target handle.vdb --report $stack.json >table
+  holds "a parallel beam prints it, too ($stack)" "1 - $(json $stack.json ver) >= 0.98 && $(json $stack.json iou) >= 0.99"
 done
 vam-dose resampled.exr --like handle.vdb --set resin.psf_mm=0.4 -o blurred.vdb
 vam-view blurred.vdb --export blurred.nrrd
@@ -101,14 +101,14 @@ pairs = list(zip(voxels("blurred.nrrd"), voxels("insert.nrrd"), strict=True))
 inside = [dose for dose, insert in pairs if insert >= 0.5]
 print(len(inside) > 1000, max(inside), min(dose for dose, insert in pairs if insert < 0.5) > 0)
 PY
-is "blur brings no dose into the insert, and leaves some beside it" "$(cat check)" "True 0.0 True"
+is "blur adds no dose to the insert, but beside it" "$(cat check)" "True 0.0 True"
 vam-slice --shape cylinder:diameter=6,height=4 --insert-shape hollow-cylinder:outer=12,inner=9,height=8 \
   --extent writable --voxel 0.4 -o hidden.vdb
 vam-sinogram hidden.vdb --filter ram-lak --negative clip -o hidden.exr
 ok "a part within a tube" vam-dose hidden.exr --like hidden.vdb --report hidden.json -o hidden-dose.vdb
-is "is told to lie in the dark" "$(grep -c 'shadow from all sides' .log/err)" 1
-holds "all of it" "$(json hidden.json dark_part_voxels) == $(json hidden.json part_voxels) && $(json hidden.json part_voxels) > 0"
-holds "and takes up no light" "$(json hidden.json part_dose_per_turn_mean_relative) == 0"
+is "voxels in shadow are reported" "$(grep -c 'shadow from all sides' .log/err)" 1
+holds "all part voxels are in shadow" "$(json hidden.json dark_part_voxels) == $(json hidden.json part_voxels) && $(json hidden.json part_voxels) > 0"
+holds "they receive no dose" "$(json hidden.json part_dose_per_turn_mean_relative) == 0"
 
 # Wrong inputs
 head -c 100000 frames.exr >cut.exr
@@ -122,14 +122,14 @@ fails 66 nothing.vdb vam-dose frames.exr --like nothing.vdb -o x.vdb
 fails 65 noise.vdb vam-dose frames.exr --like noise.vdb -o x.vdb
 fails 65 cut.exr vam-dose cut.exr -o x.vdb
 cat handle.vdb part.vdb >mixed.vdb  # an insert of other voxels
-fails 65 "not those of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
+fails 65 "differs from that of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
 fails 65 camera vam-dose camera.exr -o x.vdb
 fails 65 frames vam-dose pictures.exr -o x.vdb
 fails 65 cubes vam-dose flattened.exr -o x.vdb
 fails 65 'cover 180 deg' vam-dose half.exr -o x.vdb
 fails 65 'not slices of the volume' vam-dose flat.exr --like part.vdb -o x.vdb
 fails 65 'the printer it was resampled for' vam-dose frames.exr --set projector.columns=800 -o x.vdb
-fails 64 'already says' vam-dose frames.exr --like part.vdb --size 5 -o x.vdb
+fails 64 'already determines' vam-dose frames.exr --like part.vdb --size 5 -o x.vdb
 fails 64 size vam-dose frames.exr --size -5 -o x.vdb
 fails 64 full-scale vam-dose frames.exr --full-scale 0 -o x.vdb
 fails 64 radius vam-dose frames.exr --set vial.radius_mm=-3 -o x.vdb

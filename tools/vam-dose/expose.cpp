@@ -19,8 +19,9 @@ constexpr int batch = 64;  // slices a pass; the fastest for the tracer
 void warn_about(const Options& options, const light::LightSeen& seen, bool projector) {
   if (!projector || seen.negative == 0) return;
   warn(options.input + ": " + format_number(100 * seen.negative / seen.values, 3) +
-       " % of the light is negative, the least " + format_number(seen.least, 3) + " of " + format_number(seen.peak, 3) +
-       (options.keep_negative ? "; kept, though no projector can show it" : "; taken as 0"));
+       " % of the intensities are negative, the minimum is " + format_number(seen.least, 3) + ", the maximum " +
+       format_number(seen.peak, 3) +
+       (options.keep_negative ? "; kept, though no projector can show them" : "; set to 0"));
 }
 
 light::LightSeen shine_through(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
@@ -80,7 +81,7 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
   warn_about(options, exposed.light, projector);
   if (insert.dark_part_voxels() > 0) {
     warn(options.like + ": " + std::to_string(insert.dark_part_voxels()) +
-         " voxels of the part lie in the insert's shadow from all sides; no light prints them");
+         " voxels of the part are in the insert's shadow from all sides; they will not print");
   }
   return exposed;
 }

@@ -15,7 +15,7 @@
 
 namespace vam::dose_tool {
 
-/// What there was to see.
+/// Results of the simulation.
 struct Exposed {
   light::LightSeen light;
   score::DoseRange doses;
@@ -23,11 +23,11 @@ struct Exposed {
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
 };
 
-/// Standard deviation in mm of what beam and resin smear; 0 when it is to be left out.
+/// Standard deviation in mm of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_mm(const Options& options, const model::Printer& printer);
 
-/// Fills the volume, a batch of slices at a time, in units of light times radian. Warns of light that no projector can
-/// show and of part that no light reaches.
+/// Fills the volume, a batch of slices at a time, in units of intensity times radian. Warns of negative
+/// intensities and of part voxels that are in shadow.
 [[nodiscard]] Exposed expose(io::StackReader& in, const Options& options, const model::Printer& printer,
                              const Place& place, io::SparseVolume& volume);
 

@@ -24,7 +24,7 @@ Insert::Insert(const io::SparseVolume* insert, const io::SparseVolume* target, c
   if (insert_ == nullptr) return;
   if (!(insert_->grid() == grid)) {
     throw Error{Fault::data,
-                "insert: its voxels are not those of 'target'; slice both together (vam-slice --insert) or with the "
+                "insert: its grid differs from that of 'target'; slice both together (vam-slice --insert) or with the "
                 "same --voxel and size"};
   }
   even_ = Image(light.width, light.height, 1.0F);

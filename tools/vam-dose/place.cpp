@@ -18,7 +18,7 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     if (volume.name() == "insert") place.insert = &volume;
   }
   if (options.exposure_plan && place.target == nullptr) {
-    throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan needs the part"};
+    throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan requires the part"};
   }
   place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
   return place;

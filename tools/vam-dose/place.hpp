@@ -1,4 +1,4 @@
-// Where the dose goes.
+// The grid of the dose.
 #pragma once
 
 #include <vector>

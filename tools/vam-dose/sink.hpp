@@ -1,4 +1,4 @@
-// Doses slice by slice, on their way into the volume.
+// Writes doses slice by slice into the volume.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace vam::dose_tool {
 
-/// Takes them in ascending order, writes them eight at a time, and gathers what is to be said about them.
+/// Takes them in ascending order, writes them eight at a time, and gathers their statistics.
 class Sink {
  public:
   /// judged: where part and void are told apart, if at all.

@@ -16,12 +16,12 @@ namespace {
 score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
                             const Options& options) {
   if (doses.part == 0 || doses.void_ == 0) {
-    throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " voxels of part and " +
-                                 std::to_string(doses.void_) + " of void; --exposure-plan needs both"};
+    throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " part voxels and " +
+                                 std::to_string(doses.void_) + " void voxels; --exposure-plan requires both"};
   }
   if (doses.min_part <= doses.max_void) {
-    warn("exposure: void takes up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 a turn, part from " +
-         format_number(scale * doses.min_part, 4) + "; there is no process window, the best threshold is planned for");
+    warn("exposure: void receives up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 per turn, part from " +
+         format_number(scale * doses.min_part, 4) + "; there is no process window, the plan is for the best threshold");
   }
   return score::plan_exposure(scale * score::window_middle(doses), printer);
 }
