@@ -1,4 +1,4 @@
-// vam-optimize: projections that print a target.
+// vam-optimize: optimises the projections that print a target.
 #include <optional>
 #include <string>
 
@@ -22,11 +22,11 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-/// What there is to tell: dark voxels, the trace, the report.
-void tell(const optimize::VolumeOutcome& outcome, const Options& options) {
+/// Warning, trace and report.
+void publish(const optimize::VolumeOutcome& outcome, const Options& options) {
   if (outcome.dark_part_voxels > 0) {
-    warn(options.input + ": no light reaches " + std::to_string(outcome.dark_part_voxels) +
-         " voxels of the part behind the insert; they will not print");
+    warn(options.input + ": " + std::to_string(outcome.dark_part_voxels) +
+         " voxels of the part are in the insert's shadow from all sides; they will not print");
   }
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
   Json report = optimize::report(outcome);
@@ -61,7 +61,7 @@ void run(const cli::App& app, Options& options) {
   std::optional<optimize_tool::Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
     checkpoint.emplace(options.checkpoint);
-    task.interruption = checkpoint->interruption(job(options, io::printer_toml(printer)));
+    task.interruption = checkpoint->interruption(io::printer_toml(printer) + app.job());
   }
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int, const Image& image) { sink.add(image); };
@@ -72,7 +72,7 @@ void run(const cli::App& app, Options& options) {
     return;
   }
   sink.finish();
-  tell(outcome, options);
+  publish(outcome, options);
   sink.commit();
   if (checkpoint) checkpoint->remove();
 }

@@ -43,6 +43,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+std::string exact(double value) { return format_number(value, 17); }
+
 // The command that the words name, with the tool's name before its own, or the tool.
 Declaration asked_about(Declaration tool, const std::vector<std::string>& words) {
   const int place = find_command(tool, words);
@@ -72,7 +74,9 @@ App& App::group(const std::string& title) {
 }
 
 // Every option takes its text through one function that converts, checks and stores it.
-App& App::declare(Option option, const std::function<void(const std::string&)>& store) {
+App& App::declare(Option option, const std::function<void(const std::string&)>& store,
+                  const std::function<std::string()>& value) {
+  option.value = value;
   const std::string flag = long_flag(option);
   auto* parsed = state_->parser->add_option_function<std::vector<std::string>>(
       option.flag, [store](const std::vector<std::string>& texts) {
@@ -94,80 +98,112 @@ App& App::positional(const std::string& value_name, std::string& target, const s
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
-  return declare({flag, value_name, help, target, "", {}}, [&target](const std::string& text) { target = text; });
+  return declare(
+      {flag, value_name, help, target, "", {}}, [&target](const std::string& text) { target = text; },
+      [&target] { return target; });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, double& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, format_number(target), describe(range), {}},
-                 [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
+  return declare(
+      {flag, value_name, help, format_number(target), describe(range), {}},
+      [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); },
+      [&target] { return exact(target); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, int& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, std::to_string(target), describe(range), {}},
-                 [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
+  return declare(
+      {flag, value_name, help, std::to_string(target), describe(range), {}},
+      [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); },
+      [&target] { return std::to_string(target); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::optional<double>& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, target ? format_number(*target) : "", describe(range), {}},
-                 [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); });
+  return declare(
+      {flag, value_name, help, target ? format_number(*target) : "", describe(range), {}},
+      [&target, flag, range](const std::string& text) { target = checked_number(flag, text, range); },
+      [&target] { return target ? exact(*target) : ""; });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::optional<int>& target, Range range,
                  const std::string& help) {
-  return declare({flag, value_name, help, target ? std::to_string(*target) : "", describe(range), {}},
-                 [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); });
+  return declare(
+      {flag, value_name, help, target ? std::to_string(*target) : "", describe(range), {}},
+      [&target, flag, range](const std::string& text) { target = checked_integer(flag, text, range); },
+      [&target] { return target ? std::to_string(*target) : ""; });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::vector<double>& target, int count,
                  const std::string& help) {
   std::vector<std::string> defaults;
   for (const double value : target) defaults.push_back(format_number(value));
-  return declare({flag, value_name, help, join(defaults, ","), "", {}},
-                 [&target, flag, count](const std::string& text) {
-                   const auto parts = split(text, ',');
-                   if (count > 0 && static_cast<int>(parts.size()) != count) {
-                     throw Error{Fault::usage, flag + ": '" + text + "' has " + std::to_string(parts.size()) +
-                                                   " numbers; give " + std::to_string(count) + ", separated by commas"};
-                   }
-                   target.clear();
-                   for (const auto& part : parts) target.push_back(checked_number(flag, part, any));
-                 });
+  return declare(
+      {flag, value_name, help, join(defaults, ","), "", {}},
+      [&target, flag, count](const std::string& text) {
+        const auto parts = split(text, ',');
+        if (count > 0 && static_cast<int>(parts.size()) != count) {
+          throw Error{Fault::usage, flag + ": '" + text + "' has " + std::to_string(parts.size()) + " numbers; give " +
+                                        std::to_string(count) + ", separated by commas"};
+        }
+        target.clear();
+        for (const auto& part : parts) target.push_back(checked_number(flag, part, any));
+      },
+      [&target] {
+        std::vector<std::string> values;
+        for (const double value : target) values.push_back(exact(value));
+        return join(values, ",");
+      });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, std::vector<std::string>& target,
                  const std::string& help) {
-  return declare({flag, value_name, help, "", "", {}, true},
-                 [&target](const std::string& text) { target.push_back(text); });
+  return declare(
+      {flag, value_name, help, "", "", {}, true}, [&target](const std::string& text) { target.push_back(text); },
+      [&target] { return join(target, ","); });
 }
 
 App& App::option(const std::string& flag, const std::string& value_name, Range range,
                  const std::function<void(int)>& store, const std::string& help, const std::string& default_text) {
-  return declare({flag, value_name, help, default_text, describe(range), {}},
-                 [store, flag, range](const std::string& text) { store(checked_integer(flag, text, range)); });
+  const auto given = std::make_shared<std::string>(default_text);
+  return declare(
+      {flag, value_name, help, default_text, describe(range), {}},
+      [store, flag, range, given](const std::string& text) {
+        store(checked_integer(flag, text, range));
+        *given = text;
+      },
+      [given] { return *given; });
 }
 
 App& App::choice(const std::string& flag, std::string& target, const std::vector<std::string>& values,
                  const std::string& help) {
-  return declare({flag, "WORD", help, target, "", values}, [&target, flag, values](const std::string& text) {
-    if (std::find(values.begin(), values.end(), text) == values.end()) {
-      throw Error{Fault::usage,
-                  flag + ": '" + text + "' is not one of " + join(values, ", ") + did_you_mean(text, values)};
-    }
-    target = text;
-  });
+  return declare(
+      {flag, "WORD", help, target, "", values},
+      [&target, flag, values](const std::string& text) {
+        if (std::find(values.begin(), values.end(), text) == values.end()) {
+          throw Error{Fault::usage,
+                      flag + ": '" + text + "' is not one of " + join(values, ", ") + did_you_mean(text, values)};
+        }
+        target = text;
+      },
+      [&target] { return target; });
 }
 
 App& App::flag(const std::string& name, bool& target, const std::string& help) {
   state_->parser->add_flag(name, target);
   state_->current_group().options.push_back({name, "", help, "", "", {}});
+  state_->current_group().options.back().value = [&target] { return std::string(target ? "1" : "0"); };
   return *this;
 }
 
 App& App::default_is(const std::string& text) {
   state_->current_group().options.back().default_text = text;
+  return *this;
+}
+
+App& App::not_in_job() {
+  state_->current_group().options.back().in_job = false;
   return *this;
 }
 
@@ -189,6 +225,16 @@ App& App::subcommand(const std::string& name, const std::string& summary, std::s
 bool App::given(const std::string& flag) const { return state_->parser->get_option(flag)->count() > 0; }
 
 std::string App::history() const { return state_->history; }
+
+std::string App::job() const {
+  std::string text;
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (option.in_job) text += long_flag(option) + "=" + option.value() + "\n";
+    }
+  }
+  return text;
+}
 
 // The declaration with those of its subcommands, for printing.
 Declaration App::whole() const {

@@ -73,6 +73,8 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
+  /// The option declared last leaves the result as it is, or has job() say nothing of it for another reason.
+  App& not_in_job();
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it.
   App& was(const std::string& old_flag);
@@ -87,12 +89,16 @@ class App {
   /// "vam-slice 0.1.0 part.stl --voxel 0.1": the line for vam:history; known once run() has parsed. No paths of other
   /// machines, time stamps or host names are added.
   [[nodiscard]] std::string history() const;
+  /// A line "--flag=value" for each option but those not_in_job(), with the values in force: which job a kept state is
+  /// of. An option is part of it unless its declaration says otherwise.
+  [[nodiscard]] std::string job() const;
   /// Did the user give this option?
   [[nodiscard]] bool given(const std::string& flag) const;
 
  private:
   struct State;
-  App& declare(Option option, const std::function<void(const std::string&)>& store);
+  App& declare(Option option, const std::function<void(const std::string&)>& store,
+               const std::function<std::string()>& value);
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;

@@ -5,32 +5,39 @@
 namespace vam::cli {
 
 App& add_output(App& app, std::string& output) {
-  return app.option("-o,--output", "FILE", output, "Write to FILE; - is standard output.");
+  return app.option("-o,--output", "FILE", output, "Output file; - is standard output.").not_in_job();
 }
 
 App& add_printer(App& app, PrinterOptions& options) {
   app.group("Printer");
-  app.option("--printer", "FILE", options.file,
-             "Printer settings in TOML. Without it: $VAM_PRINTER, else ./printer.toml, else the embedded printer "
-             "(1024 x 768 pixels of 0.065 mm, throw ratio 1.8, vial of 25.4 mm, index 1.53).");
-  app.option("--set", "KEY=VALUE", options.sets, "Override one setting, e.g. vial.radius_mm=10.");
-  return app.flag("--print-printer", options.print, "Print the settings in force as commented TOML and end.");
+  app.option("--printer", "FILE", options.file, "Printer settings (TOML).");
+  app.default_is(
+      "$VAM_PRINTER, else ./printer.toml, else the built-in printer (1024 x 768 pixels of 0.065 mm, throw ratio 1.8, "
+      "vial of 25.4 mm, index 1.53)");
+  app.not_in_job();
+  app.option("--set", "KEY=VALUE", options.sets, "Override one setting, e.g. vial.radius_mm=10.").not_in_job();
+  return app.flag("--print-printer", options.print, "Print the settings in force as commented TOML and exit.")
+      .not_in_job();
 }
 
 App& add_report(App& app, std::string& report) {
-  return app.option("--report", "FILE", report, "Write the measured figures as JSON, units in the keys.");
+  return app.option("--report", "FILE", report, "Write a report in JSON; its keys carry the units.").not_in_job();
 }
 
 App& add_threads(App& app) {
-  return app.option(
-      "--threads", "N", Range{0, 1024}, [](int count) { set_threads(count); },
-      "Threads to use; 0 is one per core. The result does not depend on it.", "0");
+  return app
+      .option(
+          "--threads", "N", Range{0, 1024}, [](int count) { set_threads(count); },
+          "Number of threads; 0 is one per core. The result does not depend on it.", "0")
+      .not_in_job();
 }
 
 App& add_stack_output(App& app, bool& half, std::string& compression) {
-  app.flag("--half", half, "Store 16-bit floats.");
-  return app.choice("--compression", compression, {"none", "rle", "zip", "zips", "piz", "pxr24"},
-                    "Compression of a stack in a file; a pipe is never compressed.");
+  app.flag("--half", half, "Store 16-bit floats.").not_in_job();
+  return app
+      .choice("--compression", compression, {"none", "rle", "zip", "zips", "piz", "pxr24"},
+              "Compression of a stack written to a file; a pipe is never compressed.")
+      .not_in_job();
 }
 
 }  // namespace vam::cli

@@ -1,4 +1,5 @@
-// Options that several tools share: one spelling, one help text.
+// Options that several tools share: one spelling, one help text. None is part of App::job(); of the printer, its TOML
+// text says more.
 #pragma once
 
 #include <string>

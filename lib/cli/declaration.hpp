@@ -1,6 +1,7 @@
 // What App collects: the one declaration from which help, manual and completions are printed.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::vector<std::string> former = {};  // old spellings; not shown
+  std::vector<std::string> former = {};     // old spellings; not shown
+  std::function<std::string()> value = {};  // in force
+  bool in_job = true;                       // App::job() lists it
 };
 
 struct Group {

@@ -3,54 +3,57 @@
 vam-slice --shape disc-grid --voxel 0.1 -o part.vdb || exit 1
 value() { json "$1" "$2"; }
 
-for method in fbp dose-norm cal osmo pm bclp apg; do
+# Every method of the table, as completion offers them.
+methods=$(vam-optimize --completion bash | sed -n "s/.*--method) .*-W .auto \([^']*\).*/\1/p")
+holds "there are methods" "$(echo $methods | wc -w) >= 7"
+for method in $methods; do
   quiet "$method" vam-optimize --method $method --angles 90 --iterations 3 --report $method.json part.vdb -o $method.exr
   holds "$method separates most of the part" "$(value $method.json iou) > 0.9"
 done
 quiet "fbp without iterations" vam-optimize --method fbp --angles 90 --report fbp.json part.vdb -o fbp.exr
 quiet "dose-norm as usual" vam-optimize --method dose-norm --angles 90 --report dn.json part.vdb -o dn.exr
 holds "dose-norm widens the process window of fbp" "$(value dn.json pw) > $(value fbp.json pw)"
-is "a part of constant cross-section costs a few slices, its ends included" \
+is "a part of constant cross-section needs a few slices, its ends included" \
   "$([ "$(value dn.json distinct_slices)" -le 5 ] && echo yes)" yes
 
-quiet "auto is apg until the part prints with room to spare" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
-is "its goal" "$(value auto.json stopped_by)" goal
-holds "no voxel errs" "$(value auto.json ver) == 0"
+quiet "auto is apg until the part prints with a margin" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
+is "auto reaches its goal" "$(value auto.json stopped_by)" goal
+holds "no voxel is wrong" "$(value auto.json ver) == 0"
 
 quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb &&
   vam-optimize --angles 180 --report handle.json handle.vdb -o handle.exr'
-holds "every voxel of it is right" "$(value handle.json ver) == 0"
-is "all of it can be lit" "$(value handle.json dark_part_voxels)" 0
+holds "no voxel of the handle is wrong" "$(value handle.json ver) == 0"
+is "no voxel of it is dark" "$(value handle.json dark_part_voxels)" 0
 
 vam-slice --shape boat --voxel 0.2 -o boat.vdb
-quiet "in the vial's own light" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json boat.vdb -o vial.exr
-quiet "and by way of parallel light" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 boat.vdb -o parallel.exr
+quiet "with chief rays in the vial" vam-optimize --angles 180 --method apg --iterations 10 --report vial.json boat.vdb -o vial.exr
+quiet "with a parallel beam" vam-optimize --geometry parallel --angles 180 --method apg --iterations 10 boat.vdb -o parallel.exr
 vam-resample parallel.exr -o resampled.exr
 for how in vial resampled; do
   vam-dose $how.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 is "its print has no error" "$(value judged-vial.json ver)" 0.0
-holds "the judge of chief rays sees what the optimiser saw" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"
-holds "and a wider window than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
+holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"
+holds "which is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*leave vam-resample out' vam-resample vial.exr -o twice.exr
-fails 64 '--columns: has no meaning with --geometry vial' vam-optimize --columns 100 part.vdb -o out.exr
+fails 64 '--columns: does not apply to --geometry vial' vam-optimize --columns 100 part.vdb -o out.exr
 fails 65 'none of its 1024 columns' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
 
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do
-  quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --geometry parallel --absorption $how $absorbing part.vdb -o light.exr
-  vam-dose light.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
+  quiet "absorption: $how" vam-optimize --angles 180 --method apg --iterations 15 --geometry parallel --absorption-model $how $absorbing part.vdb -o sinogram.exr
+  vam-dose sinogram.exr --like part.vdb $absorbing -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report $how.json >table
 done
-holds "the judge sees the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
-is "and no error" "$(value exact.json ver)" 0.0
+holds "vam-dose confirms the absorption in the loop" "$(value exact.json pw) > $(value none.json pw) + 0.05"
+is "and no wrong voxel" "$(value exact.json ver)" 0.0
 
-blurring="--set resin.psf_mm=0.12"  # the judge blurs in its own way
+blurring="--set resin.psf_mm=0.12"
 for how in "" --no-blur; do
-  quiet "blur: $how" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o light.exr
-  vam-dose light.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur$how.json" >table
+  quiet "blur: $how" vam-optimize --geometry parallel --angles 90 --iterations 25 --patience 0 $how $blurring part.vdb -o sinogram.exr
+  vam-dose sinogram.exr --like part.vdb $blurring -o dose.vdb 2>/dev/null && vam-score dose.vdb --target part.vdb --report "blur$how.json" >table
 done
-holds "light made up for the blur prints under it" "$(value blur.json pw) > 0 && $(value blur.json ver) == 0"
-holds "light that was not does not" "$(value blur--no-blur.json pw) < 0"
+holds "projections compensated for the blur print" "$(value blur.json pw) > 0 && $(value blur.json ver) == 0"
+holds "others do not" "$(value blur--no-blur.json pw) < 0"
 
 ok "through pipes" sh -c 'vam-optimize --geometry parallel --method dose-norm --angles 90 <part.vdb | cat >piped.exr'
 ok "the pipe's file is complete" vam-resample piped.exr -o projector.exr
@@ -62,12 +65,12 @@ is "1 and 2 threads give the same pixels" \
 quiet "trace" vam-optimize --method cal --angles 90 --iterations 4 --trace trace.csv part.vdb -o cal.exr
 is "the trace has a header and a line for every iterate" "$(wc -l <trace.csv)" 6
 is "its columns" "$(head -n 1 trace.csv)" iteration,ver,pw,ipdr,cv,iou
-quiet "going on" vam-optimize --method cal --angles 90 --init cal.exr --iterations 4 --report on.json part.vdb -o on.exr
+quiet "resuming" vam-optimize --method cal --angles 90 --init cal.exr --iterations 4 --report on.json part.vdb -o on.exr
 quiet "until a goal" vam-optimize --method cal --angles 90 --until 'iou>=0.5' --report goal.json part.vdb -o goal.exr
-is "stops there" "$(value goal.json stopped_by)" goal
+is "it stops there" "$(value goal.json stopped_by)" goal
 quiet "grey levels" vam-optimize --method fbp --angles 90 --bits 3 --error-feedback part.vdb -o grey.exr
 
-# Interrupted again and again, later each time, until it is through: the same bytes as in one go.
+# Interrupted again and again, later each time, until it completes: the same bytes as in one run.
 vam-optimize --angles 90 --iterations 60 --patience 0 --trace whole.csv --report whole.json part.vdb -o whole.exr
 attempt() { timeout -s INT "$1" vam-optimize --angles 90 --iterations 60 --patience 0 --trace parts.csv \
   --report parts.json --checkpoint run.state part.vdb -o parts.exr; }
@@ -78,16 +81,18 @@ done
 is "the pixels of an interrupted run" "$(tail -c 20000 parts.exr | cksum)" "$(tail -c 20000 whole.exr | cksum)"
 same "its trace" parts.csv whole.csv
 same "its report" parts.json whole.json
-is "its state is removed in the end" "$(ls run.state 2>/dev/null)" ""
+is "its state is removed on completion" "$(ls run.state 2>/dev/null)" ""
 for seconds in 0.5 1 2 5 20; do
   timeout --preserve-status -s INT $seconds \
     vam-optimize --iterations 100000 --patience 0 --checkpoint run.state part.vdb -o never.exr
   status=$?
   [ -e run.state ] && break
 done
-is "broken off, it ends by the signal" "$status" 130
-is "broken off, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
-fails 65 'of another job' vam-optimize --angles 90 --checkpoint run.state part.vdb -o out.exr
+is "interrupted, it ends by the signal" "$status" 130
+is "interrupted, it leaves its state and no result" "$(ls run.state never.exr 2>/dev/null)" run.state
+for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--error-feedback --bits 8'; do  # any option counts
+  fails 65 'of another job' vam-optimize $other --checkpoint run.state part.vdb -o out.exr
+done
 python3 - <<'EOF'
 bytes = bytearray(open("run.state", "rb").read())
 bytes[-400:-396] = b"\x00\x00\xc0\x7f"
@@ -99,30 +104,31 @@ fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint 
 fails 65 'not a state' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
 
 quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
-quiet "surface voxels asked too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
-holds "the more is asked, the narrower the window" "$(value band.json pw) > $(value surface.json pw)"
+quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
+holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
 quiet "weights of a file" vam-optimize --angles 90 --iterations 5 --weights part.vdb part.vdb -o weights.exr
 printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
 quiet "a measured response" vam-optimize --method bclp --response cure.csv --angles 90 --iterations 20 --report cure.json part.vdb -o cure.exr
 holds "its window's middle is the threshold" "$(value cure.json threshold_dose) > 0.79 && $(value cure.json threshold_dose) < 0.81"
 quiet "a step" vam-optimize --method bclp --response step --angles 90 --iterations 5 part.vdb -o step.exr
-quiet "doses for every voxel" vam-optimize --grey --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
+quiet "a grey target" vam-optimize --grey --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
 holds "most are within their band" "$(value grey.json ver) < 0.05"
 printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --response falls.csv part.vdb -o out.exr
 fails 66 'none.csv' vam-optimize --method bclp --response none.csv part.vdb -o out.exr
-fails 64 'knows part and void only' vam-optimize --grey --method osmo part.vdb -o out.exr
+fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey --method osmo part.vdb -o out.exr
 fails 64 'no-blur' vam-optimize --method osmo --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
-fails 65 "grid of 'target' is not" vam-optimize --weights other.vdb part.vdb -o out.exr
+fails 65 "grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr
 vam-slice --shape handle --insert-shape cylinder:diameter=14,height=30 --voxel 0.4 -o overlap.vdb 2>/dev/null
 fails 65 'part and insert share' vam-optimize overlap.vdb -o out.exr
 
-fails 64 'no method is called|not among|magic' vam-optimize --method magic part.vdb -o out.exr
+fails 64 'magic. is not one of auto, fbp' vam-optimize --method magic part.vdb -o out.exr
 fails 64 '0.9 is not below --dose-high 0.8' vam-optimize --dose-low 0.9 --dose-high 0.8 part.vdb -o out.exr
 fails 64 "no figure is called 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
 fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
-fails 64 '--peak' vam-optimize --peak 1 part.vdb -o out.exr
+fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o out.exr
+is "a former spelling says so" "$(vam-optimize --peak 1 part.vdb -o out.exr 2>&1 | head -n 1)" 'vam-optimize: --peak is now --full-scale'
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
@@ -135,5 +141,9 @@ fails 65 'cal.exr' vam-optimize cal.exr -o out.exr
 fails 73 'nowhere' vam-optimize part.vdb -o nowhere/out.exr
 fails 74 'space' vam-optimize --angles 90 part.vdb -o /dev/full
 fails 66 'none.toml' vam-optimize --printer none.toml part.vdb -o out.exr
+
+for option in $(vam-optimize --man | tr '\n' ' ' | grep -o ' Reads [^.]*\.' | grep -o -- '--[a-z-]*' | sort -u); do
+  vam-optimize --man | grep -qe "^.It Fl $(echo "$option" | cut -c2-)"; report $? "the table's $option is an option"
+done
 
 done_testing

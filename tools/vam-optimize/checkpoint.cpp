@@ -20,7 +20,7 @@ void Checkpoint::take(void* bytes, std::size_t size) {
   const std::size_t got = in_->read(bytes, size);
   if (got == size) return;
   throw Error{Fault::data, path_ + ": ends after " + std::to_string(in_->position()) +
-                               " bytes, but more is needed; remove it and start afresh"};
+                               " bytes, which is incomplete; remove it and start again"};
 }
 
 optimize::Interruption Checkpoint::interruption(const std::string& job) {

@@ -1,4 +1,4 @@
-// --checkpoint: where a run that was interrupted goes on from.
+// --checkpoint: the state from which an interrupted run resumes.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ class Checkpoint {
   [[nodiscard]] optimize::Interruption interruption(const std::string& job);
   /// The state appears under its name.
   void keep() { out_.commit(); }
-  /// The run is done; the state that it began with is of no more use.
+  /// The run is complete; the state it resumed from is removed.
   void remove() const;
 
  private:

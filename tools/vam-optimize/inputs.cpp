@@ -36,9 +36,10 @@ Inputs read(const Options& options) {
   if (!options.tolerances.empty()) in.tolerance.push_back(read_own(options.tolerances, "tolerance"));
   for (const auto* volumes : {&in.insert, &in.weight, &in.tolerance}) {
     if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
-    throw Error{Fault::data, options.input + ": the grid of '" + volumes->front().name() +
-                                 "' is not the target's; slice both together (vam-slice --insert) or with the same "
-                                 "--voxel and size"};
+    throw Error{Fault::data,
+                options.input + ": the grid of '" + volumes->front().name() +
+                    "' differs from the target's; slice both together (vam-slice --insert) or with the same "
+                    "--voxel and size"};
   }
   return in;
 }

@@ -15,7 +15,7 @@ namespace vam::optimize_tool {
 namespace {
 
 double mu_per_px(const Scene& scene, const Options& options) {
-  return options.absorption == "none" ? 0 : scene.printer.resin.absorption_per_mm * scene.grid.voxel_mm;
+  return options.absorption_model == "none" ? 0 : scene.printer.resin.absorption_per_mm * scene.grid.voxel_mm;
 }
 
 double radius_px(const Scene& scene) { return model::resin_radius_mm(scene.printer.vial) / scene.grid.voxel_mm; }
@@ -23,7 +23,7 @@ double radius_px(const Scene& scene) { return model::resin_radius_mm(scene.print
 light::VialSetup vial_setup(const Scene& scene, const Options& options) {
   const double radius_mm = scene.circle.radius * scene.grid.voxel_mm;
   light::VialSetup setup = light::vial_setup(scene.printer, scene.grid, scene.turn.angles, radius_mm);
-  if (options.absorption == "none") setup.absorption_per_mm = 0;
+  if (options.absorption_model == "none") setup.absorption_per_mm = 0;
   return setup;
 }
 
@@ -50,7 +50,7 @@ std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& o
   if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options));
   const double mu = mu_per_px(scene, options);
   if (mu == 0) return std::make_unique<light::ParallelOperator>(scene.turn);
-  const auto correction = options.absorption == "disc" ? light::Correction::disc : light::Correction::exact;
+  const auto correction = options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact;
   return std::make_unique<light::AttenuatedOperator>(scene.turn, mu, radius_px(scene), correction);
 }
 

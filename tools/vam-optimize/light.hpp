@@ -1,4 +1,4 @@
-// The light that vam-optimize works with, by the printer and the options.
+// The beam model of vam-optimize, from printer and options.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace vam::optimize_tool {
 
-/// Where the light comes from and what it goes through.
+/// Geometry of projector, vial and target.
 struct Scene {
   model::Grid grid;
   model::Printer printer;
@@ -23,10 +23,10 @@ struct Scene {
 
 [[nodiscard]] Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options);
 
-/// Standard deviation in voxels of what beam and resin smear; 0 when it is to be left out.
+/// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_px(const Scene& scene, const Options& options);
 
-/// Parallel light, or the projector's own rays; the resin's absorption is in it unless it is to be left out.
+/// Parallel beam or chief rays of the projector; with the resin's absorption unless neglected.
 [[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options);
 /// The same around opaque inserts, a slab for every slab of the pass.
 [[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options,

@@ -1,6 +1,8 @@
 #include "vam-optimize/options.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -12,75 +14,133 @@
 
 namespace vam::optimize_tool {
 
+namespace {
+
+/// "fbp, dose-norm: ", the methods that read the option.
+std::string readers(const std::string& flag, const std::string& others = "") {
+  const auto names = optimize::method_names([&](const optimize::MethodEntry& entry) {
+    return std::find(entry.options.begin(), entry.options.end(), flag) != entry.options.end();
+  });
+  return join(names, ", ") + others + ": ";
+}
+
+/// "0 (fbp), 1 (dose-norm), 30 (cal, osmo)"
+std::string default_iterations() {
+  std::map<int, std::vector<std::string>> names;
+  for (const auto& entry : optimize::method_table()) names[entry.iterations].push_back(entry.name);
+  std::vector<std::string> texts;
+  for (const auto& [count, methods] : names) texts.push_back(std::to_string(count) + " (" + join(methods, ", ") + ")");
+  return join(texts, ", ");
+}
+
+void declare_constraints(cli::App& app, Options& options) {
+  app.group("Target constraints");
+  app.option("--dose-low", "DOSE", options.demands.window.low, cli::non_negative,
+             "LOW: upper bound on the dose of void voxels.");
+  app.option("--dose-high", "DOSE", options.demands.window.high, cli::positive,
+             "HIGH: lower bound on the dose of part voxels.");
+  app.option("--tolerance-mm", "MM", options.tolerance_mm, cli::non_negative,
+             "Leave voxels within this distance of the part's surface unconstrained.");
+  app.flag("--surface", options.demands.surface,
+           "Constrain surface voxels, too: as part when at least half covered, else as void.");
+  app.option("--weights", "FILE", options.weights,
+             "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
+             "leaves the voxel unconstrained.");
+  app.default_is("the grid 'weight' of the target file, if present");
+  app.flag("--grey", options.demands.grey,
+           "Grey target: a dose (or response) for every voxel, to be met within --band.");
+  app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
+             readers("--band", ", --grey") + "largest deviation of the resin's response from the target.");
+  app.option("--tolerances", "FILE", options.tolerances,
+             "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.");
+  app.default_is("the grid 'tolerance' of the target file, if present");
+  app.option("--response", "CURVE", options.response,
+             readers("--response", ", --grey") +
+                 "response of the resin to a dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
+                 "CSV file with columns dose,response, which also sets LOW and HIGH.");
+  app.default_is("logistic; linear with --grey");
+  app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.");
+}
+
+void declare_stopping(cli::App& app, Options& options) {
+  app.group("Stopping criteria");
+  app.option("--iterations", "N", options.iterations, {0, 1000000}, "Maximum number of iterations.");
+  app.default_is(default_iterations()).not_in_job();
+  app.option("--until", "CONDITIONS", options.until,
+             "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
+                 join(optimize::SliceFigures::names(), ", ") + ".");
+  app.default_is(std::string("none; with --method auto ") + optimize::automatic_until).not_in_job();
+  app.option("--patience", "N", options.limits.patience, {0, 1000000},
+             "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
+  app.not_in_job();
+  app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).");
+  app.option("--checkpoint", "FILE", options.checkpoint,
+             "State of the run if interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from it with "
+             "bit-identical results; target, printer and all options that affect the result must be the same. Removed "
+             "on completion.");
+  app.not_in_job();
+  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.");
+  app.not_in_job();  // whether there is one is part of the state
+}
+
+void declare_parameters(cli::App& app, Options& options) {
+  app.group("Method parameters");
+  app.option("--background", "B", options.how.background, {0, 1}, readers("--background") + "target dose of the void.");
+  app.option("--min-intensity", "VALUE", options.how.min_intensity, cli::any,
+             readers("--min-intensity") + "lower bound on projected intensity.");
+  app.was("--floor");
+  app.choice("--negative", options.negative, {"clip", "offset"},
+             readers("--negative") +
+                 "negative intensities are set to the lower bound, or all intensities of a slice are raised by its "
+                 "minimum.");
+  app.option("--power", "P", options.how.power, {1, 20}, readers("--power") + "exponent of the norm.");
+  app.option("--max-intensity", "VALUE", options.how.max_intensity, cli::non_negative,
+             readers("--max-intensity") + "upper bound on projected intensity; 0 is none.");
+  app.was("--max-light");
+}
+
+void declare_beam(cli::App& app, Options& options) {
+  app.group("Beam and resin");
+  app.choice("--absorption-model", options.absorption_model, {"exact", "disc", "none"},
+             "Absorption by the resin (resin.absorption_per_mm): exact; corrected once by the dose of a uniform disc, "
+             "for parallel beams; or neglected.");
+  app.was("--absorption");
+  app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
+  app.option("--seconds", "S", options.seconds, cli::non_negative, "Time during which the dose diffuses.");
+  app.default_is("the time of stage.turns turns");
+  app.group("Grey levels of the projector");
+  app.option("--bits", "N", options.bits, {1, 16},
+             "Quantise intensities to the grey levels of this bit depth, through projector.response.");
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.");
+  app.default_is("the largest of all projections").was("--peak");
+  app.flag("--error-feedback", options.error_feedback, "Carry the quantisation error over to the next angle.");
+}
+
+}  // namespace
+
 void declare(cli::App& app, Options& options) {
   app.positional("TARGET", options.input, "Volume (VDB) with a grid 'target' of coverage 0...1.");
   cli::add_output(app, options.output);
-  std::vector<std::string> methods{"auto"};
-  methods.insert(methods.end(), optimize::method_names().begin(), optimize::method_names().end());
+  std::vector<std::string> methods = optimize::method_names();
+  methods.insert(methods.begin(), "auto");
   app.choice("--method", options.method, methods,
-             "How to look for projections; auto is apg, the best of tests/bench/printability, for 8 iterations at "
-             "least and until the part prints with a process window of 0.05.");
-  app.choice(
-      "--geometry", options.geometry, {"vial", "parallel"},
-      "Whose light: vial works with the projector's own rays, as lens, bath, glass and resin bend them, and makes "
-      "a projector sinogram; parallel makes a virtual one, for vam-resample, in a third of the time.");
-  app.option("--angles", "N", options.angles, {1, 100000}, "Stage angles over 360 degrees.");
+             std::string("Optimisation method. auto is ") + optimize::automatic_method +
+                 ", the best of tests/bench/printability, for at least " +
+                 std::to_string(optimize::automatic_iterations) +
+                 " iterations and until the part prints with a process window of 0.05.");
+  app.choice("--geometry", options.geometry, {"vial", "parallel"},
+             "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
+             "beam, which gives a virtual sinogram for vam-resample in a third of the time.");
+  app.option("--angles", "N", options.angles, {1, 100000}, "Number of stage angles over 360 degrees.");
   app.option("--columns", "N", options.columns, {1, 65536},
-             "Columns, each a voxel wide; without it as many as see the writable circle.");
-  app.group("What is asked");
-  app.option("--dose-low", "DOSE", options.demands.window.low, cli::non_negative,
-             "The void's dose should stay below this.");
-  app.option("--dose-high", "DOSE", options.demands.window.high, cli::positive, "The part's dose should reach this.");
-  app.option("--tolerance-mm", "MM", options.tolerance_mm, cli::non_negative,
-             "Ask nothing of voxels within this distance of the part's surface.");
-  app.flag("--surface", options.demands.surface, "Ask surface voxels too: part when at least half covered, else void.");
-  app.option("--weights", "FILE", options.weights,
-             "Volume (VDB) with a grid 'weight', or a single grid: what an error of each voxel costs, relative to "
-             "others. 0: nothing is asked of it. Without it the target's file, if that has one.");
-  app.flag("--grey", options.demands.grey,
-           "The target is a dose (or response) for every voxel, to be met within --band.");
-  app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
-             "bclp, --grey: how far the resin's response may be from the target.");
-  app.option("--tolerances", "FILE", options.tolerances,
-             "Volume (VDB) with a grid 'tolerance', or a single grid: the band of each voxel. Without it the target's "
-             "file, if that has one.");
-  app.option("--response", "CURVE", options.response,
-             "cal, bclp, --grey: what the resin makes of a dose: linear (the dose itself; usual with --grey), step "
-             "(from LOW to HIGH), logistic, or a CSV file with columns dose,response, which also gives LOW and HIGH.");
-  app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, in doses.");
-  app.group("When to stop");
-  app.option("--iterations", "N", options.iterations, {0, 1000000},
-             "At most so many. Without it fbp 0, dose-norm 1, cal and osmo 30, pm, bclp and apg 60.");
-  app.option("--until", "CONDITIONS", options.until,
-             "Stop when all hold, e.g. 'ver=0,pw>=0.1'; figures: ver, pw, ipdr, cv, iou.");
-  app.option("--patience", "N", options.limits.patience, {0, 1000000},
-             "Stop when IoU + PW has not improved by 1e-4 in so many iterations; 0 = never.");
-  app.option("--init", "SINOGRAM", options.init, "Start from these projections (EXR, of the same size).");
-  app.option("--checkpoint", "FILE", options.checkpoint,
-             "When interrupted (SIGINT, SIGTERM), keep the last complete iterate there. When FILE is there already, go "
-             "on from it; the result is the same, bit for bit. Removed when done.");
-  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.");
-  app.group("Methods");
-  app.option("--background", "B", options.how.background, {0, 1}, "dose-norm: the void's target.");
-  app.option("--floor", "LIGHT", options.how.floor, cli::any, "fbp, dose-norm: light is not let below this.");
-  app.choice("--negative", options.negative, {"clip", "offset"},
-             "fbp: set negative light to the floor, or raise all of a slice by its lowest.");
-  app.option("--power", "P", options.how.power, {1, 20}, "pm, bclp: the norm's exponent.");
-  app.option("--max-light", "LIGHT", options.how.peak, cli::non_negative, "Largest light; 0 = any.");
-  app.group("Light and resin");
-  app.choice("--absorption", options.absorption, {"exact", "disc", "none"},
-             "What the absorption of the resin (resin.absorption_per_mm) does to the light: exact everywhere; first "
-             "projections corrected by a uniform disc's dose; or left out.");
-  app.flag("--no-blur", options.no_blur, "Do not make up for point spread and diffusion.");
-  app.option("--seconds", "S", options.seconds, cli::non_negative,
-             "Time for which dose diffuses. Without it the time of stage.turns turns.");
-  app.group("Projector's grey levels");
-  app.option("--bits", "N", options.bits, {1, 16},
-             "Round the light to the intensities of this many bits, through projector.response.");
-  app.option("--peak", "LIGHT", options.peak, cli::positive, "Light of full grey. Without it the largest of all.");
-  app.flag("--error-feedback", options.error_feedback, "Add what rounding left over to the next angle.");
+             "Number of detector bins of a parallel beam, each one voxel wide.");
+  app.default_is("as many as cover the writable circle");
+  declare_constraints(app, options);
+  declare_stopping(app, options);
+  declare_parameters(app, options);
+  declare_beam(app, options);
   cli::add_printer(app, options.printer);
-  app.group("Output and machine");
+  app.group("Output and performance");
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
@@ -88,7 +148,7 @@ void declare(cli::App& app, Options& options) {
 
 namespace {
 
-/// auto is the method that measures best, stopped where the part prints with room to spare unless the user says when.
+/// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion.
 void settle_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
   options.method = optimize::automatic_method;
@@ -97,24 +157,25 @@ void settle_auto(const cli::App& app, Options& options) {
   options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
 }
 
-void refuse_contradictions(const Options& options, const optimize::Method& method) {
+void refuse_contradictions(const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
-  if (options.peak && !options.bits) throw Error{Fault::usage, "--peak: has no meaning without --bits"};
-  if (options.error_feedback && !options.bits) {
-    throw Error{Fault::usage, "--error-feedback: has no meaning without --bits"};
-  }
+  if (options.full_scale && !options.bits) throw Error{Fault::usage, "--full-scale: requires --bits"};
+  if (options.error_feedback && !options.bits) throw Error{Fault::usage, "--error-feedback: requires --bits"};
   if (options.geometry == "vial" && options.columns) {
     throw Error{Fault::usage,
-                "--columns: has no meaning with --geometry vial, the projector has its own; use --geometry parallel"};
+                "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "
+                "parallel"};
   }
-  if (options.geometry == "vial" && options.absorption == "disc") {
-    throw Error{Fault::usage, "--absorption disc: is for parallel light; use --geometry parallel"};
+  if (options.geometry == "vial" && options.absorption_model == "disc") {
+    throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
   }
-  if (options.demands.grey && !method.takes_grey()) {
-    throw Error{Fault::usage, "--grey: " + options.method + " knows part and void only; use apg, pm or bclp"};
+  if (options.demands.grey && !method.grey) {
+    const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
+    throw Error{Fault::usage,
+                "--grey: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
   }
   if (options.demands.grey && (options.tolerance_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey: a target of doses has no surface; leave out --tolerance-mm and --surface"};
+    throw Error{Fault::usage, "--grey: a grey target has no surface; omit --tolerance-mm and --surface"};
   }
 }
 
@@ -122,11 +183,11 @@ void refuse_contradictions(const Options& options, const optimize::Method& metho
 
 void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
-  const auto method = optimize::make_method(options.method, options.how);
-  refuse_contradictions(options, *method);
+  const optimize::MethodEntry& method = optimize::method_entry(options.method);
+  refuse_contradictions(options, method);
   if (options.demands.grey && !app.given("--response")) options.response = "linear";
   options.how.offset = options.negative == "offset";
-  options.limits.iterations = options.iterations.value_or(method->usual_iterations());
+  options.limits.iterations = options.iterations.value_or(method.iterations);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }
@@ -147,14 +208,14 @@ optimize::CureCurve read_curve(const std::string& path) {
   }
 }
 
-/// LOW and HIGH are the doses whose response is a band from liquid and from cured.
+/// LOW and HIGH are the doses whose responses differ from liquid and cured by the band.
 void settle_window(const cli::App& app, const std::string& path, optimize::Demands& demands) {
   const auto band = static_cast<float>(demands.band);
   const double low = static_cast<double>(demands.curve.doses(0, band).high);
   const double high = static_cast<double>(demands.curve.doses(1, band).low);
   if (!std::isfinite(low) || !std::isfinite(high)) {
     throw Error{Fault::data, path + ": the response must reach from " + format_number(demands.band) + " to " +
-                                 format_number(1 - demands.band) + " (--band); measure more doses or name --band"};
+                                 format_number(1 - demands.band) + " (--band); measure more doses or change --band"};
   }
   if (!app.given("--dose-low")) demands.window.low = low;
   if (!app.given("--dose-high")) demands.window.high = high;
@@ -176,25 +237,6 @@ void settle_response(const cli::App& app, Options& options) {
     demands.curve = read_curve(options.response);
     if (!demands.grey) settle_window(app, options.response, demands);
   }
-}
-
-std::string job(const Options& options, const std::string& printer) {
-  std::string text = printer;
-  const auto add = [&](const std::string& part) { text += part + "\n"; };
-  const auto number = [&](double value) { add(format_number(value, 17)); };
-  for (const auto* word :
-       {&options.method, &options.geometry, &options.response, &options.negative, &options.absorption})
-    add(*word);
-  const optimize::Demands& asked = options.demands;
-  const optimize::MethodOptions& how = options.how;
-  for (const double value : {asked.window.low, asked.window.high, asked.band, options.softness, options.tolerance_mm,
-                             how.background, how.floor, how.peak, how.power, options.seconds.value_or(-1)}) {
-    number(value);
-  }
-  for (const bool flag : {asked.surface, asked.grey, options.no_blur, !options.init.empty()}) add(flag ? "1" : "0");
-  number(options.angles);
-  number(options.columns.value_or(0));
-  return text;
 }
 
 }  // namespace vam::optimize_tool

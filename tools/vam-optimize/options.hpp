@@ -1,4 +1,4 @@
-// What the user asks of vam-optimize, for all its files.
+// The options of vam-optimize, for all its files.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ struct Options {
   std::string geometry = "vial";
   int angles = 360;
   std::optional<int> columns;
-  optimize::Demands demands;  // what is asked of the print
+  optimize::Demands demands;  // target constraints
   double tolerance_mm = 0;
   std::string weights, tolerances;
   std::string response = "logistic";
   double softness = 0.05;
-  std::optional<int> iterations;  // when to stop
+  std::optional<int> iterations;  // stopping criteria
   optimize::Limits limits;
   std::string until;
   std::string init;
@@ -31,11 +31,11 @@ struct Options {
   std::string trace;
   optimize::MethodOptions how;
   std::string negative = "clip";
-  std::string absorption = "exact";
+  std::string absorption_model = "exact";
   bool no_blur = false;
   std::optional<double> seconds;
   std::optional<int> bits;  // the projector's grey levels
-  std::optional<double> peak;
+  std::optional<double> full_scale;
   bool error_feedback = false;
   cli::PrinterOptions printer;
   std::string report;
@@ -49,7 +49,5 @@ void declare(cli::App& app, Options& options);
 void settle(const cli::App& app, Options& options);
 /// The response curve of --response, and the window that a table of it gives. Throws Error when it cannot be read.
 void settle_response(const cli::App& app, Options& options);
-/// Everything that decides which projections come out, as text: a state is only good for the same.
-[[nodiscard]] std::string job(const Options& options, const std::string& printer);
 
 }  // namespace vam::optimize_tool

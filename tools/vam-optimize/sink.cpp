@@ -10,7 +10,7 @@ Sink::Sink(const Options& options, const model::Printer& printer, const model::S
   const auto& file = printer.projector.response;
   const auto response =
       file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
-  levels_.emplace(resin::GreyLevels(response, *options.bits), options.peak, options.error_feedback,
+  levels_.emplace(resin::GreyLevels(response, *options.bits), options.full_scale, options.error_feedback,
                   [this](const Image& image) { out_.write(image); });
 }
 

@@ -1,4 +1,4 @@
-// Where finished slices go.
+// Writes finished slices.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace vam::optimize_tool {
 
-/// Through the projector's grey levels if asked, into the stack.
+/// Into the stack, quantised to the projector's grey levels on request.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);

@@ -45,7 +45,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
   task.circle = scene.circle;
   task.demands = options.demands;
   task.limits = options.limits;
-  task.max_light = options.how.peak;
+  task.max_intensity = options.how.max_intensity;
   task.blur_px = blur_px(scene, options);
   task.watch = !options.trace.empty();
   task.make = [&] { return optimize::make_method(options.method, options.how); };

@@ -1,4 +1,4 @@
-// What is to be done.
+// The optimisation task, from inputs and options.
 #pragma once
 
 #include "model/stack.hpp"
@@ -13,7 +13,7 @@ namespace vam::optimize_tool {
 [[nodiscard]] model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
                                           const Options& options);
 
-/// Without the way of the results. Scene, inputs and options stay the caller's.
+/// Without its output. Scene, inputs and options stay the caller's.
 [[nodiscard]] optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -73,8 +73,6 @@ class Apg final : public Method {
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] bool takes_grey() const override { return true; }
-  [[nodiscard]] int usual_iterations() const override { return 60; }
 
  private:
   /// Slices that dose normalisation prints better than filtered back-projection start from it.
@@ -187,6 +185,16 @@ class Apg final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_apg(const MethodOptions& options) { return std::make_unique<Apg>(options); }
+MethodEntry apg_method() {
+  return {"apg",
+          "Constrains the void to doses below LOW and the part to doses above HIGH by preconditioned, accelerated "
+          "projected gradient, each slice from the better of fbp and dose-norm; the window of a slice that satisfies "
+          "both is widened.",
+          "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
+          60,
+          true,
+          {"--max-intensity"},
+          make<Apg>};
+}
 
 }  // namespace vam::optimize

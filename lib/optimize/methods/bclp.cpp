@@ -45,6 +45,15 @@ class Bclp final : public Descent {
 
 }  // namespace
 
-std::unique_ptr<Method> make_bclp(const MethodOptions& options) { return std::make_unique<Bclp>(options); }
+MethodEntry bclp_method() {
+  return {"bclp",
+          "Minimises the Lp norm of the resin's response outside a band around the target.",
+          "Li, Toombs, Taylor and Wallin, Tomographic projection optimization for volumetric additive manufacturing "
+          "with general band constraint Lp-norm minimization, 2024",
+          60,
+          true,
+          {"--band", "--response", "--softness", "--power", "--max-intensity"},
+          make<Bclp>};
+}
 
 }  // namespace vam::optimize

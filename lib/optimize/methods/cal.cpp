@@ -66,7 +66,6 @@ class Cal final : public Method {
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] int usual_iterations() const override { return 30; }
 
  private:
   /// The line search begins with Newton's step for a resin whose response is the dose: filter is about (A A*)^-1.
@@ -95,6 +94,15 @@ class Cal final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_cal(const MethodOptions& options) { return std::make_unique<Cal>(options); }
+MethodEntry cal_method() {
+  return {"cal",
+          "Projected gradient descent on the error of the print, with the gelation threshold of the resin inside the "
+          "loop.",
+          "Kelly et al., Computed Axial Lithography, 2017, fig 2, and Science 2019, eq 4",
+          30,
+          false,
+          {"--response", "--softness", "--max-intensity"},
+          make<Cal>};
+}
 
 }  // namespace vam::optimize

@@ -54,8 +54,6 @@ class DoseNorm final : public Method {
     archive(goal_sums_);
   }
 
-  [[nodiscard]] int usual_iterations() const override { return 1; }
-
  private:
   /// I_0 = max(f, B).
   [[nodiscard]] float goal(const Problem& problem, std::size_t s, std::size_t i) const {
@@ -65,7 +63,7 @@ class DoseNorm final : public Method {
 
   void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     filtered_projections(light, asked_, iterate.g);
-    clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
+    clip_below(iterate.g, static_cast<float>(options_.min_intensity * light.row_angle_rad()));
     Method::resume(problem, light, iterate);
   }
 
@@ -75,6 +73,17 @@ class DoseNorm final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_dose_norm(const MethodOptions& options) { return std::make_unique<DoseNorm>(options); }
+MethodEntry dose_norm_method() {
+  return {"dose-norm",
+          "Filtered back-projection of the target raised to a background in the void, divided once by the dose it "
+          "receives: fast and good.",
+          "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where "
+          "the text bounds the projections from below by the background, but the figures show them non-negative: "
+          "--min-intensity 0 is right)",
+          1,
+          false,
+          {"--background", "--min-intensity"},
+          make<DoseNorm>};
+}
 
 }  // namespace vam::optimize

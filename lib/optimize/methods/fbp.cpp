@@ -17,14 +17,13 @@ class Fbp final : public Method {
     if (options_.offset) {
       raise_by_minimum(iterate.g);
     } else {
-      clip_below(iterate.g, static_cast<float>(options_.floor * light.row_angle_rad()));
+      clip_below(iterate.g, static_cast<float>(options_.min_intensity * light.row_angle_rad()));
     }
     resume(problem, light, iterate);
   }
 
   void step(const Problem& /*problem*/, const light::Operator& /*light*/, Iterate& /*iterate*/) override {}
   void exchange(Archive& /*archive*/) override {}
-  [[nodiscard]] int usual_iterations() const override { return 0; }
 
  private:
   static void raise_by_minimum(std::vector<Slab>& g) {
@@ -37,6 +36,14 @@ class Fbp final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_fbp(const MethodOptions& options) { return std::make_unique<Fbp>(options); }
+MethodEntry fbp_method() {
+  return {"fbp",
+          "Filtered back-projection; negative intensities are set to the lower bound, or offset.",
+          "Kelly et al., Computed Axial Lithography, 2017, eq 3",
+          0,
+          false,
+          {"--min-intensity", "--negative"},
+          make<Fbp>};
+}
 
 }  // namespace vam::optimize

@@ -1,6 +1,8 @@
-// What every optimiser has in common. A method is one file that implements Method and one line in methods.cpp.
+// What every optimiser has in common. A method is one file, which implements Method and fills in its MethodEntry, and
+// two lines in methods.cpp.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,11 +21,11 @@ struct Iterate {
 
 /// Defaults are the ones the manual shows. A method reads those it needs.
 struct MethodOptions {
-  double background = 0.5;  // dose-norm: B, 0...1
-  double floor = 0;         // fbp, dose-norm: projections are not let below it (fluence)
-  bool offset = false;      // fbp: raise all projections by the lowest value instead of clipping
-  double peak = 0;          // largest fluence, 0 = any: cal, osmo, apg, pm, bclp
-  double power = 2;         // pm, bclp: p of the norm, at least 1
+  double background = 0.5;   // B of the void, 0...1
+  double min_intensity = 0;  // lower bound on projected intensity
+  bool offset = false;       // raise all projections by the lowest value instead of clipping
+  double max_intensity = 0;  // upper bound on projected intensity; 0: none
+  double power = 2;          // p of the norm, at least 1
 };
 
 class Method {
@@ -43,19 +45,37 @@ class Method {
   virtual void exchange(Archive& archive) = 0;
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
   [[nodiscard]] virtual bool keeps_scale() const { return false; }
-  /// Responses of a grey target can be met.
-  [[nodiscard]] virtual bool takes_grey() const { return false; }
-  /// How many iterations are usual.
-  [[nodiscard]] virtual int usual_iterations() const = 0;
 
  protected:
   MethodOptions options_;
 };
 
-/// Names in the order of the manual.
-[[nodiscard]] const std::vector<std::string>& method_names();
+/// What is said of a method: feeds --help, manual, errors and tests of vam-optimize.
+struct MethodEntry {
+  std::string name;
+  std::string summary;               // sentences
+  std::string paper;                 // source: authors, title, year
+  int iterations;                    // default of --iterations
+  bool grey;                         // supports grey targets
+  std::vector<std::string> options;  // of vam-optimize that not every method reads
+  std::unique_ptr<Method> (*make)(const MethodOptions&);
+};
+
+/// For MethodEntry::make.
+template <class Kind>
+std::unique_ptr<Method> make(const MethodOptions& options) {
+  return std::make_unique<Kind>(options);
+}
+
+/// In the order of the manual.
+[[nodiscard]] const std::vector<MethodEntry>& method_table();
 /// Throws Fault::usage for an unknown name.
+[[nodiscard]] const MethodEntry& method_entry(const std::string& name);
 [[nodiscard]] std::unique_ptr<Method> make_method(const std::string& name, const MethodOptions& options);
+
+[[nodiscard]] std::vector<std::string> method_names();
+/// Those for which `holds` is true.
+[[nodiscard]] std::vector<std::string> method_names(const std::function<bool(const MethodEntry&)>& holds);
 
 /// Scales each slice to the common threshold.
 void start_at_threshold(const Problem& problem, const light::Operator& light, Iterate& iterate);

@@ -1,49 +1,46 @@
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/methods/metrics.hpp"
 
 namespace vam::optimize {
 
-std::unique_ptr<Method> make_fbp(const MethodOptions& options);
-std::unique_ptr<Method> make_dose_norm(const MethodOptions& options);
-std::unique_ptr<Method> make_cal(const MethodOptions& options);
-std::unique_ptr<Method> make_osmo(const MethodOptions& options);
-std::unique_ptr<Method> make_pm(const MethodOptions& options);
-std::unique_ptr<Method> make_bclp(const MethodOptions& options);
-std::unique_ptr<Method> make_apg(const MethodOptions& options);
+MethodEntry fbp_method();
+MethodEntry dose_norm_method();
+MethodEntry cal_method();
+MethodEntry osmo_method();
+MethodEntry pm_method();
+MethodEntry bclp_method();
+MethodEntry apg_method();
 
-namespace {
-
-struct Entry {
-  std::string name;
-  std::unique_ptr<Method> (*make)(const MethodOptions&);
-};
-
-const std::vector<Entry>& entries() {
-  static const std::vector<Entry> all{
-      {"fbp", make_fbp}, {"dose-norm", make_dose_norm}, {"cal", make_cal}, {"osmo", make_osmo},
-      {"pm", make_pm},   {"bclp", make_bclp},           {"apg", make_apg}};
+const std::vector<MethodEntry>& method_table() {
+  static const std::vector<MethodEntry> all{
+      fbp_method(), dose_norm_method(), cal_method(), osmo_method(), pm_method(), bclp_method(), apg_method(),
+  };
   return all;
 }
 
-}  // namespace
-
-const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> list;
-    for (const auto& entry : entries()) list.push_back(entry.name);
-    return list;
-  }();
-  return names;
+const MethodEntry& method_entry(const std::string& name) {
+  for (const auto& entry : method_table()) {
+    if (entry.name == name) return entry;
+  }
+  throw Error{Fault::usage, "no method is called '" + name + "'; there are " + join(method_names(), ", ")};
 }
 
 std::unique_ptr<Method> make_method(const std::string& name, const MethodOptions& options) {
-  for (const auto& entry : entries()) {
-    if (entry.name == name) return entry.make(options);
+  return method_entry(name).make(options);
+}
+
+std::vector<std::string> method_names() {
+  return method_names([](const MethodEntry&) { return true; });
+}
+
+std::vector<std::string> method_names(const std::function<bool(const MethodEntry&)>& holds) {
+  std::vector<std::string> names;
+  for (const auto& entry : method_table()) {
+    if (holds(entry)) names.push_back(entry.name);
   }
-  std::string known;
-  for (const auto& entry : entries()) known += (known.empty() ? "" : ", ") + entry.name;
-  throw Error{Fault::usage, "no method is called '" + name + "'; there are " + known};
+  return names;
 }
 
 void Method::start(const Problem& problem, const light::Operator& light, Iterate& iterate) {

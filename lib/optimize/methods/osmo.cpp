@@ -49,8 +49,6 @@ class Osmo final : public Method {
     archive(unit_);
   }
 
-  [[nodiscard]] int usual_iterations() const override { return 30; }
-
  private:
   /// model = A* of what is in g, its largest value 1.
   void begin(const Problem& problem, const light::Operator& light, Iterate& iterate) {
@@ -91,6 +89,14 @@ class Osmo final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_osmo(const MethodOptions& options) { return std::make_unique<Osmo>(options); }
+MethodEntry osmo_method() {
+  return {"osmo",
+          "Corrects a model of the part by the errors of the dose, in void and part alternately.",
+          "Rackson et al., Object-space optimization of tomographic reconstructions, 2021",
+          30,
+          false,
+          {"--max-intensity"},
+          make<Osmo>};
+}
 
 }  // namespace vam::optimize

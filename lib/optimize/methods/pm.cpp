@@ -33,6 +33,14 @@ class Pm final : public Descent {
 
 }  // namespace
 
-std::unique_ptr<Method> make_pm(const MethodOptions& options) { return std::make_unique<Pm>(options); }
+MethodEntry pm_method() {
+  return {"pm",
+          "Minimises the penalty on doses on the wrong side of LOW and HIGH, to the power P.",
+          "Bhattacharya et al., High fidelity volumetric additive manufacturing, 2021",
+          60,
+          true,
+          {"--power", "--max-intensity"},
+          make<Pm>};
+}
 
 }  // namespace vam::optimize

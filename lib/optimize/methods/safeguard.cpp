@@ -40,8 +40,8 @@ PerSlice constant(std::size_t slabs, float value) {
 }
 
 float largest_light(const MethodOptions& options, const light::Operator& light) {
-  if (options.peak <= 0) return std::numeric_limits<float>::max();
-  return static_cast<float>(options.peak * light.row_angle_rad());
+  if (options.max_intensity <= 0) return std::numeric_limits<float>::max();
+  return static_cast<float>(options.max_intensity * light.row_angle_rad());
 }
 
 }  // namespace vam::optimize

@@ -10,21 +10,21 @@
 
 namespace vam::optimize {
 
-/// Rounds fluence to the intensities of a projector's grey levels. Full grey is `peak`, or the largest value of all
-/// images when there is none: then images are held until finish(). With error feedback what rounding left over at one
-/// stage angle is added at the next, column by column, so that the sum over angles, which is the dose, stays right.
+/// Rounds fluence to the intensities of a projector's grey levels. Full grey is `full_scale`, or the largest value of
+/// all images when there is none: then images are held until finish(). With error feedback what rounding left over at
+/// one stage angle is added at the next, column by column, so that the sum over angles, which is the dose, stays right.
 class Quantiser {
  public:
   using Emit = std::function<void(const Image&)>;
 
-  Quantiser(resin::GreyLevels levels, std::optional<double> peak, bool error_feedback, Emit emit);
+  Quantiser(resin::GreyLevels levels, std::optional<double> full_scale, bool error_feedback, Emit emit);
   void add(const Image& image);
   void finish();
 
  private:
-  [[nodiscard]] Image quantised(const Image& image, float peak) const;
+  [[nodiscard]] Image quantised(const Image& image, float full_scale) const;
   resin::GreyLevels levels_;
-  std::optional<double> peak_;
+  std::optional<double> full_scale_;
   bool error_feedback_;
   Emit emit_;
   std::vector<Image> held_;

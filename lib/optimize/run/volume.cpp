@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "light/blurred.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/private/finished.hpp"
@@ -145,9 +146,9 @@ class Run {
   void bring_to_threshold(const Problem& problem, Iterate& state, const light::Operator& light) const {
     if (halo_ > 0) return;  // slices that share dose are to scale already
     PerSlice factor = to_common_threshold(metrics(state.dose, problem), problem);
-    if (task_.max_light > 0) {
+    if (task_.max_intensity > 0) {
       const PerSlice brightest = largest(state.g);
-      const auto most = static_cast<float>(task_.max_light * light.row_angle_rad());
+      const auto most = static_cast<float>(task_.max_intensity * light.row_angle_rad());
       for (std::size_t s = 0; s < factor.size(); ++s) {
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
@@ -207,10 +208,10 @@ class Run {
 
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
   if (task.blur_px > 0 && !task.make()->keeps_scale()) {
-    throw Error{
-        Fault::usage,
-        "this method scales each slice by itself and cannot make up for a blur from slice to slice; use apg, cal, "
-        "pm or bclp, or leave the blur out (--no-blur)"};
+    const auto able = method_names([](const MethodEntry& entry) { return entry.make({})->keeps_scale(); });
+    throw Error{Fault::usage,
+                "this method scales each slice separately and cannot compensate a blur between slices; use " +
+                    join(able, ", ") + ", or neglect the blur (--no-blur)"};
   }
   return Run(task, light)();
 }

@@ -20,9 +20,9 @@ struct VolumeTask {
   Circle circle;
   Demands demands;
   Limits limits;
-  double max_light = 0;  // largest fluence; 0 = any
-  double blur_px = 0;    // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
-  bool watch = false;    // fill the trace
+  double max_intensity = 0;  // upper bound on projected intensity; 0: none
+  double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
+  bool watch = false;  // fill the trace
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
       around;                           // the operator of a pass with these inserts

@@ -70,7 +70,7 @@ TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps wi
   const ParallelOperator light(parts::turn(size, 360));
   const auto problem = make_problem(all.data(), 4, size, size, parts::circle(size), {});
   MethodOptions options;
-  options.peak = 3;
+  options.max_intensity = 3;
   const auto method = make_method("apg", options);
   Iterate state;
   method->start(problem, light, state);

@@ -72,7 +72,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   task.source.slices = part.grid.nz;
   task.circle = vam::model::writable_circle(part.grid, printer);
   task.make = [&] { return make_method(name, {}); };
-  task.limits.iterations = make_method(name, {})->usual_iterations();
+  task.limits.iterations = method_entry(name).iterations;
   if (automatic) {
     task.limits.until = vam::model::parse_conditions(automatic_until, SliceFigures::names());
     task.limits.at_least = automatic_iterations;

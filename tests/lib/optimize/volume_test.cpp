@@ -339,7 +339,7 @@ TEST_CASE("light never exceeds the largest, whatever the scale of the end") {
     CAPTURE(name);
     VolumeTask task;
     MethodOptions options;
-    options.peak = task.max_light = 2;
+    options.max_intensity = task.max_intensity = 2;
     task.limits = {.iterations = 12, .until = {}, .patience = 0};
     task.make = [&] { return make_method(name, options); };
     const auto result = run(slices, task);

@@ -16,8 +16,6 @@ class Descent : public Method {
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override;
   void exchange(Archive& archive) override;
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] bool takes_grey() const override { return true; }
-  [[nodiscard]] int usual_iterations() const override { return 60; }
 
  protected:
   /// The loss of one voxel of slab s, and its derivative by the dose.

@@ -17,7 +17,7 @@ PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerS
 /// The same number for every slice of so many slabs.
 [[nodiscard]] PerSlice constant(std::size_t slabs, float value);
 
-/// Largest value that light may take: options.peak as a sinogram value, or no limit when that is 0.
+/// Largest value that light may take: options.max_intensity as a sinogram value, or no limit when that is 0.
 [[nodiscard]] float largest_light(const MethodOptions& options, const light::Operator& light);
 
 }  // namespace vam::optimize
