@@ -83,10 +83,10 @@ def begin(venue):
 
 def end(cause, tool, feeder, screen):
     """Ends the tool; the seconds until the screen was black."""
-    if cause in ("end of the angles", "nonsense for an angle"):
+    if cause in ("end of the angles", "malformed angle"):
         feeder.stop()
         start = time.monotonic()
-        if cause == "nonsense for an angle":
+        if cause == "malformed angle":
             tool.stdin.write(b"garbage\n")
             tool.stdin.flush()
         else:
@@ -129,7 +129,7 @@ def trials(cause, count, free, step, turn):
 
 def main():
     count = int(sys.argv[1])
-    causes = SIGNALS + ["hang", "end of the angles", "nonsense for an angle"]
+    causes = SIGNALS + ["hang", "end of the angles", "malformed angle"]
     venues = [Venue(f"screen{number}") for number in range(LANES)]
     free = queue.SimpleQueue()
     for venue in venues:

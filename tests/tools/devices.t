@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every device [devices promises 4 and 6]: one user at a time, told by whom within a second, free again after kill -9;
+# Every device [devices promises 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;
 # and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes
@@ -15,7 +15,7 @@ vam-sim-stage --link gcs --die-with-parent >path1 & stage1=$!
 vam-sim-stage --link grbl --protocol grbl --die-with-parent >path2 & stage2=$!
 await test -s number; await test -s path1; await test -s path2
 
-# One long use of each device, which says in its log that it has begun.
+# One long use of each device, whose log records its begin.
 use() {  # use DEVICE LOG
   case $1 in
     gcs | grbl) exec env LD_PRELOAD="$shim" vam-stage follow --device "$1:$PWD/$1" --log "$2" ;;
@@ -39,7 +39,7 @@ for device in gcs grbl tic drm sdl dlpc350; do
     best=$(awk "BEGIN { took = $(date +%s%N) - $start; print (took < $best ? took : $best) }")
     awk "BEGIN { exit !($best < 1e9) }" && break
   done
-  is "$device: the second user is told by whom it is used" "$status $(grep -c "in use by process $pid;" second.err)" '75 1'
+  is "$device: the second user is refused with the pid of the first" "$status $(grep -c "in use by process $pid;" second.err)" '75 1'
   holds "$device: within a second" "$best < 1e9"
   is "$device: and so is its log" "$(tail -n 1 second.log | grep -c '"event":"error".*"status":75')" 1
   kill -9 "$pid"; wait $first 2>/dev/null
@@ -66,7 +66,7 @@ look() { vam-capture --device aravis:127.0.0.1 --binning 6 --frames "$1" -o "$2"
 await sh -c 'grep -q . "$VAM_LOCK_DIR"/* 2>/dev/null'
 start=$(date +%s%N)
 look 1 second.exr 2>second.err; status=$?
-is 'aravis: the second user is told by whom it is used' "$status $(grep -c "in use by process $first;" second.err)" '75 1'
+is 'aravis: the second user is refused with the pid of the first' "$status $(grep -c "in use by process $first;" second.err)" '75 1'
 holds 'aravis: within a second' "$(date +%s%N) - $start < 1e9"
 kill -9 $first; wait $first 2>/dev/null
 tries=0; until look 1 third.exr 2>err || [ $tries -ge 10 ]; do tries=$((tries + 1)); sleep 0.5; done
@@ -80,7 +80,7 @@ is 'cron: homing' "$? $(cat out)" '0 '
 cron vam-stage move --home --to 3 --log -
 is 'cron: a move' "$? $(cat out)" '0 '
 cron vam-project --pattern grey -o null: --hold 0.1 --light sim: --log -
-is 'cron: a test picture' "$? $(cat out)" '0 '
+is 'cron: a test pattern' "$? $(cat out)" '0 '
 python3 - >judged <<'PY'
 import json, re
 lines = [json.loads(line) for line in open("all.log")]

@@ -1,6 +1,6 @@
 #!/bin/sh
 # What a full disk, a bad one and kill -9 leave behind, at every system call that matters: of a file the old one; of a
-# capture folder what can be gone on with, to the identical result [devices promise 5].
+# capture folder one that can be resumed, to the identical result [devices promise 5].
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer writes, too: no call can be counted'; exit 77; }
 strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may not trace here: nothing is tried'; exit 77; }
@@ -34,7 +34,7 @@ resumed() {  # resumed INJECTION STATUS: of a first run; the second one makes up
   take folder 2>.log/again; again=$?
   sort folder/manifest.jsonl >lines
   different=$(for file in whole/*.png; do cmp -s "$file" "folder/$(basename "$file")" || echo "$file"; done; cmp lines whole.lines)
-  is "$1: gone on with" "$status $again$different" "$2 0"
+  is "$1: resumed" "$status $again$different" "$2 0"
 }
 for call in fdatasync:1 fdatasync:2 fdatasync:3 fdatasync:4 fsync:1 fsync:2 write:1 write:2 write:3 write:4; do
   resumed "${call%:*}:signal=SIGKILL:when=${call#*:}" 137

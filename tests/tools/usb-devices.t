@@ -55,7 +55,7 @@ ended missing 69 'no such device'
 for engine in dlpc350 dlpc900; do
   ended $engine 0 ''
   is "$engine: off, on, off" "$(bits $engine)" '"bits":0 "bits":4 "bits":0 '
-  is "$engine: with linear grey and the current asked for" \
+  is "$engine: with linear grey and the requested current" \
     "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current":\[85,85,85\]')" 1
   is "$engine: and asleep at the end" "$(asleep $engine)" 1
 done

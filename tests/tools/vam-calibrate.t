@@ -85,17 +85,17 @@ fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-
 quiet 'a stale record does not stop a new one' vam-calibrate axis --from turn --step 10
 ok 'which heals' vam-project --print-printer -o healed.toml
 
-# A vial that moved is told and not used, unless that is wanted.
+# A vial that moved is reported and not put in force, except with --accept.
 before=$(readlink cal/current-edges.json)
 vam-calibrate edges --from moved --pitch 4 --width 2 2>errors
 is 'a vial that moved by 2 px is a judgement' $? 1
-ok 'which says how far' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
+ok 'which reports the distance' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
 is 'the record in force stays' "$(readlink cal/current-edges.json)" "$before"
 is 'the other is kept, too' "$(kept edges)" 2
 vam-calibrate edges --from moved --pitch 4 --width 2 --accept 2>errors
 is 'accepted' "$? $(grep -c warning errors)" '0 1'
 near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
-echo nonsense >cal/current-beam.json
+echo malformed >cal/current-beam.json
 fails 65 'is no vam-calibration/1 record of beam' vam-project --print-printer
 fails 73 'cannot make the folder' vam-calibrate axis --from turn --step 10 --set calibration.folder=printer.toml/cal
 done_testing

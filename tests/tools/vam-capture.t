@@ -1,5 +1,5 @@
 #!/bin/sh
-# vam-capture: series, folders that are gone on with, marks on what was lost, and bad input.
+# vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
 take="vam-capture --device $sim --binning 12 --fps 10"
@@ -36,7 +36,7 @@ is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 lossy='sim:?pace=virtual&lose=3,4&cut=6'
 vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said
 is 'a capture with losses ends well' $? 0
-ok 'what was lost is said' grep -q '2 frames dropped and 1 incomplete' said
+ok 'lost frames are reported' grep -q '2 frames dropped and 1 incomplete' said
 is 'and reported' "$(json lossy.json frames) $(json lossy.json dropped) $(json lossy.json incomplete)" '10 2 1'
 is 'and logged' "$(grep -c '"event":"dropped","first":3,"last":4' lossy.log) $(grep -c '"event":"incomplete","number":6' lossy.log)" '1 1'
 python3 - "$VAM_SOURCE" >marks <<'PY'
@@ -67,14 +67,14 @@ is 'and took only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -
 sort half/manifest.jsonl >half.lines; sort whole/manifest.jsonl >whole.lines
 same 'the manifests tell the same' half.lines whole.lines
 for file in whole/*.png; do cmp -s "$file" "half/$(basename "$file")" || echo "$file"; done >different
-is 'the pictures are the same' "$(cat different)" ''
+is 'the images are identical' "$(cat different)" ''
 touch -d '2001-01-01' half/*.png
 quiet 'a complete folder is left alone' vam-capture --device replay:views.exr --frames 12 -o half/
-is 'no picture was written again' "$(find half -name '*.png' -newermt 2002-01-01)" ''
+is 'no image was rewritten' "$(find half -name '*.png' -newermt 2002-01-01)" ''
 mkdir other; touch other/file
 fails 73 'holds other things' vam-capture --device replay:views.exr --frames 12 -o other/
 
-# A camera that sends images of another size: said at once, what came before is kept and gone on with.
+# A camera that sends images of another size: reported at once; earlier frames are kept and the capture is resumed.
 shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6 -o shrunk/; }
 shrinking '&shrink=4' 2>said
 is 'another size' "$? $(grep -c ': sends images of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
@@ -90,7 +90,7 @@ vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/ & victi
 tries=0; until [ -s killed/manifest.jsonl ] && [ "$(wc -l <killed/manifest.jsonl)" -gt 4 ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.01; done
 kill -KILL $victim; wait $victim 2>/dev/null
 for file in $(grep -o '[0-9]*\.png' killed/manifest.jsonl); do cmp -s "killed/$file" "whole/$file" || echo "$file"; done >different
-is 'after kill -9 every listed picture is whole' "$(cat different)" ''
+is 'after kill -9 every listed image is complete' "$(cat different)" ''
 quiet 'and the rest is taken' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
 for file in whole/*.png; do cmp -s "$file" "killed/$(basename "$file")" || echo "$file"; done >different
 is 'with the same result' "$(cat different)" ''

@@ -21,7 +21,7 @@ launch refused --fault error@VEL
 aborted 76 'stage failed' 'refused with error 17'
 begin busy
 env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --uncalibrated --run second 2>second-errors
-is 'a second print is turned away' "$? $(grep -c 'in use by process' second-errors)" '75 1'
+is 'a second print is refused' "$? $(grep -c 'in use by process' second-errors)" '75 1'
 kill -TERM $printing
 aborted 143 aborted ''
 screen_down

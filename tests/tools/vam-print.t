@@ -61,14 +61,14 @@ vam-slice box.stl --voxel 0.26 $plain | vam-sinogram --angles 180 --filter ram-l
 is 'frames of a mesh' $? 0
 vam-project frames.exr --speed 25 --fps 250 $plain -o frames.mkv  # the 3600 of a turn
 is 'a print needs its calibration' "$(vam-print frames.exr --screen null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
-is 'which the summary says, too' "$(json no/summary.json status)" 65
+is 'also in the summary' "$(json no/summary.json status)" 65
 rm -r no
 
 screen_up 64 48
 turntable() { stage_up --acceleration 1000 --max-speed 360 --at -130 "$@"; }
 print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
 
-# A machine that is too busy with others to turn a table safely ends a print, as it must (too late an answer, no
+# A machine too busy to turn a stage safely ends a print, as it must (too late an answer, no
 # progress): that says nothing of the print, which is made again, twice at most.
 too_busy() {  # too_busy RUN: after a print that ended with $printed
   { [ $printed -eq 75 ] || [ $printed -eq 137 ]; } && [ $attempt -lt 3 ] || return 1
@@ -91,7 +91,7 @@ for attempt in 1 2 3; do
 done
 is 'the print ends well' $printed 0
 is 'without a word' "$(cat errors)" ''
-ok 'the table stands' stood
+ok 'the stage stands still' stood
 is 'the light came on once and went off' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 is 'the screen is black' "$($screen now)" black
 $judge truth run/flips.jsonl >judged
@@ -101,7 +101,7 @@ holds 'shown-frame angle error, p99' "$(json judged p99_deg) <= 0.1"
 holds 'of a whole turn of flips' "$(json judged flips) > 600 && $(json judged late) < 0.1 * 864"
 holds 'by elapsed time it would have been worse' "$(json judged elapsed_p99_deg) > 1"
 $screen compare frames.mkv seen >compared
-is 'every picture seen on the screen is one of the frames, exactly' "$(cut -d' ' -f1 compared)" exact
+is 'every image on the screen equals one of the frames' "$(cut -d' ' -f1 compared)" exact
 holds 'and many were seen' "$(cut -d' ' -f2 compared) > 100"
 is 'a view every 10 degrees' "$(ls run/views | grep -c png)" 36
 is 'the run folder: outcome' "$(json run/summary.json outcome)" done
@@ -111,7 +111,7 @@ ok 'the run folder: every file is as it was' sh -c 'cd run && sha256sum --check 
 is 'the run folder: the reports' "$(json run/summary.json project.missed_flips | grep -c .) $(json run/summary.json capture.frames)" '1 36'
 stage_down
 
-# Live metrology ends a print: three turns are asked for, and after the first one what is printed is enough.
+# Live metrology ends a print: three turns are requested, and after the first one the print is complete.
 ok 'the design' vam-slice box.stl --voxel 0.5 $plain -o part.vdb
 for attempt in 1 2 3; do
   turntable
@@ -121,10 +121,10 @@ for attempt in 1 2 3; do
   too_busy live || break
 done
 is 'a print that vam-ost ends is well' $printed 0
-is 'and says so' "$(json live/summary.json outcome)" 'stopped by vam-ost'
+is 'and is reported' "$(json live/summary.json outcome)" 'stopped by vam-ost'
 is 'with its condition' "$(json live/summary.json stop_event.condition)" 'missing<=100'
 holds 'after one turn of three' "$(json live/summary.json stop_event.turns) < 1.5"
-await stood; ok 'the table stands' stood
+await stood; ok 'the stage stands still' stood
 is 'black' "$($screen now)" black
 is 'and dark' "$(grep -o '"bits":[0-9]*' leds | tail -n 1)" '"bits":0'
 stage_down

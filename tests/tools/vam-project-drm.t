@@ -18,7 +18,7 @@ $judge pictures frames flips >judged
 is 'every flip showed the frame it was said to, at that blank' "$(cut -d' ' -f1 judged)" exact
 holds 'of 36 frames and black nearly all' "$(cut -d' ' -f2 judged) > 30"
 is 'black at the end' "$(shown)" '"shade":"black"'
-is 'the gamma table is straight' "$(grep -o '"straight":.' card/log)" '"straight":1'
+is 'the gamma table is linear' "$(grep -o '"straight":.' card/log)" '"straight":1'
 
 FAKE_DRM_FAULT=skip:10 print --missed 1 --log flips
 is 'blanks are missed' $? 0
@@ -29,7 +29,7 @@ fails 69 'connectors: eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PR
 fails 64 'unknown option' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?hz=60'
 fails 65 'do not match the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
 
-# Each answer of the card wrong in turn. Who loses the card cannot blacken it: its light goes off then.
+# Each answer of the GPU wrong in turn. Without the GPU the screen cannot be blackened: the light engine goes dark.
 dark_after() {  # seconds from the last picture until the last black, by the card's log
   python3 -c 'import json
 shown = [line for line in map(json.loads, open("card/log")) if "shade" in line]
@@ -38,7 +38,7 @@ print(shown[-1]["t_monotonic_s"] - lit[-1] if lit else 0)'
 }
 spoilt() {  # spoilt STATUS REGEX LAST-SHADE FAULT
   FAKE_DRM_FAULT=$4 print --speed 720 --missed "${5-1}" --light "sim:?log=$PWD/leds" >out 2>errors; status=$?
-  is "$4: status, in a line that says why" "$status $(wc -l <errors) $(grep -Ec -- "$2" errors)" "$1 1 1"
+  is "$4: status, in one line with the reason" "$status $(wc -l <errors) $(grep -Ec -- "$2" errors)" "$1 1 1"
   if [ -n "$3" ]; then
     is "$4: $3" "$(shown)" "\"shade\":\"$3\""
     holds "$4: within the time-out" "$(dark_after) < 0.5"
@@ -58,7 +58,7 @@ spoilt 75 'no flip within 0.25 s' black silent:20
 spoilt 75 'no flip within 0.25 s' black late:20
 spoilt 75 'missed 1 vertical blanks' black skip:20 0.001
 
-# A second user is turned away; a killed one leaves black and a free card.
+# A second user is refused; a killed one leaves black and a free card.
 rm -f card/log
 LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 --speed 10 --missed 1 2>killed & first=$!
 tries=0; until grep -q lit card/log 2>/dev/null || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
@@ -66,7 +66,7 @@ fails 75 "in use by process $first;" env LD_PRELOAD="$card" vam-project part.exr
 kill -9 $first; wait $first 2>/dev/null
 is 'a killed print is killed' $? 137
 tries=0; until grep -q guardian killed || [ $tries -ge 100 ]; do tries=$((tries + 1)); sleep 0.02; done
-is 'its guardian says what it did' "$(grep -c "process $first ended unexpectedly; screen safe" killed) $(shown)" '1 "shade":"black"'
+is 'its guardian reports its action' "$(grep -c "process $first ended unexpectedly; screen safe" killed) $(shown)" '1 "shade":"black"'
 print --missed 1 --speed 720
 is 'the screen is free again' $? 0
 done_testing

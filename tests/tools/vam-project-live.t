@@ -1,5 +1,5 @@
 #!/bin/sh
-# vam-project on a screen: pixels exact, frames by the table's angle, black whatever happens.
+# vam-project on a screen: pixels exact, frames by the stage angle, black in every case.
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -19,7 +19,7 @@ fails 64 'above the limit' vam-project part.exr -o null: --light 'sim:?current=1
 fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?current=60&max_current=200' --set projector.max_led_current=50
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 
-# Test pictures, to files and to a dry run.
+# Test patterns, to files and to a dry run.
 fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
 fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
@@ -64,7 +64,7 @@ wait $fast
 is 'a stage 3 % too fast is an error' "$? $(grep -c '3 % error, limit 1 %' errors3)" '75 1'
 is 'the light never came on, and all was black' "$(grep -c '"bits":[1-9]' leds3) $(grep -c '"frame":[0-9]' flips3)" '0 0'
 
-# A real window, on a virtual screen whose picture is a file.
+# A real window, on a virtual screen whose image is a file.
 screen_up 64 48
 
 fails 65 'do not match the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
@@ -76,12 +76,12 @@ $screen watch 6 0.5 >seen &
 watcher=$!
 await test -s shown
 vam-project part.exr -o sdl:0 2>second
-is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
+is 'a second user is refused' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool
 is 'an unfollowed print ends well' $? 0
 wait $watcher
 $screen compare frames seen >compared
-is 'every picture seen on the screen is one of the frames, exactly' "$(cut -d' ' -f1 compared)" exact
+is 'every image on the screen equals one of the frames' "$(cut -d' ' -f1 compared)" exact
 holds 'and of the 19 different frames nearly all were seen' "$(cut -d' ' -f2 compared) >= 18"
 is 'black at the end' "$($screen now)" black
 is 'nothing was said' "$(cat errors)" ''

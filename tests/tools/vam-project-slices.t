@@ -1,4 +1,4 @@
-# vam-project with the slices of vam-curethrough: a timed sequence, to pictures, stack, video and screen.
+# vam-project with the slices of vam-curethrough: a timed sequence, to images, stack, video and screen.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 png="python3 $VAM_SOURCE/tests/tools/png.py"
@@ -10,7 +10,7 @@ screen="$screen --set projector.max_intensity_mw_cm2=110 --set projector.min_int
 vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb
 vam-curethrough correct ladder.vdb $light -o slices.exr --png levels
 size=$($png size levels/00000.png | cut -d' ' -f1,2)
-quiet "slices as pictures" vam-project slices.exr $screen -o shown/ --report shown.json
+quiet "slices as images" vam-project slices.exr $screen -o shown/ --report shown.json
 is "every slice once, the three extra ones at the end" "$(json shown.json frames)" 53
 holds "rate = print speed / slice height" "($(json shown.json fps_hz) - 50 / 9)^2 < 1e-12 && ($(json shown.json duration_s) - 9.54)^2 < 1e-9"
 is "times in the index" "$(sed -n '1p;3p;54p' shown/frames.csv | tr '\n' ' ')" "file,time_s,angle_deg 00001.png,0.18,0 00052.png,9.36,0 "
@@ -20,7 +20,7 @@ holds "its times are its rate" "($(json again.json fps_hz) - 50 / 9)^2 < 1e-9"
 for n in 00000 00020 00052; do $png sum levels/$n.png; done | tr '\n' ' ' >levels.sums
 for n in 00000 00020 00052; do $png sum again/$n.png; done | tr '\n' ' ' >again.sums
 same "levels stay as they are" levels.sums again.sums
-quiet "whole pictures" vam-project again/ $screen -o third/
+quiet "full-size images" vam-project again/ $screen -o third/
 is "stay where they are" "$($png get third/00020.png 119 99)" "$($png get again/00020.png 119 99)"
 is "the middle of the slices is the axis" "$($png get again/00020.png 119 99)" \
   "$($png get levels/00020.png $(echo $size | awk '{ print int(($1 - 1) / 2), int(($2 - 1) / 2) }'))"

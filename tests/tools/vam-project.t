@@ -7,12 +7,12 @@ small_printer >printer.toml
 $exr make part.exr space=projector width=64 height=36 count=3   # slices at z = 0, 0.26, 0.52 mm, brightest 1, 2, 3
 
 # Forms
-quiet "a folder of pictures" vam-project part.exr -o frames/
+quiet "a folder of images" vam-project part.exr -o frames/
 is "one frame per time step" "$(ls frames | grep -c png)" 36
 is "the first names" "$(ls frames | head -n 2 | tr '\n' ' ')" "00000.png 00001.png "
 is "size and depth" "$($png size frames/00000.png)" "64 8 8 1"
 is "the index" "$(sed -n '1p;3p' frames/frames.csv | tr '\n' ' ')" "file,time_s,angle_deg 00001.png,1,10 "
-is "history in the picture" "$($png text frames/00000.png Comment | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
+is "history in the image" "$($png text frames/00000.png Comment | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
 ok "an EXR stack" vam-project part.exr -o frames.exr --compression none
 is "frames of the projector" "$($exr attr frames.exr vam:kind) $($exr attr frames.exr vam:space)" "frames projector"
 is "row 0 is at the top: z = 5 rows of 0.26 mm" "$($exr attr frames.exr vam:z_mm) $($exr attr frames.exr vam:row_mm)" "1.3 -0.26"
@@ -27,7 +27,7 @@ python3 - >video.sums <<'PY'
 data = open("video.raw", "rb").read()
 print(*[sum(data[512 * n:512 * n + 512]) for n in (0, 1, 35)], end=" ")
 PY
-same "video and pictures have the same pixels" pictures.sums video.sums
+same "video and images have the same pixels" pictures.sums video.sums
 
 # Transposition: row 5 is slice 0, rows go up; the sinogram's row n is frame n.
 brightest=$($exr get pipe.exr 0 44 3)
@@ -64,13 +64,13 @@ vam-project part.exr --bits 2 >quantised.exr
 holds "an EXR with --bits is quantised" "($($exr get quantised.exr 0 44 4) - 2 / 3)^2 < 1e-9"
 printf 'grey,intensity\n0,0\n128,1\n255,4\n' >curve.csv
 vam-project part.exr --set projector.response=curve.csv -o curved/
-# Slice 0 wants 1/3 of full, 4/3 of the table's units: above grey 128 on the curve, where the straight line has 85.
+# Slice 0 wants 1/3 of full, 4/3 in the units of the response table: above grey 128 on the curve, where the linear response has 85.
 holds "the inverse response" "$($png get curved/00000.png 44 5) > 140 && $($png get curved/00000.png 44 5) < 160"
 is "the straight line" "$($png get frames/00000.png 44 5)" 85
 vam-project part.exr --full-scale 6 -o half/
 is "--full-scale halves" "$($png get half/00000.png 44 3)" 127
 ok "clipping succeeds" vam-project part.exr --gain 3 -o clipped/ --report clipped.json
-is "and says so in one line" "$(grep -c 'exceed full intensity' .log/err)" 1
+is "and is reported in one line" "$(grep -c 'exceed full intensity' .log/err)" 1
 holds "and in the report" "$(json clipped.json clipped_fraction) > 0.1"
 
 # Flatland

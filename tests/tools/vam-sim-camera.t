@@ -13,14 +13,14 @@ fails 73 'cannot be written' vam-sim-camera --log missing/log
 
 camera_up --lose 5 --cut 8,11 --speed 45 --lit 0.5 --shrink 60 --log truth
 vam-capture identify --device aravis:127.0.0.1 >who
-is 'it says who it is' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
+is 'it identifies itself' "$? $(json who camera.serial) $(json who camera.transport)" '0 VAM1 GigE Vision'
 fails 75 'UDP port 3956 is in use' vam-sim-camera
 fails 64 'no trigger Line9; the camera has Line0, Software' $take --trigger Line9 --frames 1 -o no.exr
 fails 64 'no pixel format Mono12' $take --format Mono12 --frames 1 -o no.exr
 $take --frames 40 -o views/ --log log 2>said & tool=$!
 await test -s views/manifest.jsonl
 vam-capture identify --device aravis:127.0.0.1 2>second
-is 'a second user is turned away' "$? $(grep -c "in use by process $tool;" second)" '75 1'
+is 'a second user is refused' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool
 is 'lost frames are missing frames' "$? $(grep -c '3 of 40 frames are missing (1 frames dropped and 2 incomplete)' said)" '75 1'
 python3 - >judged <<'PY'
@@ -38,7 +38,7 @@ is 'every other frame arrived, exactly as sent' "$(sed -n 1p judged)" '37 37'
 is 'the lost and the cut ones are marked' "$(sed -n 2p judged)" '[8, 11] [[5, 5]]'
 is 'times are those of the sender, but for a steady delay' "$(sed -n 3p judged)" True
 $take --frames 60 -o shrunk/ 2>said
-is 'other pictures than agreed are nonsense' "$? $(grep -c ': sends images of 120 x 45 pixels instead of 120 x 90;' said) $(wc -l <said)" '76 1 1'
+is 'images of another size are a protocol error' "$? $(grep -c ': sends images of 120 x 45 pixels instead of 120 x 90;' said) $(wc -l <said)" '76 1 1'
 is 'what came before is kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" "$(ls shrunk | grep -c png)"
 camera_down
 

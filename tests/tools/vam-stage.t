@@ -25,7 +25,7 @@ quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' 
 fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --to 20
 vam-stage follow --seconds 0.2 --rate 50 >samples
 is 'follow takes its samples' "$(wc -l <samples)" 10
-holds 'and says where the table stands' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
+holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
 
 # The same controller behind a serial line.
 stage_up --acceleration 5000 --max-speed 720
@@ -38,11 +38,11 @@ is 'spin ends well' $? 0
 is 'without a word' "$(cat errors)" ''
 holds 'its angle ends past the turn' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
 holds 'and began before the run-up' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90"
-ok 'the table stands' stood
+ok 'the stage stands still' stood
 is 'two events' "$(wc -l <events)" 2
 ok 'with both times' grep -Eq '"utc":"20[0-9-]+T[0-9:.]+Z","t_monotonic_s":[0-9.]+,"event":"end"' events
 
-# A second user is turned away at once and told by whom.
+# A second user is refused at once, with the pid of the first.
 LD_PRELOAD=$shim vam-stage spin --device "gcs:$PWD/stage" --speed 1 >/dev/null &
 first=$!
 await turning
@@ -60,7 +60,7 @@ is 'a killed user is killed' $? 137
 sleep 0.1
 ok 'the device is free again' stage status
 stage status >state
-is 'and the table stands' "$(json state moving)" false
+is 'and the stage stands still' "$(json state moving)" false
 stage_down
 
 # The simulated line is anybody's, one user after the other. Nothing is refused to root, who becomes nobody for this.
@@ -98,7 +98,7 @@ stage_down
 fails 64 'steps_per_deg' vam-stage identify --device tic:
 fails 69 'no such device|not available' vam-stage identify --device 'tic:?steps_per_deg=10'
 
-# Spoilt answers: the fault is named, and the table stands.
+# Injected faults: the error names the fault, and the stage stands still.
 spoilt() {  # spoilt STATUS REGEX FAULT
   stage_up --acceleration 5000 --max-speed 720 --fault "$3"
   fails "$1" "$2" stage spin --speed 360 --run-up 0.25

@@ -14,12 +14,12 @@ namespace vam::capture_tool {
 
 namespace {
 
-using device::CameraFrame;
+using device::CapturedFrame;
 
 // Every frame of a folder of vam-capture, by its manifest.
 device::CameraFeed folder_feed(const std::string& place) {
   auto manifest = std::make_shared<io::CaptureManifest>(io::read_manifest(place));
-  return [manifest, place, next = manifest->frames.begin()](CameraFrame& frame) mutable {
+  return [manifest, place, next = manifest->frames.begin()](CapturedFrame& frame) mutable {
     if (next == manifest->frames.end()) return false;
     const io::CaptureRecord& record = next->second;
     frame.levels = io::read_picture((std::filesystem::path(place) / io::capture_file_name(record.place)).string());
@@ -35,7 +35,7 @@ device::CameraFeed folder_feed(const std::string& place) {
 
 device::CameraFeed picture_feed(const std::string& place) {
   auto folder = std::make_shared<io::PictureFolder>(place);
-  return [folder, next = 0](CameraFrame& frame) mutable {
+  return [folder, next = 0](CapturedFrame& frame) mutable {
     if (next == folder->count()) return false;
     frame = {};
     frame.levels = folder->read(next);
@@ -66,7 +66,7 @@ GreyImage to_levels(const Image& image, int bits, const std::string& what) {
 device::CameraFeed stack_feed(const std::string& place) {
   auto reader = std::make_shared<io::StackReader>(place);
   io::require(place, reader->info(), model::Kind::frames, model::Space::camera);
-  return [reader, place, next = 0, bits = 0](CameraFrame& frame) mutable {
+  return [reader, place, next = 0, bits = 0](CapturedFrame& frame) mutable {
     Image image;
     model::ImageInfo about;
     while (!reader->next(image, about)) {

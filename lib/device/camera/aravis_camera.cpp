@@ -160,7 +160,7 @@ class AravisCamera final : public Camera {
     check(problem, "software trigger");
   }
 
-  std::optional<CameraFrame> next() override {
+  std::optional<CapturedFrame> next() override {
     const double patience_s = settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 0);
     const double limit_s = clock_.now_s() + patience_s;
     for (;;) {
@@ -332,11 +332,11 @@ class AravisCamera final : public Camera {
   }
 
   // The status comes first: of a frame whose leader was lost, id, times and shape are those of the buffer's last use.
-  CameraFrame take(ArvBuffer* buffer) {
+  CapturedFrame take(ArvBuffer* buffer) {
     const ArvBufferStatus status = arv_buffer_get_status(buffer);
     const std::uint64_t id = arv_buffer_get_frame_id(buffer);
     const bool known = status == ARV_BUFFER_STATUS_SUCCESS || id != 0;
-    CameraFrame frame;
+    CapturedFrame frame;
     frame.complete = status == ARV_BUFFER_STATUS_SUCCESS;
     const bool usb = arv_camera_is_uv_device(camera_.get()) != 0;
     frame.number = count_.number(known || usb ? std::optional(id) : std::nullopt);

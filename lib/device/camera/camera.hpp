@@ -41,7 +41,7 @@ struct CameraMode {
 };
 
 /// An image with the facts of its taking.
-struct CameraFrame {
+struct CapturedFrame {
   GreyImage levels;                 // 8 or 16 bits; depths between are spread over 16
   long number = 0;                  // frames since start(), those counted that the camera made but nobody received
   double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, were the stamp set at its end
@@ -63,7 +63,7 @@ class Camera {
   /// Takes an image; only with trigger "software".
   virtual void trigger() = 0;
   /// The next frame, in order; nothing when a recording has ended.
-  virtual std::optional<CameraFrame> next() = 0;
+  virtual std::optional<CapturedFrame> next() = 0;
 
   void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
 
@@ -72,7 +72,7 @@ class Camera {
 };
 
 /// The recorded frames of a place, one a call; false after the last.
-using CameraFeed = std::function<bool(CameraFrame&)>;
+using CameraFeed = std::function<bool(CapturedFrame&)>;
 
 /// What the backends cannot reach themselves: files, for replay:, and the bench that sim: pretends to look at.
 struct CameraBench {

@@ -16,12 +16,12 @@ class Series {
       : angles_(angles), plan_(plan), sink_(sink) {}
 
   // False when the last place has had its time.
-  bool take(CameraFrame&& frame);
+  bool take(CapturedFrame&& frame);
   void flush();
   [[nodiscard]] CaptureTally finish();
 
  private:
-  [[nodiscard]] std::optional<AngleSample> angle_of(const CameraFrame& frame) const {
+  [[nodiscard]] std::optional<AngleSample> angle_of(const CapturedFrame& frame) const {
     if (angles_ != nullptr) return angles_->at(frame.time_s);
     if (frame.angle_deg) return AngleSample{frame.time_s, *frame.angle_deg, 0};
     return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<long> Series::place_of(const Shot& shot) {
   return plan_.by_number ? shot.frame.number - *origin_ : received_++;
 }
 
-bool Series::take(CameraFrame&& frame) {
+bool Series::take(CapturedFrame&& frame) {
   if (last_number_ && frame.number > *last_number_ + 1) {
     tally_.dropped += frame.number - *last_number_ - 1;
     sink_.dropped(*last_number_ + 1, frame.number - 1);

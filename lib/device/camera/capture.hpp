@@ -20,7 +20,7 @@ struct CapturePlan {
 
 /// A frame that is kept.
 struct Shot {
-  CameraFrame frame;  // time_s is the middle of the exposure
+  CapturedFrame frame;  // time_s is the middle of the exposure
   std::optional<AngleSample> angle;
   long place = 0;
 };

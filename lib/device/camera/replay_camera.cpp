@@ -25,8 +25,8 @@ class ReplayCamera final : public Camera {
   void start() override { start_s_ = clock_.now_s(); }
   void trigger() override { throw Error{Fault::usage, place_ + ": a recording cannot be triggered"}; }
 
-  std::optional<CameraFrame> next() override {
-    CameraFrame frame;
+  std::optional<CapturedFrame> next() override {
+    CapturedFrame frame;
     if (std::exchange(waiting_, false)) {
       frame = std::move(first_);
       origin_s_ = frame.time_s;
@@ -50,7 +50,7 @@ class ReplayCamera final : public Camera {
   bool in_step_;
   Clock& clock_;
   CameraFeed feed_;
-  CameraFrame first_;
+  CapturedFrame first_;
   CameraMode mode_;
   bool waiting_ = false;
   double start_s_ = 0;

@@ -111,7 +111,7 @@ class V4l2Camera final : public Camera {
     streaming_ = true;
   }
 
-  std::optional<CameraFrame> next() override {
+  std::optional<CapturedFrame> next() override {
     const double limit_s = clock_.now_s() + settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 1);
     for (;;) {
       check_interrupted();
@@ -252,10 +252,10 @@ class V4l2Camera final : public Camera {
     if (mappings_.empty()) throw Error{Fault::memory, path_ + ": provides no buffers"};
   }
 
-  CameraFrame take(v4l2_buffer& buffer) {
+  CapturedFrame take(v4l2_buffer& buffer) {
     if (buffer.index >= mappings_.size()) throw Error{Fault::protocol, path_ + ": returned an unknown buffer"};
     const Mapping& mapping = mappings_[buffer.index];
-    CameraFrame frame;
+    CapturedFrame frame;
     frame.number = count_.number(buffer.sequence);
     frame.complete = (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0;
     const double stamp_s =

@@ -62,7 +62,7 @@ std::string gcs_error_text(int code) {
 GcsLink::GcsLink(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings)
     : port_(std::move(port)), clock_(clock), settings_(settings) {}
 
-Error GcsLink::nonsense(const std::string& question, const std::string& answer, const std::string& what) const {
+Error GcsLink::malformed(const std::string& question, const std::string& answer, const std::string& what) const {
   return {Fault::protocol, port_->name() + ": '" + shown(question) + "' was answered '" + shown(answer) + "', " + what};
 }
 
@@ -85,7 +85,7 @@ std::string GcsLink::read_more(const std::string& question, const std::string& s
                                  (settings_.address ? ", baud rate and address" : " and baud rate")};
   }
   if (so_far.size() + bytes.size() > longest_answer)
-    throw nonsense(question, so_far, "more than 64 KiB without a terminator");
+    throw malformed(question, so_far, "more than 64 KiB without a terminator");
   return bytes;
 }
 
@@ -101,7 +101,8 @@ std::string GcsLink::without_sender(const std::string& question, const std::stri
   if (error != std::errc{} || stopped != end) return line;
   const int wanted = settings_.address.value_or(1);
   if (sender != wanted) {
-    throw nonsense(question, line, "by controller " + std::to_string(sender) + " instead of " + std::to_string(wanted));
+    throw malformed(question, line,
+                    "by controller " + std::to_string(sender) + " instead of " + std::to_string(wanted));
   }
   return line.substr(second + 1);
 }
@@ -120,7 +121,7 @@ GcsAnswer GcsLink::ask(const std::string& text) {
     std::string line = received.substr(0, end);
     received.erase(0, end + 1);
     if (line.empty()) continue;  // the LF that may follow the byte of #7
-    if (!printable(line)) throw nonsense(text, line, "which is not printable text; check the baud rate");
+    if (!printable(line)) throw malformed(text, line, "which is not printable text; check the baud rate");
     const bool last = line.back() != ' ';
     if (!last) line.pop_back();
     answer.lines.push_back(without_sender(text, line));
@@ -139,7 +140,7 @@ double GcsLink::ask_number(const std::string& text, double* t0_s, double* t1_s) 
   const bool echoes = equals != std::string::npos && split(line.substr(0, equals), ' ').front() == axis;
   const auto value = echoes ? parse_number(line.substr(equals + 1)) : std::nullopt;
   if (!value || !std::isfinite(*value) || answer.lines.size() != 1) {
-    throw nonsense(text, line, "not '" + axis + "=<number>'");
+    throw malformed(text, line, "not '" + axis + "=<number>'");
   }
   if (t0_s != nullptr) *t0_s = answer.t0_s;
   if (t1_s != nullptr) *t1_s = answer.t1_s;
@@ -149,7 +150,7 @@ double GcsLink::ask_number(const std::string& text, double* t0_s, double* t1_s) 
 int GcsLink::take_error() {
   const std::string line = ask("ERR?").lines.front();
   const auto value = parse_number(line);
-  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e6) throw nonsense("ERR?", line, "not a number");
+  if (!value || *value != std::floor(*value) || std::abs(*value) > 1e6) throw malformed("ERR?", line, "not a number");
   return static_cast<int>(*value);
 }
 
@@ -166,7 +167,7 @@ unsigned GcsLink::motion_bits() {
   unsigned bits = 0;
   const std::string digits = line.rfind("0x", 0) == 0 ? line.substr(2) : line;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), bits, 16);
-  if (error != std::errc{} || end != digits.data() + digits.size()) throw nonsense("#5", line, "not hexadecimal");
+  if (error != std::errc{} || end != digits.data() + digits.size()) throw malformed("#5", line, "not hexadecimal");
   return bits;
 }
 
@@ -180,9 +181,9 @@ bool GcsLink::ready() {
     if (byte != received.end()) {
       const auto code = static_cast<unsigned char>(*byte);
       if (code == 0xB1 || code == 0xB0) return code == 0xB1;
-      throw nonsense("#7", received, "neither B1 (ready) nor B0 (busy)");
+      throw malformed("#7", received, "neither B1 (ready) nor B0 (busy)");
     }
-    if (received.find('\n') != std::string::npos) throw nonsense("#7", received, "neither B1 (ready) nor B0 (busy)");
+    if (received.find('\n') != std::string::npos) throw malformed("#7", received, "neither B1 (ready) nor B0 (busy)");
   }
 }
 

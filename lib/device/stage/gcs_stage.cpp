@@ -50,7 +50,7 @@ class GcsStage final : public Stage {
   Json identify() override {
     const std::string line = link_.ask("*IDN?").lines.front();
     const auto parts = split(line, ',');
-    if (parts.size() < 4) throw link_.nonsense("*IDN?", line, "not 'maker, model, serial, firmware'");
+    if (parts.size() < 4) throw link_.malformed("*IDN?", line, "not 'maker, model, serial, firmware'");
     Json about{{"maker", trimmed(parts[0])}, {"model", trimmed(parts[1])}};
     about["serial"] = trimmed(parts[2]);
     about["firmware"] = trimmed(parts[3]);

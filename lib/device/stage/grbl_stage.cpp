@@ -175,12 +175,12 @@ class GrblStage final : public Stage {
       const std::size_t equals = line.find('=');
       const auto value =
           equals == std::string::npos ? std::nullopt : parse_number(split(line.substr(equals + 1), ' ').front());
-      if (line.front() != '$' || !value) throw nonsense("$$", line);
+      if (line.front() != '$' || !value) throw malformed("$$", line);
       settings_[line.substr(0, equals)] = *value;
     }
   }
 
-  Error nonsense(const std::string& question, const std::string& line) const {
+  Error malformed(const std::string& question, const std::string& line) const {
     return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + line.substr(0, 40) + "'"};
   }
 
@@ -210,7 +210,7 @@ class GrblStage final : public Stage {
                                      " s; check power, cable and baud rate"};
       }
       if (bytes.empty()) return "";
-      if (buffer_.size() + bytes.size() > 65536) throw nonsense("?", buffer_);
+      if (buffer_.size() + bytes.size() > 65536) throw malformed("?", buffer_);
       buffer_ += bytes;
     }
   }
@@ -220,7 +220,7 @@ class GrblStage final : public Stage {
     if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
       throw Error{Fault::protocol, port_->name() + ": '" + question + "' was refused with " + line};
     }
-    throw nonsense(question, line);
+    throw malformed(question, line);
   }
 
   void order(const std::string& line) {
@@ -238,7 +238,7 @@ class GrblStage final : public Stage {
     port_->write("?");
     std::string line = next_line(timeout_s, true);
     while (line == "ok") line = next_line(timeout_s, true);
-    if (line.front() != '<' || line.back() != '>') throw nonsense("?", line);
+    if (line.front() != '<' || line.back() != '>') throw malformed("?", line);
     stop_order_.beat();
     return line;
   }

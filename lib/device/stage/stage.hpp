@@ -33,9 +33,9 @@ struct StageSample {
 enum class Stop { smooth, abrupt };
 
 /// A turning stage. Calls return within their time-out and throw Error: absent (unplugged), busy (no answer in time),
-/// protocol (nonsense, or an error code of the controller). From the first motion until the stage is known to stand,
-/// the guardian holds the order to stop it; every good answer is a heartbeat. The destructor stops a stage that still
-/// moves.
+/// protocol (a malformed answer, or an error code of the controller). From the first motion until the stage is known to
+/// stand, the guardian holds the order to stop it; every good answer is a heartbeat. The destructor stops a stage that
+/// still moves.
 class Stage {
  public:
   virtual ~Stage() = default;

@@ -93,9 +93,9 @@ class SimCamera final : public device::Camera {
     trigger_s_ = clock_.now_s();
   }
 
-  std::optional<device::CameraFrame> next() override {
+  std::optional<device::CapturedFrame> next() override {
     for (;;) {
-      device::CameraFrame frame;
+      device::CapturedFrame frame;
       frame.number = next_++;
       frame.time_s = start_s_ + static_cast<double>(frame.number) / sim_.fps;
       if (triggered_) {

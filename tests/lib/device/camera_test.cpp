@@ -31,7 +31,7 @@ std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const Came
 // A recording of so many frames, a tenth of a second and step_deg apart; those in `lost` are not in it.
 CameraBench recording(int count, double step_deg, std::set<long> lost, std::set<long> cut) {
   return {[=](const std::string&) -> CameraFeed {
-            return [=, next = 0L](CameraFrame& frame) mutable {
+            return [=, next = 0L](CapturedFrame& frame) mutable {
               while (lost.contains(next)) ++next;
               if (next >= count) return false;
               frame = {};
@@ -72,7 +72,7 @@ Taken take(const CameraBench& bench, const CapturePlan& plan, AngleSource* angle
 
 }  // namespace
 
-TEST_CASE("Frame ids: gaps are counted, GigE ids come round after 65535, nonsense counts as the next frame") {
+TEST_CASE("Frame ids: gaps are counted, GigE ids come round after 65535, a malformed one counts as the next frame") {
   FrameCount count;
   CHECK(count.number(65530) == 0);
   CHECK(count.number(65533) == 3);

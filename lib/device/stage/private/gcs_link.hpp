@@ -50,7 +50,7 @@ class GcsLink {
   /// Gives the port away; the link is of no use afterwards.
   [[nodiscard]] std::unique_ptr<Port> take_port() { return std::move(port_); }
   [[nodiscard]] const GcsSettings& settings() const { return settings_; }
-  [[nodiscard]] Error nonsense(const std::string& question, const std::string& answer, const std::string& what) const;
+  [[nodiscard]] Error malformed(const std::string& question, const std::string& answer, const std::string& what) const;
 
  private:
   double send(const std::string& text);  // when, no later than the first byte left
