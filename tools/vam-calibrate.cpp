@@ -24,9 +24,9 @@ cli::Manual manual() {
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
        "each image column is another plane. latency takes the times of the frames as true: determine --latency of "
        "vam-capture first.",
-       "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder "
-       "(vam-ost): the threshold at which its cross-section has the known diameter, from a mean over the height of "
-       "the standard. Its record is the --resin of vam-ost and vam-sdf.",
+       "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder (vam-ost): "
+       "the threshold at which its cross-section has the known diameter, from a mean over the height of the standard. "
+       "Its record is the --resin of vam-ost and vam-sdf.",
        "A record is a JSON file in calibration.folder of the printer file: read-only, named "
        "cal-INSTRUMENT-SCAN-UTC.json, with the unit, standard deviation, number of readings and method of each value, "
        "the hashes of the frames, the validity period, the instrument and the vial. The link current-SCAN.json points "

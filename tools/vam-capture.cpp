@@ -28,8 +28,8 @@ cli::Manual manual() {
        "A device is a scheme, a place and options. aravis:IP-or-ID is a GenICam camera on USB3 Vision or GigE Vision "
        "(?packet_size=8000, ?buffers=20); aravis: is the only camera present. v4l2:/dev/video0 is a Video4Linux "
        "camera. replay:PLACE is a folder of vam-capture, a folder of numbered images or an EXR frame stack, read as "
-       "fast as possible, or with ?pace=real in real time. sim: is a vial with a growing print, simulated in the "
-       "tool; its options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
+       "fast as possible, or with ?pace=real in real time. sim: is a vial with a growing print, simulated in the tool; "
+       "its options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
        "Lost frames are always reported: the numbers of dropped and of incomplete frames appear on standard error, in "
        "--report and in --log; an incomplete frame is marked in the manifest and in the stack (vam:incomplete), where "
        "it keeps the received parts, and vam-ost ignores it. A gap in vam:number means dropped frames."},

@@ -36,29 +36,28 @@ struct Options {
 };
 
 cli::Manual manual() {
-  return {
-      "vam-sim-camera",
-      "simulate a GigE Vision camera beside the vial",
-      {"Simulates a GenICam camera on GigE Vision, on a network address of this machine: it prints that address "
-       "when it is ready, and serves any GenICam client until a signal ends it. It views a simulated, refracting "
-       "vial: the print scatters and grows with its dose, and the projected image fluoresces in the resin.",
-       "The vial turns according to the log of vam-sim-stage (--angles), or at a constant --speed. The projector "
-       "shows the frames given by the log of vam-project (--shown), which also make the print grow: the test "
-       "pattern named in the log, else the frames of --frames or --pattern. Without that log the first frame is "
-       "shown all the time. A camera frame integrates over its whole exposure, also across changes of the image.",
-       "Its own log is the reference for tests of the tools: for every frame its number, the angle, the exposed time "
-       "so far in seconds and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
-       "An address has one camera at a time: GigE Vision's control port is always 3956."},
-      {{"Identify a simulated camera",
-        "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
-      {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
-       "some. --vanish N disconnects the cable before frame N: the program ends without informing its client. "
-       "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again. "
-       "The bench may be misaligned; the options of that group are the quantities measured by vam-calibrate.",
-       "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
-      {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
-      {},
-      cli::device_statuses};
+  return {"vam-sim-camera",
+          "simulate a GigE Vision camera beside the vial",
+          {"Simulates a GenICam camera on GigE Vision, on a network address of this machine: it prints that address "
+           "when it is ready, and serves any GenICam client until a signal ends it. It views a simulated, refracting "
+           "vial: the print scatters and grows with its dose, and the projected image fluoresces in the resin.",
+           "The vial turns according to the log of vam-sim-stage (--angles), or at a constant --speed. The projector "
+           "shows the frames given by the log of vam-project (--shown), which also make the print grow: the test "
+           "pattern named in the log, else the frames of --frames or --pattern. Without that log the first frame is "
+           "shown all the time. A camera frame integrates over its whole exposure, also across changes of the image.",
+           "Its own log is the reference for tests of the tools: for every frame its number, the angle, the exposed "
+           "time so far in seconds and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
+           "An address has one camera at a time: GigE Vision's control port is always 3956."},
+          {{"Identify a simulated camera",
+            "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
+          {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
+           "some. --vanish N disconnects the cable before frame N: the program ends without informing its client. "
+           "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again. The "
+           "bench may be misaligned; the options of that group are the quantities measured by vam-calibrate.",
+           "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
+          {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
+          {},
+          cli::device_statuses};
 }
 
 void declare(cli::App& app, Options& o) {

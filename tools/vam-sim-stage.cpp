@@ -35,9 +35,9 @@ cli::Manual manual() {
   return {
       "vam-sim-stage",
       "simulate a rotation stage on a pseudo-terminal",
-      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a "
-       "pseudo-terminal, prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia "
-       "and limits, must be powered and referenced, and rejects commands with the error codes of the controller.",
+      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a pseudo-terminal, "
+       "prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia and limits, must "
+       "be powered and referenced, and rejects commands with the error codes of the controller.",
        "Its log is the reference for tests of the tools: one JSON line per received command, per start, standstill and "
        "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
        "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded, whose path "

@@ -40,21 +40,18 @@ cli::Manual manual() {
       "turn the rotation stage and report its angle",
       {"Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
        "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
-       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, "
-       "which all processes of the machine share, the angle at that time, and its standard deviation in degrees. "
-       "vam-project --follow reads these lines. The angle is 0 where the projection may begin, negative before, and "
-       "360 "
-       "times the number of turns where it must have ended. Angle 0 is always the same position of the stage: its "
-       "reference after home.",
+       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, which all processes "
+       "of the machine share, the angle at that time, and its standard deviation in degrees. vam-project --follow "
+       "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
+       "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
        "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
-       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is "
-       "given; ?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. "
-       "grbl:/dev/ttyACM0 is a GRBL 1.1 board with the stage on axis X, in degrees (?axis=Y for another). "
-       "tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial number may be "
-       "omitted "
-       "if there is only one. sim: is the PI controller simulated inside the tool; its options speed_error, ripple "
-       "(relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault and log inject "
-       "faults. vam-sim-stage(1) serves this simulator on a pseudo-terminal."
+       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
+       "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
+       "board with the stage on axis X, in degrees (?axis=Y for another). tic:00312345?steps_per_deg=88.9 is a stepper "
+       "motor behind a Pololu Tic on USB; the serial number may be omitted if there is only one. sim: is the PI "
+       "controller simulated inside the tool; its options speed_error, ripple (relative), jitter_ms, latency_ms, "
+       "acceleration_deg_s2, travel_deg, home_deg, seed, fault and log inject faults. vam-sim-stage(1) serves this "
+       "simulator on a pseudo-terminal."
        " Protocols and fault handling are described in vam-devices(7).",
        "A device has one user at a time: a second one exits with status 75 and names the process that holds it."},
       {{"Identify the controller and its limits", "vam-stage identify"},
@@ -67,14 +64,13 @@ cli::Manual manual() {
        "begins to stop within 100 ms. This is software and no interlock: it needs a running kernel and a connected "
        "cable. A disconnected controller finishes its last motion, which is never longer than the requested turns. "
        "Install a hardware interlock that cuts lamp and motor where people can reach either.",
-       "Accuracy. A sample's time is the middle between question and answer; sigma follows from the time between "
-       "them. spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the "
-       "stage deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at 25 deg/s, 16 "
-       "ms "
-       "(the FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
+       "Accuracy. A sample's time is the middle between question and answer; sigma follows from the time between them. "
+       "spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the stage "
+       "deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at 25 deg/s, 16 ms (the "
+       "FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
        "Priority. On a busy machine an answer may be read too late. As root, or with permission for a real-time "
-       "priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the "
-       "members of that group from their next login), vam-stage and its guardian run before other programs.",
+       "priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the members of that group "
+       "from their next login), vam-stage and its guardian run before other programs.",
        "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
       {"vam-project", "vam-sim-stage", "vam-capture"},
       {},

@@ -6,39 +6,37 @@ cli::Manual manual() {
   return {
       "vam-project",
       "convert sinograms into projector frames and show them",
-      {"A sinogram stack has an image for each slice, with a row for each angle. A projector needs the transpose: "
-       "an image for each time, with a row for each slice. vam-project reads the stack of vam-resample and writes "
-       "one frame for every frame period of the projector of the rotating stage.",
-       "The output name selects the format. A name without an extension, or ending in /, is a folder of numbered "
-       "PNG files with an index frames.csv (file, time_s, angle_deg). A name in .mkv is lossless FFV1 video, suitable "
-       "for printing. A name in .mp4 is H.264 video for viewing; its errors reach 59 of 255, so it is not suitable for "
-       "printing. A name in .exr, or standard output, is an EXR frame stack with the intensity as a fraction of "
-       "full intensity, quantised only when --bits is given.",
+      {"A sinogram stack has an image for each slice, with a row for each angle. A projector needs the transpose: an "
+       "image for each time, with a row for each slice. vam-project reads the stack of vam-resample and writes one "
+       "frame for every frame period of the projector of the rotating stage.",
+       "The output name selects the format. A name without an extension, or ending in /, is a folder of numbered PNG "
+       "files with an index frames.csv (file, time_s, angle_deg). A name in .mkv is lossless FFV1 video, suitable for "
+       "printing. A name in .mp4 is H.264 video for viewing; its errors reach 59 of 255, so it is not suitable for "
+       "printing. A name in .exr, or standard output, is an EXR frame stack with the intensity as a fraction of full "
+       "intensity, quantised only when --bits is given.",
        "Live: the output sdl:N is a window over screen N of the desktop, drm:HDMI-A-1 the connector itself by page "
        "flips (without a desktop), null: a dry run. One turn of frames is preloaded; at every vertical blank the frame "
-       "for the stage angle in the middle of its display time is shown. With --follow the "
-       "angle is predicted from the lines of vam-stage spin: black before angle 0, black again after the last turn. "
-       "Without it the angle is the speed times the time since the first frame. The run-up turn is a dry run: if "
-       "vertical blanks are missed in it, the print does not start. Frame size and screen size must be equal.",
-       "Time: frame n is centred on time n / fps, at the stage angle n x speed / fps; it is shown for one frame "
-       "period around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its "
-       "rows; otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "
+       "for the stage angle in the middle of its display time is shown. With --follow the angle is predicted from the "
+       "lines of vam-stage spin: black before angle 0, black again after the last turn. Without it the angle is the "
+       "speed times the time since the first frame. The run-up turn is a dry run: if vertical blanks are missed in it, "
+       "the print does not start. Frame size and screen size must be equal.",
+       "Time: frame n is centred on time n / fps, at the stage angle n x speed / fps; it is shown for one frame period "
+       "around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its rows; "
+       "otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "
        "angles, averaged over the angles that it spans, so that a turn delivers the same dose.",
        "Rows: z = 0 is at projector.axis_row, counted from the top, and z points upwards. Slices are interpolated "
        "linearly to rows, or averaged where they are finer than rows. Columns are those of vam-resample, which places "
        "the axis at projector.axis_column; --column-offset shifts them. Intensity outside the projector's columns or "
        "rows is an error. The orientation is applied last.",
        "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times --gain. "
-       "Each "
-       "pixel gets the grey level whose intensity, by the measured response (projector.response) or else the linear "
-       "response from min_intensity to max_intensity, is nearest to the required one.",
+       "Each pixel gets the grey level whose intensity, by the measured response (projector.response) or else the "
+       "linear response from min_intensity to max_intensity, is nearest to the required one.",
        "Slices of continuous stereolithography (vam-curethrough correct) are shown one after the other, each once, "
        "slice n from n / fps on, with fps = print speed / slice height: both are in the EXR stack, --print-speed or "
-       "--fps "
-       "override them, and a folder of images has its times in frames.csv. The slices required after the last feature "
-       "are part of the stack. A slice smaller than the projector's image is centred at axis_column, axis_row; its "
-       "values are fractions of full intensity, or grey. Live, each is "
-       "shown for 1 / fps, by elapsed time, and all are preloaded.",
+       "--fps override them, and a folder of images has its times in frames.csv. The slices required after the last "
+       "feature are part of the stack. A slice smaller than the projector's image is centred at axis_column, axis_row; "
+       "its values are fractions of full intensity, or grey. Live, each is shown for 1 / fps, by elapsed time, and all "
+       "are preloaded.",
        "With --flatland the frames show one slice of a virtual sinogram from above: each is the 1-D projection at its "
        "angle, smeared across the plane. Projected onto a thin layer of resin they print the cross-section, and the "
        "sum of the frames is its dose (Kelly et al. 2017, fig 3)."},
@@ -59,8 +57,7 @@ cli::Manual manual() {
        {"A synchronised print of one turn, here on a simulated stage and no screen:",
         "vam-stage spin --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed 0.1"}},
       {"Safety (live output). When vam-project ends for any reason, hangs for 0.5 s, receives no stage angle for 0.3 s "
-       "or "
-       "misses too many flips, the screen is black and the light engine dark within 100 ms, by a child process, the "
+       "or misses too many flips, the screen is black and the light engine dark within 100 ms, by a child process, the "
        "guardian. This is software and no interlock: install a hardware interlock that cuts the lamp. A closed window "
        "shows the desktop behind it, so make that black and keep the pointer on another screen. The LED current never "
        "exceeds projector.max_led_current. After a print on drm:, Linux may return its text console to the screen: "
@@ -68,14 +65,14 @@ cli::Manual manual() {
        "Priority. As root, or with permission for a real-time priority of 2 (see vam-stage(1)), the flips and the "
        "guardian run before other programs.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
-       "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; default: b). "
-       "The engine leaves standby, is set to video with linear grey, and every setting is read back before its LEDs "
-       "are enabled. At the end its LEDs are switched off, then patterns are stopped, then it returns to standby. "
-       "Commands and faults are described in vam-devices(7).",
+       "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; default: b). The "
+       "engine leaves standby, is set to video with linear grey, and every setting is read back before its LEDs are "
+       "enabled. At the end its LEDs are switched off, then patterns are stopped, then it returns to standby. Commands "
+       "and faults are described in vam-devices(7).",
        "Linear grey: a DLPC350's gamma is switched off. A DLPC900's cannot be: it is set to its video pattern mode, in "
-       "which each frame is three patterns of 8 bits without gamma, one colour after the other. This needs a "
-       "video signal, so its screen must be on, at 60 Hz at most. In addition, the GPU's gamma table must be linear. "
-       "drm: sets and verifies it; sdl: uses that of the desktop (xrandr --gamma 1:1:1 makes it linear).",
+       "which each frame is three patterns of 8 bits without gamma, one colour after the other. This needs a video "
+       "signal, so its screen must be on, at 60 Hz at most. In addition, the GPU's gamma table must be linear. drm: "
+       "sets and verifies it; sdl: uses that of the desktop (xrandr --gamma 1:1:1 makes it linear).",
        "Memory: the lit columns of the whole stack as floats, at most 4 bytes x angles x slices x columns (360 angles "
        "x 200 slices x 400 lit columns: 115 MB), and a few frames. Frames cannot be computed slice by slice.",
        "PNG: 1, 2, 4 and 8 bits are stored at that depth. 10 bits are stored in 16, spread over the full range and "

@@ -27,10 +27,9 @@ void add_live(cli::App& app, LiveOptions& options) {
 void add_patterns(cli::App& app, PatternOptions& options) {
   options.plan.name.clear();
   app.group("Test patterns (instead of a sinogram)");
-  app.option(
-      "--pattern", "NAME", options.plan.name,
-      "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) or "
-      "row (a line at z = 0, for vam-calibrate beam).");
+  app.option("--pattern", "NAME", options.plan.name,
+             "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) "
+             "or row (a line at z = 0, for vam-calibrate beam).");
   app.option("--grey", "PART", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
       .was("--level");
