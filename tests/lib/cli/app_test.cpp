@@ -253,9 +253,9 @@ TEST_CASE("a job is every option but those declared to be none of it, with the v
   std::optional<double> seconds;
   tool.app.option("--seconds", "S", seconds, positive, "Time.");
   tool.app.option("--trace", "FILE", trace, "Trace.").not_in_job();
-  CHECK(tool.run({"part.vdb", "--voxel", "0.5", "--angles", "90", "--rotate", "1,2,3", "--half", "--set", "a=1", "--trace", "x"}) == 0);
-  CHECK(tool.app.job() ==
-        "--voxel=0.5\n--angles=90\n--rotate=1,2,3\n--set=a=1\n--window=hann\n--half=1\n--seconds=\n");
+  CHECK(tool.run({"part.vdb", "--voxel", "0.5", "--angles", "90", "--rotate", "1,2,3", "--half", "--set", "a=1",
+                  "--trace", "x"}) == 0);
+  CHECK(tool.app.job() == "--voxel=0.5\n--angles=90\n--rotate=1,2,3\n--set=a=1\n--window=hann\n--half=1\n--seconds=\n");
 }
 
 TEST_CASE("a command's option has former spellings, too") {
