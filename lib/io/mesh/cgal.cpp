@@ -53,7 +53,8 @@ void check_ply_header(const std::string& bytes) {
     std::uint64_t count = 0;
     if (words >> keyword >> name >> count && keyword == "element") check_count(count, name.c_str(), bytes);
   }
-  if (bytes.find("end_header") == std::string::npos) throw MeshProblem{"the PLY header has no end; it is truncated"};
+  if (bytes.find("end_header") == std::string::npos)
+    throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
 }
 
 // The first line that is neither empty, comment nor the magic word holds the counts.

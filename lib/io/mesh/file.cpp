@@ -1,12 +1,11 @@
 #include "io/mesh/file.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/stream.hpp"
 
@@ -14,44 +13,26 @@ namespace vam::io {
 
 namespace {
 
-bool starts_with_word(std::string_view text, std::string_view word) {
-  return text.starts_with(word) && text.size() > word.size() &&
-         std::string_view(" \t\r\n").find(text[word.size()]) != text.npos;
-}
-
-// A line of an OBJ file that nothing else has: "v x y z" or "f a b c" at its start.
-bool looks_like_obj(const std::string& bytes) {
-  const std::string_view head = std::string_view(bytes).substr(0, 1 << 16);
-  for (std::size_t line = 0; line < head.size();) {
-    if (starts_with_word(head.substr(line), "v") || starts_with_word(head.substr(line), "f")) return true;
-    const std::size_t end = head.find('\n', line);
-    if (end == std::string_view::npos) return false;
-    line = end + 1;
-  }
-  return false;
-}
-
-bool is_off(std::string_view text) {
-  for (const char* magic : {"OFF", "COFF", "NOFF", "CNOFF", "STOFF"}) {
-    if (starts_with_word(text, magic)) return true;
-  }
-  return false;
-}
-
-// By content. The size test comes before "solid": many programs begin the header of a binary STL with that word.
+// By content, whatever the name.
 PolygonSoup parse(const std::string& bytes) {
-  const std::string_view text =
-      std::string_view(bytes).substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   if (bytes.empty()) throw MeshProblem{"is empty"};
-  if (bytes.starts_with("PK\3\4")) return parse_3mf(bytes);
-  if (starts_with_word(bytes, "ply")) return parse_ply(bytes);
-  if (has_binary_stl_size(bytes)) return parse_binary_stl(bytes);
-  if (is_off(text)) return parse_off(bytes);
-  const bool binary = bytes.find('\0') != std::string::npos;
-  if (!binary && starts_with_word(text, "solid")) return parse_ascii_stl(bytes);
-  if (!binary && looks_like_obj(bytes)) return parse_obj(bytes);
-  if (binary) return parse_binary_stl(bytes);  // no other binary format is left: it says what is missing
-  throw MeshProblem{"not a mesh of a known format (STL, OBJ, PLY, OFF, 3MF)"};
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.recognises(bytes)) return format.read(bytes);
+  }
+  // No other binary format is left: its reader says what is missing.
+  if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
+  throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
+}
+
+// The format of a name that is written; standard output is the first one.
+const MeshFormat& format_of_output(const std::string& path) {
+  std::vector<std::string> endings;
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.write == nullptr) continue;
+    if (path == "-" || path.ends_with(format.extension)) return format;
+    endings.push_back(format.extension);
+  }
+  throw Error{Fault::usage, path + ": no mesh format that is written has this ending; use " + join(endings, " or ")};
 }
 
 void check_points(const PolygonSoup& soup) {
@@ -90,6 +71,18 @@ model::TriangleSoup triangulated(PolygonSoup&& soup) {
 }
 
 }  // namespace
+
+std::string mesh_format_names() {
+  std::vector<std::string> names;
+  for (const MeshFormat& format : mesh_formats()) names.push_back(format.name);
+  return join(names, ", ");
+}
+
+void check_mesh_output(const std::string& path) { (void)format_of_output(path); }
+
+void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {
+  format_of_output(path).write(path, mesh, comments);
+}
 
 model::TriangleSoup read_mesh(const std::string& path) {
   const std::string bytes = read_all(path, Content::binary);

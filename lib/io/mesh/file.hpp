@@ -14,6 +14,15 @@ namespace vam::io {
 /// an index that does not exist or with fewer than three corners).
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
 
+/// The formats that are read, for messages and help: "3MF, PLY, ...".
+[[nodiscard]] std::string mesh_format_names();
+
+/// Writes the format that the name's ending says, PLY to "-"; comments go where the format has some.
+/// Throws Error: usage (an ending that is not written), no_output, io.
+void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments);
+/// Throws Fault::usage as write_mesh would, before there is a mesh.
+void check_mesh_output(const std::string& path);
+
 /// Writes binary STL (32-bit floats). "-" is stdout. Throws Error: no_output, io.
 void write_stl(const std::string& path, const model::TriangleSoup& mesh);
 

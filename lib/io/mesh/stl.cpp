@@ -64,6 +64,11 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   return soup;
 }
 
+PolygonSoup parse_stl(const std::string& bytes) {
+  const bool binary = has_binary_stl_size(bytes) || bytes.find('\0') != std::string::npos;
+  return binary ? parse_binary_stl(bytes) : parse_ascii_stl(bytes);
+}
+
 void write_stl(const std::string& path, const model::TriangleSoup& mesh) {
   OutputFile file(path);
   std::string header(80, ' ');

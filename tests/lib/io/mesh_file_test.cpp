@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
 #include "io/mesh/file.hpp"
+#include "io/mesh/private/formats.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::io::read_mesh;
@@ -170,13 +172,36 @@ std::string refusal(const scratch::Folder& folder, const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("every format gives the box back: 6 mm3, oriented outwards") {
+TEST_CASE("each format of the table recognizes its files alone and gives the box back: 6 mm3, oriented outwards") {
   const scratch::Folder folder;
-  for (const auto& bytes : {box_obj(), box_off(), box_ply(), box_ascii_stl(), box_3mf("millimeter", "")}) {
-    CAPTURE(bytes.substr(0, 20));
-    const auto mesh = read_mesh(folder.write("mesh", bytes));
+  const std::map<std::string, std::string> boxes{{"OBJ", box_obj()},
+                                                 {"OFF", box_off()},
+                                                 {"PLY", box_ply()},
+                                                 {"STL", box_ascii_stl()},
+                                                 {"3MF", box_3mf("millimeter", "")}};
+  CHECK(vam::io::mesh_formats().size() == boxes.size());
+  for (const auto& format : vam::io::mesh_formats()) {
+    CAPTURE(format.name);
+    for (const auto& [name, bytes] : boxes) CHECK(format.recognises(bytes) == (name == format.name));
+    const auto mesh = read_mesh(folder.write("mesh", boxes.at(format.name)));
     CHECK(mesh.triangles.size() == 12);
     CHECK(volume(mesh) == doctest::Approx(6));
+    CHECK(has(refusal(folder, "hello, world\n"), format.name));
+  }
+}
+
+TEST_CASE("the ending of an output's name chooses its format, and one that is only read is refused") {
+  const scratch::Folder folder;
+  for (const auto& format : vam::io::mesh_formats()) {
+    const std::string path = folder / ("box" + format.extension);
+    CAPTURE(path);
+    if (format.write == nullptr) {
+      CHECK(has(error_of([&] { vam::io::check_mesh_output(path); }, vam::Fault::usage), "use .ply or .stl"));
+      continue;
+    }
+    vam::io::write_mesh(path, box(), {"a comment"});
+    CHECK(format.recognises(slurp(path)));
+    CHECK(volume(read_mesh(path)) == doctest::Approx(6));
   }
 }
 

@@ -1,9 +1,12 @@
-// The formats behind read_mesh, one function each: the bytes of a file to a polygon soup that has not been checked yet.
+// The table of mesh formats behind read_mesh and write_mesh. A reader turns the bytes of a file into a polygon soup
+// that has not been checked yet. A new format is one row and its reader.
 #pragma once
 
 #include <array>
 #include <string>
 #include <vector>
+
+#include "model/mesh.hpp"
 
 namespace vam::io {
 
@@ -18,6 +21,20 @@ struct MeshProblem {
   std::string text;
 };
 
+struct MeshFormat {
+  std::string extension;                          // of files that are written: ".stl"
+  std::string name;                               // for people: "STL"
+  bool (*recognises)(const std::string& bytes);   // not empty
+  PolygonSoup (*read)(const std::string& bytes);  // throws MeshProblem
+  void (*write)(const std::string& path, const model::TriangleSoup& mesh,
+                const std::vector<std::string>& comments);  // null: only read
+};
+
+/// In the order in which contents are tried.
+[[nodiscard]] const std::vector<MeshFormat>& mesh_formats();
+
+/// Binary or ASCII. Throws MeshProblem.
+[[nodiscard]] PolygonSoup parse_stl(const std::string& bytes);
 /// 84 bytes of header and count, then 50 bytes a triangle. Throws MeshProblem when the size is not that.
 [[nodiscard]] PolygonSoup parse_binary_stl(const std::string& bytes);
 /// True when the size is exactly what the triangle count in the header asks for.

@@ -1,0 +1,73 @@
+// The table of mesh formats, and how each is told by its content.
+#include "io/mesh/private/formats.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "io/mesh/file.hpp"
+
+namespace vam::io {
+
+namespace {
+
+bool is_binary(const std::string& bytes) { return bytes.find('\0') != std::string::npos; }
+
+std::string_view trimmed(const std::string& bytes) {
+  return std::string_view(bytes).substr(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
+}
+
+bool starts_with_word(std::string_view text, std::string_view word) {
+  return text.starts_with(word) && text.size() > word.size() &&
+         std::string_view(" \t\r\n").find(text[word.size()]) != text.npos;
+}
+
+// A line of an OBJ file that nothing else has: "v x y z" or "f a b c" at its start.
+bool is_obj(const std::string& bytes) {
+  if (is_binary(bytes)) return false;
+  const std::string_view head = std::string_view(bytes).substr(0, 1 << 16);
+  for (std::size_t line = 0; line < head.size();) {
+    if (starts_with_word(head.substr(line), "v") || starts_with_word(head.substr(line), "f")) return true;
+    const std::size_t end = head.find('\n', line);
+    if (end == std::string_view::npos) return false;
+    line = end + 1;
+  }
+  return false;
+}
+
+bool is_off(const std::string& bytes) {
+  for (const char* magic : {"OFF", "COFF", "NOFF", "CNOFF", "STOFF"}) {
+    if (starts_with_word(trimmed(bytes), magic)) return true;
+  }
+  return false;
+}
+
+bool is_3mf(const std::string& bytes) { return bytes.starts_with("PK\3\4"); }
+
+bool is_ply(const std::string& bytes) { return starts_with_word(bytes, "ply"); }
+
+// The size comes before "solid": many programs begin the header of a binary STL with that word.
+bool is_stl(const std::string& bytes) {
+  return has_binary_stl_size(bytes) || (!is_binary(bytes) && starts_with_word(trimmed(bytes), "solid"));
+}
+
+void write_plain_ply(const std::string& path, const model::TriangleSoup& mesh,
+                     const std::vector<std::string>& comments) {
+  write_ply(path, mesh, {}, comments);
+}
+
+void write_plain_stl(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>&) {
+  write_stl(path, mesh);
+}
+
+}  // namespace
+
+const std::vector<MeshFormat>& mesh_formats() {
+  static const std::vector<MeshFormat> formats{
+      {".3mf", "3MF", is_3mf, parse_3mf, nullptr},         {".ply", "PLY", is_ply, parse_ply, write_plain_ply},
+      {".stl", "STL", is_stl, parse_stl, write_plain_stl}, {".off", "OFF", is_off, parse_off, nullptr},
+      {".obj", "OBJ", is_obj, parse_obj, nullptr},
+  };
+  return formats;
+}
+
+}  // namespace vam::io
