@@ -1,4 +1,4 @@
-// vam-ost: optical scattering tomography, from camera views to the print as it stands.
+// vam-ost: optical scattering tomography, from camera views to the scattering volume of the print.
 #include <cstdio>
 
 #include "base/json.hpp"
@@ -14,97 +14,106 @@ using ost_tool::Options;
 cli::Manual manual() {
   return {
       "vam-ost",
-      "see the print: scattering volume from camera views of the turning vial",
-      {"Liquid resin is clear and the solidifying part scatters light. A camera beside the vial sees that light; over "
-       "a full turn its views hold the whole volume. vam-ost corrects the views (dark, flat field, binning), finds the "
-       "rotation axis in them, undoes refraction and perspective with the exact ray map, and reconstructs the "
-       "scattering density by filtered back-projection into a volume 'scatter', in view units per mm.",
-       "VIEWS is an EXR frame stack of a camera, a folder of numbered pictures, or a video; the latter two need "
-       "--step. Each frame's own angle counts: frames that are missing, repeated or uneven are weighted, and a gap of "
-       "more than 15 degrees is refused. Image rows run downwards along the axis; the middle row is z = 0.",
-       "With a level I_p (--level, or --resin with a record that vam-ost threshold wrote) the print is { scatter >= "
-       "I_p }: --mesh writes its surface, --projections the operator's picture.",
-       "--live reads frames as they come, keeps the last full turn, and for every turn (or every --every degrees) "
-       "writes a volume into the folder -o, a line of JSON to --log, and renews --projections and --page. With "
+      "reconstruct the scattering volume of a print from camera views of the rotating vial",
+      {"Liquid resin is clear; the solidifying part scatters light. A camera beside the vial records the scattered "
+       "light; the views of a full turn determine the whole volume. vam-ost corrects the views (dark, flat field, "
+       "binning), finds the rotation axis in them, compensates refraction and perspective by the exact ray map, and "
+       "reconstructs the scattering density by filtered back-projection into a volume 'scatter', in view units per "
+       "mm.",
+       "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; the latter two need "
+       "--step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are weighted, and "
+       "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the middle row is z = "
+       "0.",
+       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-ost threshold) the print is { "
+       "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator.",
+       "--live reads frames as they arrive, keeps the last full turn, and for every turn (or every --every degrees) "
+       "writes a volume into the folder -o, a line of JSON to --log, and updates --projections and --page. With "
        "--reference it reports how much of the design is cured, missing and overcured; with --until it prints one line "
-       "of JSON on standard output when the condition holds, and ends: the signal to darken the projector. Frames are "
-       "taken in while a volume is computed; dark or saturated ones are left out and counted, and before anything has "
-       "gelled the log says that it waits.",
+       "of JSON on standard output when the conditions hold, and exits: the signal to darken the projector. Frames are "
+       "read while a volume is computed; dark and saturated frames are skipped and counted, and until something has "
+       "gelled the log reports that the tool is waiting.",
        "vam-ost threshold takes the scattering volume of a printed standard cylinder, of known diameter or measured on "
-       "a profilometer's picture, and gives I_p with its spread: the mean along the true circle in the overhead mean "
-       "over the standard's height. The record serves --resin of vam-ost and vam-sdf."},
-      {{"A synthetic cylinder, as a camera would see it, and back:",
+       "a profilometer's image, and determines I_p with its standard deviation: the mean along the true circle in the "
+       "overhead mean over the standard's height. --resin of vam-ost and vam-sdf reads the record."},
+      {{"Views of a synthetic cylinder as a camera records them:",
         "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
         "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},
-       {"Reconstruct from a folder of pictures taken every 4 degrees:",
+       {"Reconstruct from a folder of images taken every 4 degrees:",
         "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
         "scatter.vdb --projections seen.png"},
-       {"Calibrate the threshold with it, and use it:",
+       {"Calibrate the gelation threshold with it, and use it:",
         "vam-ost threshold scatter.vdb --diameter 6 -o resin.json\nvam-ost views --step 4 --pixel 0.065 --set "
         "camera.distance_mm=119.808 --resin resin.json --mesh print.ply -o again.vdb"}},
-      {"Memory: the views of one turn and the volume, about four times both. Time: about a second for 180 views of 480 "
-       "x 300 pixels on two cores.",
-       "Struts three voxels apart keep a contrast of 29 % with the default window, 14 % with hann, which smooths noise "
+      {"Memory: about four times the views of one turn and the volume. Time: about a second for 180 views of 480 x 300 "
+       "pixels on two cores.",
+       "Struts three voxels apart keep a contrast of 29 % with the default filter, 14 % with hann, which smooths noise "
        "more. The axis is the centre of symmetry of the mean view, row by row, by least squares; column, tilt and "
        "their standard deviations are reported.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
        "maximum likelihood reconstruction, 1982 (--statistical)."},
       {"vam-capture", "vam-sdf", "vam-view", "vam-resample"},
-      {"Of the attributes of captured stacks vam:angle_deg and vam:time_s place a view; one that is marked "
-       "vam:incomplete is left out with a warning, which names it by its vam:number."}};
+      {"In captured stacks the attributes vam:angle_deg and vam:time_s give a view's angle and time; a view marked "
+       "vam:incomplete is skipped with a warning that names its vam:number."}};
 }
 
 void declare(cli::App& app, Options& o) {
-  app.positional("VIEWS", o.views, "EXR frame stack, folder of pictures or video; - is standard input.");
+  app.positional("VIEWS", o.views, "EXR frame stack, folder of images or video; - is standard input.");
   cli::add_output(app, o.output);
   app.group("Camera");
-  app.option("--step", "DEG", o.step_deg, cli::any, "Angle between frames that carry none. Negative: the other way.");
+  app.option("--step", "DEG", o.step_deg, cli::any,
+             "Angular step of frames without recorded angles. Negative: opposite direction.");
   app.option("--dark", "FILE", o.dark,
-             "Picture or stack without a print (in the dark, or of the vial before it), its mean subtracted.");
-  app.option("--flat", "FILE", o.flat,
-             "Picture or stack of an even scene, divided out after the dark is subtracted; without it camera.flat.");
+             "Image or stack without a print (in the dark, or of the vial before printing); its mean is subtracted.");
+  app.option(
+      "--flat", "FILE", o.flat,
+      "Image or stack of a uniform scene; views are divided by it after dark subtraction. Default: camera.flat.");
   app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
-             "Pitch at the axis before binning; without it the stack's, else camera.pixel_mm.");
+             "Pixel pitch at the axis before binning. Default: the stack's, else camera.pixel_mm.");
   app.option("--axis", "PX", o.axis_column, cli::any,
-             "Column of the axis after binning; without it camera.axis_column, else found in the views.");
-  app.option("--tilt", "DEG", o.tilt_deg, {-30, 30},
-             "Lean of the axis, its lower end to the right; without it camera.tilt_deg, else found in the views.");
+             "Column of the axis after binning. Default: camera.axis_column, else found in the views.");
+  app.option(
+      "--tilt", "DEG", o.tilt_deg, {-30, 30},
+      "Tilt of the axis, positive with its lower end to the right. Default: camera.tilt_deg, else found in the views.");
   app.group("Reconstruction");
-  app.option("--voxel", "MM", o.how.voxel_mm, cli::non_negative, "Voxel edge; 0 is the binned pixel.");
-  app.option("--radius", "MM", o.how.radius_mm, cli::non_negative, "Radius of the volume; 0 is all that is seen.");
-  app.choice("--window", o.how.window,
+  app.option("--voxel", "MM", o.how.voxel_mm, cli::non_negative, "Voxel edge length; 0: the binned pixel.");
+  app.option("--radius", "MM", o.how.radius_mm, cli::non_negative,
+             "Radius of the volume; 0: all that the camera sees.");
+  app.choice("--filter", o.how.window,
              {"ram-lak", "shepp-logan", "cosine", "hamming", "hann", "gaussian", "exponential"},
              "Window of the ramp filter.");
-  app.option("--statistical", "N", o.how.statistical, {0, 1000}, "Iterations of MLEM after it, for noisy views.");
-  app.flag("--keep-negative", o.keep_negative, "Leave negative densities.");
-  app.flag("--no-refraction", o.no_refraction, "Take columns as parallel rays (for comparison).");
+  app.was("--window");
+  app.option("--statistical", "N", o.how.statistical, {0, 1000},
+             "Number of MLEM iterations after the back-projection, for noisy views.");
+  app.flag("--keep-negative", o.keep_negative, "Keep negative densities.");
+  app.flag("--no-refraction", o.no_refraction, "Treat image columns as parallel rays (for comparison).");
   app.group("Print");
-  app.option("--level", "VALUE", o.level, cli::positive, "Gelation threshold I_p.");
-  app.option("--resin", "FILE", o.resin_record, "Record of vam-ost threshold that holds it.");
-  app.option("--mesh", "FILE", o.mesh, "Surface at I_p, .ply or .stl.");
+  app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
+  app.option("--resin", "FILE", o.resin_record, "Record of vam-ost threshold that holds I_p.");
+  app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.");
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
-  app.option("--reference", "FILE.vdb", o.reference, "Design to compare with, in the same frame.");
+  app.option("--reference", "FILE.vdb", o.reference, "Design to compare with, in the same frame of reference.");
   app.group("Live");
-  app.flag("--live", o.live, "Reconstruct as frames come; -o is a folder.");
-  app.option("--every", "DEG", o.every_deg, cli::positive, "Turn between volumes.");
-  app.option("--until", "CONDITIONS", o.until,
-             "Print a stop event and end when all hold: missing and overcure in per cent, iou, cured in mm3.");
-  app.option("--log", "FILE", o.log, "A line of JSON for every volume; - is standard output.");
-  app.option("--page", "FILE.html", o.page, "A page that shows --projections and renews itself.");
+  app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.");
+  app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.");
+  app.option(
+      "--until", "CONDITIONS", o.until,
+      "Print a stop event and exit when all conditions hold: missing and overcure in per cent, iou, cured in mm3.");
+  app.option("--log", "FILE", o.log, "Append a line of JSON for every volume; - is standard error.");
+  app.option("--page", "FILE.html", o.page, "Page that shows --projections and refreshes itself.");
   cli::add_printer(app, o.printer);
   app.group("Output and machine");
   cli::add_report(app, o.report);
   cli::add_threads(app);
 
   cli::App& threshold =
-      app.subcommand("threshold", "find the gelation threshold from a printed standard cylinder", o.command);
+      app.subcommand("threshold", "determine the gelation threshold from a printed standard cylinder", o.command);
   threshold.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).");
   threshold.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
   threshold.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
   threshold.option("--profile", "FILE.png", o.profile,
-                   "Profilometer's height picture of the standard, to measure it on.");
-  threshold.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel of that picture.");
+                   "Profilometer's height image of the standard, to measure its diameter.");
+  threshold.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel size of that image.");
 }
 
 void once(const cli::App& app, const Options& options) {

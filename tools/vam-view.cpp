@@ -1,4 +1,4 @@
-// vam-view: pictures of any of the files, for people.
+// vam-view: images of volumes, stacks, videos and folders, for inspection.
 #include <string>
 
 #include "base/error.hpp"
@@ -42,7 +42,7 @@ void show_volume(const Options& options, const io::PictureText& text) {
 
 void show_images(const Options& options, io::FileType type, const io::PictureText& text) {
   if (options.histogram || !options.target.empty()) {
-    throw Error{Fault::data, options.input + ": --histogram and --target need a volume (VDB), but this holds pictures"};
+    throw Error{Fault::data, options.input + ": --histogram and --target need a volume (VDB), but this holds images"};
   }
   if (!options.exported.empty()) {
     if (type != io::FileType::stack) throw Error{Fault::usage, "--export: needs a volume or an EXR stack"};

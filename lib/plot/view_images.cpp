@@ -83,13 +83,13 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   const model::StackInfo info = images.info();
   const bool sinogram = info.kind == model::Kind::sinogram;
   if (options.at && !sinogram && info.angle_step_deg == 0) {
-    throw Error{Fault::data, options.name + ": its pictures have no angles; show one by a sheet, or use the EXR stack"};
+    throw Error{Fault::data, options.name + ": its images have no recorded angles; use --sheet, or the EXR stack"};
   }
   Selection selection(info, options);
   Image image;
   model::ImageInfo about;
   for (int index = 0; images.next(image, about); ++index) selection.offer(std::move(image), about, index);
-  if (selection.panels.empty()) throw Error{Fault::data, options.name + ": has no picture"};
+  if (selection.panels.empty()) throw Error{Fault::data, options.name + ": has no image"};
   const double pitch = std::abs(sinogram ? info.row_mm : info.angle_step_deg);
   if (selection.away() > 0.51 * pitch + 1e-6) {
     throw Error{Fault::data, options.name + ": has none at " + format_number(*options.at) + "; the nearest is " +

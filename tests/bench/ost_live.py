@@ -29,13 +29,13 @@ def main():
     stream = open("views.exr", "rb").read()
     frame = 480 * 300 * 4 + 300 * 12  # pixels, and 12 bytes before each row
     head = len(stream) - VIEWS * frame
-    tool = [BUILD + "/bin/vam-ost", "--live", "--level", "0.5", "--reference", "design.vdb", "--log", "-", "-o", "turns",
+    tool = [BUILD + "/bin/vam-ost", "--live", "--isovalue", "0.5", "--reference", "design.vdb", "--log", "-", "-o", "turns",
             "--projections", "turns.png", "--page", "turns.html"]
     for setting in RIG:
         tool += ["--set", setting]
-    child = subprocess.Popen(tool, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    child = subprocess.Popen(tool, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
     logged = []
-    reader = threading.Thread(target=lambda: logged.extend((time.monotonic(), line) for line in child.stdout))
+    reader = threading.Thread(target=lambda: logged.extend((time.monotonic(), line) for line in child.stderr))
     reader.start()
     start = time.monotonic()
     worst = 0.0

@@ -31,7 +31,7 @@ quiet 'live' vam-ost views --step 6 $rig --live --resin resin.json --reference d
   -o live --log log.jsonl --projections now.png --page now.html
 is 'one volume a turn' "$(ls live)" scatter-0000.vdb
 is 'one line a volume' "$(grep -c missing_percent log.jsonl)" 1
-grep -q 'now.png' now.html; report $? 'the page shows the picture'
+grep -q 'now.png' now.html; report $? 'the page shows the image'
 event=$(vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
 
@@ -50,7 +50,7 @@ holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 
 python3 - <<'PY'
 import struct, zlib
 def chunk(kind, data): return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-n, pixel = 200, 0.05  # the profilometer's picture of the standard: 6 mm, off the middle
+n, pixel = 200, 0.05  # the profilometer's image of the standard: 6 mm, off the middle
 rows = b"".join(b"\0" + bytes(200 if ((x - 103) ** 2 + (y - 96) ** 2) ** 0.5 * pixel < 3 else 20 for x in range(n)) for y in range(n))
 open("profile.png", "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", n, n, 8, 0, 0, 0, 0)) +
     chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
@@ -94,15 +94,19 @@ report $? 'what is missing falls from turn to turn'
 is 'a volume for every line' "$(ls turns | wc -l)" "$(wc -l <turns.jsonl)"
 grep -q 'missing_percent' turns.html; report $? 'the page has the figures'
 "$render" cylinder:diameter=4,height=4 faint.exr noise=0.05 turns=2 growth=0 angles=60
-quiet 'live waits while nothing is there' vam-ost faint.exr --live $glass --level 0.5 -o faint --log faint.jsonl
-is 'and says so' "$(grep -c 'nothing to be seen' faint.jsonl)" 1
+vam-ost faint.exr --live $glass --level 0.5 --window ram-lak -o faint --log - >.log/out 2>.log/err
+is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''
+is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is now --filter' .log/err)" 2
+grep -q 'nothing visible' .log/err; report $? 'the log is there'
+quiet 'live waits while nothing is there' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
+is 'and says so' "$(grep -c 'nothing visible' faint.jsonl)" 1
 fails 65 'no volume' vam-ost views --step 2 $rig --live
 
 fails 64 'give their distance with --step' vam-ost views -o x.vdb
-fails 64 'needs? the threshold' vam-ost views --step 6 --mesh p.ply -o x.vdb
+fails 64 'need the gelation threshold' vam-ost views --step 6 --mesh p.ply -o x.vdb
 fails 64 'needs --projections' vam-ost views --step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-ost threshold scatter.vdb
-fails 65 'no print at this threshold' vam-ost views --step 6 $rig --level 99 --mesh p.ply -o x.vdb
+fails 65 'no print at this threshold' vam-ost views --step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
 fails 65 'the turn is incomplete' vam-ost views --step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
 fails 65 'not a record' vam-ost views --step 6 $rig --resin ost.json --mesh p.ply -o x.vdb

@@ -10,7 +10,7 @@ holds 'deviates by nothing' "$(json same.json print_to_reference.rms_mm) < 1e-9"
 quiet 'a moved and grown box' vam-sdf moved.off box.off --scale --report moved.json -o moved.ply --histogram moved.csv
 holds 'is found again' "$(json moved.json hausdorff_mm) < 1e-3"
 holds 'with its growth' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
-quiet 'the histogram as a picture' vam-sdf moved.off box.off --histogram moved.png
+quiet 'the histogram as an image' vam-sdf moved.off box.off --histogram moved.png
 quiet 'without scale' vam-sdf moved.off box.off --report rigid.json
 # Grown by 1 % about the centre: the faces stand out by 0.02, 0.03 and 0.005.
 holds 'the growth shows' "$(json rigid.json hausdorff_mm) > 0.02 && $(json rigid.json hausdorff_mm) < 0.045"
@@ -20,12 +20,12 @@ is 'the histogram is of the whole area' "$(awk -F, 'NR > 1 { s += $3 } END { pri
 
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
-quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --level 0.5 --align none --report volume.json
+quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --report volume.json
 # The bigger sphere stands on the same plane: its centre is 0.2 higher. Mean over the sphere 0.2 + d^2/(3R) = 0.204.
 holds 'two spheres of different size' "$(json volume.json print_to_reference.mean_mm) > 0.19 && $(json volume.json print_to_reference.mean_mm) < 0.22"
 
 quiet 'a verdict that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
-fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --level 0.5 --align none --require 'rms<=0.001'
+fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --require 'rms<=0.001'
 
 # An embossed badge seen from above, 2 % too small, on a disc.
 vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb
@@ -34,19 +34,19 @@ quiet 'heights against a design' vam-sdf height seen.vdb badge.vdb --pixel 0.08 
   --report height.json --require 'iou>=0.7,rms<=0.1'
 holds 'shrinkage' "$(json height.json shrinkage_percent) > 1.8 && $(json height.json shrinkage_percent) < 2.2"
 holds 'turn' "$(json height.json turn_deg) > 30.8 && $(json height.json turn_deg) < 31.2"
-python3 "$VAM_SOURCE/tests/tools/png.py" size outline.png >/dev/null; report $? 'a picture of the heights'
+python3 "$VAM_SOURCE/tests/tools/png.py" size outline.png >/dev/null; report $? 'an image of the heights'
 fails 1 'shrinkage = ' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --require 'shrinkage<=1'
 fails 64 'DESIGN' vam-sdf height seen.vdb
-fails 64 'outside the picture' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --line 0,0,9999,10
+fails 64 'outside the image' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --line 0,0,9999,10
 fails 65 'flat' vam-sdf height box.off badge.vdb --pixel 0.08
 fails 66 'missing' vam-sdf height missing.png badge.vdb
 
 fails 64 'REFERENCE' vam-sdf box.off
-fails 64 'give the surface' vam-sdf sphere.vdb box.off
+fails 64 'give the isovalue' vam-sdf sphere.vdb box.off
 fails 64 'rmse' vam-sdf box.off box.off --require 'rmse<=1'
 fails 64 'is also the input' vam-sdf box.off box.off -o box.off
 fails 64 'not one of none, icp, full' vam-sdf box.off box.off --align best
-fails 65 'no surface' vam-sdf sphere.vdb box.off --level 7
+fails 65 'no surface' vam-sdf sphere.vdb box.off --isovalue 7
 fails 66 'missing.stl' vam-sdf missing.stl box.off
 printf 'OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n' >empty.off
 fails 65 'empty.off' vam-sdf box.off empty.off

@@ -5,9 +5,9 @@ png="python3 $VAM_SOURCE/tests/tools/png.py"
 
 vam-slice --shape gyroid --voxel 0.4 -o part.vdb
 quiet "a volume" vam-view part.vdb -o axial.png
-holds "a picture of useful size" "$($png size axial.png | cut -d' ' -f1) > 600 && $($png size axial.png | cut -d' ' -f2) > 500"
+holds "an image of useful size" "$($png size axial.png | cut -d' ' -f1) > 600 && $($png size axial.png | cut -d' ' -f2) > 500"
 holds "anti-aliased, in greys" "$($png colours axial.png) > 50"
-is "history in the picture" "$($png text axial.png Comment | cut -d' ' -f1,3-)" "vam-view part.vdb -o axial.png"
+is "history in the image" "$($png text axial.png Comment | cut -d' ' -f1,3-)" "vam-view part.vdb -o axial.png"
 for plane in axial coronal sagittal; do
   ok "$plane at 1 mm" vam-view part.vdb --plane $plane --at 1 -o $plane.png
 done
@@ -34,7 +34,7 @@ for file in frames.exr frames frames.mkv; do
   ok "a sheet of $file" vam-view $file --sheet 6 -o sheet-$file.png
   vam-view $file --plain --high 1 -o plain-$file.png
 done
-is "pictures as the EXR" "$($png sum plain-frames.png)" "$($png sum plain-frames.exr.png)"
+is "images as the EXR" "$($png sum plain-frames.png)" "$($png sum plain-frames.exr.png)"
 is "the video as the EXR" "$($png sum plain-frames.mkv.png)" "$($png sum plain-frames.exr.png)"
 vam-view frames.exr --at 90 --plain -o at90.png; vam-view frames --at 90 --plain -o folder90.png
 is "a frame by its angle, also of a folder with an index" "$($png sum folder90.png)" "$($png sum at90.png)"

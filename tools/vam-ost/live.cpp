@@ -6,7 +6,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/picture/view_queue.hpp"
-#include "io/settings/event_log.hpp"
+#include "io/settings/json_log.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/ost/sliding_turn.hpp"
 #include "model/conditions.hpp"
@@ -16,19 +16,19 @@ namespace vam::ost_tool {
 
 namespace {
 
-// The operator's page: the figures of the latest turn over the picture, which the browser must not keep.
+// The operator's page: the figures of the latest turn over the image, which the browser must not cache.
 void write_page(const Options& options, int index, const Json& line) {
   if (options.page.empty()) return;
   std::string words = "turn " + format_number(line.at("turns").get<double>(), 4);
   for (const char* name : {"missing_percent", "overcure_percent", "iou"}) {
     if (line.contains(name)) words += ", " + std::string(name) + " " + format_number(line.at(name).get<double>(), 4);
   }
-  const std::string picture = std::filesystem::path(options.projections).filename().string();
+  const std::string image = std::filesystem::path(options.projections).filename().string();
   io::write_text(
       options.page,
       "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\"><title>vam-ost</title>"
       "<body style=\"margin:1em;background:#fff;font-family:sans-serif\"><p>" +
-          words + "</p><img src=\"" + picture + "?" + std::to_string(index) + "\" style=\"max-width:100%\">\n");
+          words + "</p><img src=\"" + image + "?" + std::to_string(index) + "\" style=\"max-width:100%\">\n");
 }
 
 std::vector<model::Condition> conditions_of(const Options& options) {
@@ -73,7 +73,7 @@ class Turns {
   Session& session_;
   const Options& options_;
   std::vector<model::Condition> conditions_;
-  io::EventLog log_;
+  io::JsonLog log_;
   int index_ = 0;
 };
 
@@ -81,7 +81,7 @@ class Turns {
 
 void live(const cli::App& app, const Options& options) {
   if (!options.page.empty() && options.projections.empty())
-    throw Error{Fault::usage, "--page: needs --projections, the picture that it shows"};
+    throw Error{Fault::usage, "--page: needs --projections, the image that it shows"};
   Session session(app, options);
   Turns turns(session, options);
   io::ViewSource source(options.views, options.step_deg);
@@ -101,7 +101,7 @@ void live(const cli::App& app, const Options& options) {
     Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
     const auto views = turn.views();
     if (!session.ready(views, pixel_mm)) {  // before anything has gelled there is no axis to be seen
-      line["waiting"] = "nothing to be seen yet";
+      line["waiting"] = "nothing visible yet";
       turns.say(line);
       continue;
     }
@@ -111,9 +111,9 @@ void live(const cli::App& app, const Options& options) {
   }
   if (turns.count() == 0) {
     throw Error{Fault::data,
-                options.views + ": no volume, " + format_number(turn.turns(), 3) + " turns were seen" +
-                    (left_out > 0 ? " and " + std::to_string(left_out) + " dark or saturated frames left out" : "") +
-                    "; a full turn with something in it is needed"};
+                options.views + ": no volume, " + format_number(turn.turns(), 3) + " turns were recorded" +
+                    (left_out > 0 ? " and " + std::to_string(left_out) + " dark or saturated frames skipped" : "") +
+                    "; a full turn with a visible print is needed"};
   }
 }
 

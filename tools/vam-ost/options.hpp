@@ -1,4 +1,4 @@
-// What the user asks of vam-ost, for all its files.
+// Options of vam-ost.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct Options {
   metrology::OstOptions how;
   bool no_refraction = false;
   bool keep_negative = false;
-  std::optional<double> level;
+  std::optional<double> isovalue;
   std::string resin_record;
   std::string mesh, projections;
   bool live = false;

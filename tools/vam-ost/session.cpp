@@ -17,9 +17,9 @@ namespace vam::ost_tool {
 
 namespace {
 
-std::optional<double> level_of(const Options& o) {
-  if (o.resin_record.empty()) return o.level;
-  if (o.level) throw Error{Fault::usage, "--level and --resin: give one of them, both say where the print begins"};
+std::optional<double> isovalue_of(const Options& o) {
+  if (o.resin_record.empty()) return o.isovalue;
+  if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
   return io::gelation_level(o.resin_record);
 }
 
@@ -32,7 +32,8 @@ model::Volume dense(const io::SparseVolume& sparse) {
 }
 
 Session::Session(const cli::App& app, const Options& options)
-    : app_(app), options_(options), printer_(tool::load_printer(options.printer)), level_(level_of(options)) {
+    : app_(app), options_(options), printer_(tool::load_printer(options.printer)), isovalue_(isovalue_of(options)) {
+  if (!options.mesh.empty()) io::check_mesh_output(options.mesh);
   if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
   if (!options.flat.empty()) {
     fields_.flat = io::read_field(options.flat);
@@ -42,9 +43,9 @@ Session::Session(const cli::App& app, const Options& options)
   }
   if (options.flat.empty() && !printer_.camera.flat.empty()) fields_.flat = io::read_field(printer_.camera.flat);
   if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
-  if (!level_ && (!options.mesh.empty() || !options.until.empty()))
-    throw Error{Fault::usage, "--mesh and --until: need the threshold, --level or --resin"};
-  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design, --reference"};
+  if (!isovalue_ && (!options.mesh.empty() || !options.until.empty()))
+    throw Error{Fault::usage, "--mesh and --until: need the gelation threshold; give --isovalue or --resin"};
+  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design; give --reference"};
 }
 
 metrology::View Session::take(const io::CameraFrame& frame) {
@@ -91,15 +92,14 @@ void Session::write(const model::Volume& volume, const std::string& path,
 
 void Session::write_print(const model::Volume& volume, bool must) const {
   if (!options_.mesh.empty()) {
-    const auto mesh = solid::isosurface(volume, *level_);
+    const auto mesh = solid::isosurface(volume, *isovalue_);
     if (mesh.triangles.empty() && must)
-      throw Error{Fault::data, "no print at this threshold: nothing scatters " + format_number(*level_) + " or more"};
-    const bool stl = options_.mesh.size() > 4 && options_.mesh.substr(options_.mesh.size() - 4) == ".stl";
-    if (!mesh.triangles.empty())
-      stl ? io::write_stl(options_.mesh, mesh) : io::write_ply(options_.mesh, mesh, {}, {app_.history()});
+      throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
+                                   " everywhere; check --isovalue"};
+    if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
   }
   if (options_.projections.empty()) return;
-  const auto sheet = metrology::projection_sheet(volume, level_, reference_ ? &*reference_ : nullptr);
+  const auto sheet = metrology::projection_sheet(volume, isovalue_, reference_ ? &*reference_ : nullptr);
   plot::ImageFigure figure;
   figure.title = "Sum projections";
   for (std::size_t i = 0; i < sheet.images.size(); ++i)
@@ -120,14 +120,14 @@ Json Session::figures(const model::Volume& volume) const {
             {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
-  if (level_) json["level"] = *level_;
-  if (level_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *level_, *reference_));
+  if (isovalue_) json["level"] = *isovalue_;
+  if (isovalue_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *isovalue_, *reference_));
   return json;
 }
 
 std::optional<metrology::Cured> Session::state(const model::Volume& volume) const {
-  if (!level_ || !reference_) return std::nullopt;
-  return metrology::cured(volume, *level_, *reference_);
+  if (!isovalue_ || !reference_) return std::nullopt;
+  return metrology::cured(volume, *isovalue_, *reference_);
 }
 
 // What the options say, else the calibrated axis, else what the views show.

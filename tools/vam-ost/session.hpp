@@ -25,7 +25,7 @@ class Session {
 
   /// A frame as a view: its size checked, corrected, binned.
   metrology::View take(const io::CameraFrame& frame);
-  /// Live: finds the axis as soon as there is something to be seen, and again until it is certain. False before that.
+  /// Live: finds the axis as soon as something is visible, and again until it is certain. False before that.
   bool ready(std::span<const metrology::View> views, double stack_pixel_mm);
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::View> views, double stack_pixel_mm);
@@ -33,7 +33,7 @@ class Session {
   /// --mesh and --projections. Throws Fault::data when there is no print but must be one.
   void write_print(const model::Volume& volume, bool must) const;
   [[nodiscard]] Json figures(const model::Volume& volume) const;
-  /// Nothing without level and reference.
+  /// Nothing without isovalue and reference.
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
 
  private:
@@ -44,7 +44,7 @@ class Session {
   const cli::App& app_;
   const Options& options_;
   model::Printer printer_;
-  std::optional<double> level_;
+  std::optional<double> isovalue_;
   metrology::CameraFields fields_;
   std::optional<model::Volume> reference_;
   metrology::AxisEstimate axis_;

@@ -9,7 +9,7 @@ namespace vam::ost_tool {
 
 void threshold(const Options& options) {
   if (options.diameter_mm.has_value() == !options.profile.empty()) {
-    throw Error{Fault::usage, "threshold: give the standard's size, either --diameter or --profile"};
+    throw Error{Fault::usage, "threshold: give the size of the standard by either --diameter or --profile"};
   }
   double diameter_mm = options.diameter_mm.value_or(0);
   if (!options.profile.empty())

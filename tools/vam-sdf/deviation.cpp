@@ -82,25 +82,25 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
 }  // namespace
 
 void deviation(const cli::App& app, const Options& options) {
-  if (options.reference.empty()) throw Error{Fault::usage, "REFERENCE: give the design to compare with"};
+  if (options.reference.empty()) throw Error{Fault::usage, "REFERENCE: missing; give the design to compare with"};
   std::vector<model::Condition> conditions;
   if (!options.require.empty())
     conditions =
         model::parse_conditions(options.require, {"rms", "mean", "sigma", "mad", "max", "hausdorff", "rms_percent"});
-  if (options.level && !options.resin_record.empty())
-    throw Error{Fault::usage, "--level and --resin: give one of them, both say where the print's surface is"};
-  const std::optional<double> level =
-      options.resin_record.empty() ? options.level : io::gelation_level(options.resin_record);
+  if (options.isovalue && !options.resin_record.empty())
+    throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
+  const std::optional<double> isovalue =
+      options.resin_record.empty() ? options.isovalue : io::gelation_level(options.resin_record);
   for (const auto& input : {options.print, options.reference}) {
     if (!options.output.empty()) io::refuse_same_file(input, options.output);
   }
-  const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_level);
-  model::TriangleSoup print = read_surface(options.print, level);
+  const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_isovalue);
+  model::TriangleSoup print = read_surface(options.print, isovalue);
 
   const solid::Surface reference(reference_mesh);
   const solid::Alignment alignment = align(options, print, reference_mesh, reference);
   if (!alignment.converged)
-    warn("alignment: still moving after " + std::to_string(alignment.iterations) + " iterations");
+    warn("alignment: not converged after " + std::to_string(alignment.iterations) + " iterations");
   for (auto& point : print.points) point = alignment.transform(point);
   const metrology::Comparison found = metrology::compare(print, reference_mesh, reference, options.samples);
 

@@ -24,15 +24,15 @@ constexpr double um_per_mm = 1000;
 
 // Heights in mm, not a number where there was no reading; of a mesh or volume what is seen from above.
 Image read_heights(const HeightOptions& options) {
-  const bool picture = io::is_picture(options.picture);
-  const bool stack = options.picture == "-" || options.picture.ends_with(".exr");
-  const double unit_mm = picture || stack ? options.full_mm : 1.0;
+  const bool levels = io::is_picture(options.image);
+  const bool stack = options.image == "-" || options.image.ends_with(".exr");
+  const double unit_mm = levels || stack ? options.full_mm : 1.0;
   Image heights =
-      picture || stack
-          ? io::read_field(options.picture)
-          : solid::height_map(read_surface(options.picture, options.reference_level), options.pixel_mm).heights_mm;
+      levels || stack
+          ? io::read_field(options.image)
+          : solid::height_map(read_surface(options.image, options.reference_isovalue), options.pixel_mm).heights_mm;
   for (float& h : heights.values) {
-    const bool lost = picture && h == 0;
+    const bool lost = levels && h == 0;
     const double mm = static_cast<double>(h) * unit_mm;
     const bool kept = !lost && !(options.lowest_mm && mm < *options.lowest_mm);
     h = kept ? static_cast<float>(mm) : std::numeric_limits<float>::quiet_NaN();
@@ -51,7 +51,7 @@ std::vector<double> line_of(const HeightOptions& options, const Image& image) {
   for (std::size_t i = 0; i < 4; ++i) {
     const double end = i % 2 == 0 ? image.width - 1.0 : image.height - 1.0;
     if (!(options.line[i] >= 0 && options.line[i] <= end))
-      throw Error{Fault::usage, "--line: " + format_number(options.line[i]) + " is outside the picture of " +
+      throw Error{Fault::usage, "--line: " + format_number(options.line[i]) + " is outside the image of " +
                                     std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels"};
   }
   return options.line;
@@ -93,10 +93,10 @@ void draw_section(const std::string& path, const metrology::Section& section) {
 }  // namespace
 
 void height(const HeightOptions& options) {
-  if (options.design.empty()) throw Error{Fault::usage, "DESIGN: give the design to compare with"};
+  if (options.design.empty()) throw Error{Fault::usage, "DESIGN: missing; give the design to compare with"};
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
-  const model::TriangleSoup design = read_surface(options.design, options.reference_level);
+  const model::TriangleSoup design = read_surface(options.design, options.reference_isovalue);
   const Image heights = read_heights(options);
   const std::vector<double> line = line_of(options, heights);
   const metrology::Relief print = metrology::levelled(heights, options.pixel_mm);

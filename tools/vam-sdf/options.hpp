@@ -1,4 +1,4 @@
-// What the user asks of vam-sdf, for all its files.
+// Options of vam-sdf.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct Options {
   std::string output;
   std::string align = "full";
   bool scale = false;
-  std::optional<double> level;
+  std::optional<double> isovalue;
   std::string resin_record;
-  double reference_level = 0.5;
+  double reference_isovalue = 0.5;
   int samples = 200000;
   std::string histogram;
   int bins = 101;
@@ -30,13 +30,13 @@ struct Options {
 
 /// vam-sdf height.
 struct HeightOptions {
-  std::string picture = "-";
+  std::string image = "-";
   std::string design;
   double pixel_mm = 0.05;
   double full_mm = 1;
   std::optional<double> lowest_mm;
   std::string align = "full";
-  double reference_level = 0.5;
+  double reference_isovalue = 0.5;
   std::string output;
   std::vector<double> line;
   std::string plot;
@@ -44,8 +44,9 @@ struct HeightOptions {
   std::string report;
 };
 
-/// A mesh as it is, or the surface of a volume at `level`, in the frame of the part: vam-slice's stretch in z undone.
-[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> level);
+/// A mesh as it is, or the surface of a volume at `isovalue`, in the frame of the part: vam-slice's stretch in z
+/// undone.
+[[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
 
 /// Print against reference.
 void deviation(const cli::App& app, const Options& options);

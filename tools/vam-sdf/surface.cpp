@@ -8,15 +8,16 @@
 
 namespace vam::sdf_tool {
 
-model::TriangleSoup read_surface(const std::string& path, std::optional<double> level) {
+model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
   if (!io::is_volume(path)) return io::read_mesh(path);
   const std::string name = path == "-" ? "stdin" : path;
-  if (!level) throw Error{Fault::usage, name + ": is a volume; give the surface's value with --level or --resin"};
+  if (!isovalue)
+    throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
   const io::SparseVolume volume = io::read_volume(path, "");
   model::TriangleSoup mesh = solid::isosurface(
-      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, *level);
+      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, *isovalue);
   if (mesh.triangles.empty()) {
-    throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*level)};
+    throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*isovalue)};
   }
   const auto stretch = volume.metadata.find("vam:stretch_z");
   const double factor = stretch == volume.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);

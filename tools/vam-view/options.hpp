@@ -1,4 +1,4 @@
-// What the user asks of vam-view, for all its files.
+// Options of vam-view.
 #pragma once
 
 #include <optional>

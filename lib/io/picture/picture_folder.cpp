@@ -24,7 +24,7 @@ long number_of(const fs::path& path) {
   const std::string stem = path.stem().string();
   const std::size_t last = stem.find_last_of("0123456789");
   if (last == std::string::npos) {
-    throw Error{Fault::data, path.string() + ": the name has no number; number the pictures of a folder"};
+    throw Error{Fault::data, path.string() + ": the name has no number; number the images of a folder"};
   }
   const std::size_t before = stem.find_last_not_of("0123456789", last);
   const std::size_t first = before == std::string::npos ? 0 : before + 1;
@@ -50,7 +50,7 @@ void check_gaps(const std::vector<Numbered>& pictures) {
     }
     if (step != pictures[1].number - pictures[0].number) {
       throw Error{Fault::data, pictures[i].path.string() + ": follows number " +
-                                   std::to_string(pictures[i - 1].number) + ", but the pictures before are " +
+                                   std::to_string(pictures[i - 1].number) + ", but the previous images are " +
                                    std::to_string(pictures[1].number - pictures[0].number) + " apart; one is missing"};
     }
   }
@@ -65,7 +65,7 @@ PictureFolder::PictureFolder(const std::string& folder) {
     if (is_picture(entry->path())) pictures.push_back({number_of(entry->path()), entry->path()});
   }
   if (problem) throw Error{Fault::no_input, folder + ": cannot read the folder: " + problem.message()};
-  if (pictures.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF picture in the folder"};
+  if (pictures.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};
   std::sort(pictures.begin(), pictures.end(), [](const Numbered& a, const Numbered& b) {
     return a.number != b.number ? a.number < b.number : a.path < b.path;
   });

@@ -187,7 +187,7 @@ struct VideoWriter::State {
 
 VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   if (!path.ends_with(".mkv") && !path.ends_with(".mp4")) {
-    throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (for looking at)"};
+    throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (lossy preview)"};
   }
   av_log_set_level(AV_LOG_QUIET);
   state_ = std::make_unique<State>(path, format);

@@ -133,7 +133,7 @@ std::string record_path(const model::Calibration& calibration, const std::string
 std::string write_record(const model::Calibration& calibration, const std::string& scan, const Json& facts,
                          double utc_s) {
   std::string path = record_path(calibration, scan, utc_s, ".json");
-  if (fs::exists(path)) throw Error{Fault::no_output, path + ": a record is never written twice"};
+  if (fs::exists(path)) throw Error{Fault::no_output, path + ": exists; records are immutable"};
   Json record{{"schema", schema},
               {"scan", scan},
               {"utc", utc_text(utc_s)},
@@ -191,12 +191,12 @@ void apply_records(model::Printer& printer, const model::Calibration& calibratio
     const auto record = current_record(calibration, scan);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {
-      throw Error{Fault::data, record->path + ": " + why + ", or do without: --set calibration.folder="};
+      throw Error{Fault::data, record->path + ": " + why + ", or disable records by --set calibration.folder="};
     }
     try {
       take_over(printer, *record);
     } catch (const Json::exception&) {
-      throw Error{Fault::data, record->path + ": lacks what a record of " + scan + " holds; run vam-calibrate"};
+      throw Error{Fault::data, record->path + ": incomplete record of " + scan + "; run vam-calibrate"};
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "io/settings/event_log.hpp"
+#include "io/settings/json_log.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -8,13 +8,13 @@
 namespace vam::io {
 
 void CloseFile::operator()(std::FILE* file) const {
-  if (file != stdout) std::fclose(file);
+  if (file != stderr) std::fclose(file);
 }
 
-EventLog open_log(const std::string& path) {
+JsonLog open_log(const std::string& path) {
   if (path.empty()) return nullptr;
-  if (path == "-") return EventLog(stdout);
-  EventLog log(std::fopen(path.c_str(), "ae"));
+  if (path == "-") return JsonLog(stderr);
+  JsonLog log(std::fopen(path.c_str(), "ae"));
   if (!log) throw Error{Fault::no_output, path + ": cannot append (" + std::strerror(errno) + ")"};
   return log;
 }

@@ -1,4 +1,4 @@
-// Logs that grow while a tool runs: a line of JSON an event, on the disk before the next one.
+// Logs that grow while a tool runs: one line of JSON per event, on the disk before the next one.
 #pragma once
 
 #include <cstdio>
@@ -10,10 +10,10 @@ namespace vam::io {
 struct CloseFile {
   void operator()(std::FILE* file) const;
 };
-using EventLog = std::unique_ptr<std::FILE, CloseFile>;
+using JsonLog = std::unique_ptr<std::FILE, CloseFile>;
 
-/// Appends to `path`; "-" is stdout; empty: no log. Throws Fault::no_output.
-[[nodiscard]] EventLog open_log(const std::string& path);
+/// Appends to `path`; "-" is stderr; empty: no log. Throws Fault::no_output.
+[[nodiscard]] JsonLog open_log(const std::string& path);
 
 /// Writes the line and flushes it. Throws Fault::io.
 void log_line(std::FILE& log, const std::string& line);

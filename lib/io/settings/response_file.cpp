@@ -32,7 +32,7 @@ void append(model::ResponseTable& table, double grey, double intensity, const st
   if (intensity < 0 || (!table.intensity.empty() && intensity < table.intensity.back())) {
     throw Error{Fault::data, place + ": intensity " + format_number(intensity) + " at grey " + format_number(grey) +
                                  " is below " + format_number(table.intensity.empty() ? 0 : table.intensity.back()) +
-                                 "; a response must never fall, so measure again or smooth it"};
+                                 "; a response must be monotonic; measure it again or smooth it"};
   }
   table.grey.push_back(grey);
   table.intensity.push_back(intensity);
@@ -62,7 +62,8 @@ model::ResponseTable read_response(const std::string& file) {
     header_allowed = false;
   }
   if (table.grey.size() < 2 || table.intensity.back() <= 0) {
-    throw Error{Fault::data, file + ": a response needs at least two lines 'grey,intensity' and light at full grey"};
+    throw Error{Fault::data,
+                file + ": a response needs at least two lines 'grey,intensity' and a positive intensity at full grey"};
   }
   return table;
 }

@@ -73,8 +73,7 @@ FileType file_type(const std::string& path) {
   if (head.starts_with("\x1a\x45\xdf\xa3") || (head.size() >= 8 && head.substr(4, 4) == "ftyp")) return FileType::video;
   const std::string name = path == "-" ? "stdin" : path;
   if (head.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
-  throw Error{Fault::data,
-              name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of pictures"};
+  throw Error{Fault::data, name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of images"};
 }
 
 }  // namespace vam::io

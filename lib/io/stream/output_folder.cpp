@@ -22,7 +22,7 @@ void check_replaceable(const fs::path& folder, bool (*like_these)(const fs::path
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (!like_these(entry.path())) {
       throw Error{Fault::no_output, folder.string() + ": holds " + entry.path().filename().string() +
-                                        ", which is no frame; name another folder"};
+                                        ", which is not a frame; use another folder"};
     }
   }
 }
@@ -62,7 +62,7 @@ void OutputFolder::synchronize() const {
   const int folder = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool done = folder >= 0 && syncfs(folder) == 0;
   if (folder >= 0) ::close(folder);
-  if (!done) throw Error{Fault::io, target_.string() + ": the disk did not take all files"};
+  if (!done) throw Error{Fault::io, target_.string() + ": not all files were written; is the disk full?"};
 }
 
 void OutputFolder::commit() {

@@ -76,7 +76,7 @@ BeamWidths side_widths(const Image& picture, const SideView& view, const model::
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
   if (std::abs(std::cos(azimuth)) > std::sin(10 * rad_per_deg)) {
     throw Error{Fault::data, "beam: the camera looks at " + format_number(printer.camera.azimuth_deg) +
-                                 " degrees to the light; it sees all planes apart at 90 only (camera.azimuth_deg)"};
+                                 " degrees to the beam; planes are resolved at 90 only (camera.azimuth_deg)"};
   }
   const optics::View rays = optics::camera_view(printer);
   const double along = std::sin(azimuth) > 0 ? 1 : -1;

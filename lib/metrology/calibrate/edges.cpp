@@ -290,8 +290,8 @@ VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
   const double from_light_deg = std::acos(std::cos(printer.camera.azimuth_deg * rad_per_deg)) * deg_per_rad;
   if (from_light_deg < nearest_deg - 1e-9 || from_light_deg > furthest_deg + 1e-9) {
     throw Error{Fault::data, "sweep: the camera looks at " + format_number(printer.camera.azimuth_deg) +
-                                 " degrees to the light; edges are told from " + format_number(nearest_deg) + " to " +
-                                 format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
+                                 " degrees to the beam; edges are detected from " + format_number(nearest_deg) +
+                                 " to " + format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
   }
   std::vector<std::size_t> seen;
   std::vector<Steepest> first;

@@ -86,7 +86,7 @@ ResponseCurve measure_response(const ResponseScan& scan) {
   curve.grey = scan.grey;
   for (std::size_t i = 0; i < risen.size(); ++i) {
     if (std::abs(means[i].value - risen[i].value) > std::max(5 * means[i].sigma, 0.005 * full.value)) {
-      throw Error{Fault::data, "response: the light falls by " +
+      throw Error{Fault::data, "response: the intensity falls by " +
                                    format_number(100 * std::abs(means[i].value - risen[i].value) / full.value, 3) +
                                    " % of full around grey " + format_number(scan.grey[i]) +
                                    "; let the lamp warm up, or the camera saturates"};

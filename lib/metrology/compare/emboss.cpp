@@ -38,7 +38,7 @@ Design design_of(const solid::HeightMap& map) {
   std::copy_if(map.heights_mm.values.begin(), map.heights_mm.values.end(), std::back_inserter(heights),
                [](float h) { return std::isfinite(h); });
   const auto found = plateaus(heights);
-  if (!found) throw Error{Fault::data, "design: flat, nothing stands out; give it with the base that it stands on"};
+  if (!found) throw Error{Fault::data, "design: flat, no embossing; include the base plate"};
   Design design{map.heights_mm, map.pixel_mm, found->top_mm - found->base_mm, {}};
   for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(found->base_mm);
   const Image& image = design.above_base_mm;
@@ -159,13 +159,13 @@ Emboss compare_emboss(const Relief& print, const solid::HeightMap& map, EmbossAl
     emboss.outline_mean_mm -= d;
     emboss.outline_max_mm = std::max(emboss.outline_max_mm, std::abs(d));
   }
-  if (count == 0) throw Error{Fault::data, "design: its outline does not meet the readings of the height picture"};
+  if (count == 0) throw Error{Fault::data, "design: its outline does not overlap the readings of the height image"};
   emboss.outline_mean_mm /= count;
   emboss.outline_rms_mm = outline.rms(design.outline, pose);
   emboss.design = placed(design, pose, print);
   constexpr double margin_mm = 0.15;  // a projector's edge is that soft [RAY21 fig 12]
   measure_area(print, margin_mm, emboss);
-  if (emboss.iou == 0) throw Error{Fault::data, "design: does not meet what stands out in the height picture"};
+  if (emboss.iou == 0) throw Error{Fault::data, "design: does not overlap the embossing in the height image"};
   return emboss;
 }
 

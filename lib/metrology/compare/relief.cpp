@@ -149,7 +149,7 @@ std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
 Relief levelled(const Image& heights_mm, double pixel_mm) {
   const std::vector<float> values = readings(heights_mm);
   if (static_cast<double>(values.size()) < 0.1 * static_cast<double>(heights_mm.size())) {
-    throw Error{Fault::data, "height picture: only " + std::to_string(values.size()) + " of " +
+    throw Error{Fault::data, "height image: only " + std::to_string(values.size()) + " of " +
                                  std::to_string(heights_mm.size()) + " pixels are readings"};
   }
   Plane base = fit_plane(heights_mm, [](int, int, double) { return true; });
@@ -166,7 +166,7 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
     if (!std::isfinite(heights_mm.values[i])) relief.measured.values[i] = 0;
   }
   const auto found = plateaus(readings(relief.heights_mm));
-  if (!found) throw Error{Fault::data, "height picture: flat, nothing stands out from its base"};
+  if (!found) throw Error{Fault::data, "height image: flat, no embossing above its base"};
   relief.plateau_mm = found->top_mm;
   fill_gaps(relief.heights_mm);
   return relief;

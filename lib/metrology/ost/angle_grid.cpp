@@ -66,7 +66,7 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
   if (gaps[widest] > max_gap_deg) {
     throw Error{Fault::data, "views: the turn is incomplete, no frame for " + format_number(gaps[widest], 4) +
                                  " deg after " + format_number(clusters[widest].angle_deg, 4) + " deg (" +
-                                 format_number(max_gap_deg, 4) + " deg are bridged at most)"};
+                                 format_number(max_gap_deg, 4) + " deg is the maximum gap)"};
   }
   summary_ = {angles, static_cast<int>(angles_deg.size()),
               static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size()), gaps[widest]};

@@ -29,7 +29,7 @@ double sample(const Image& image, double x, double y) {
 // Hough's accumulator wants 8 bits; the least squares after it do not.
 cv::Mat eight_bits(const Image& image) {
   const auto [low, high] = std::minmax_element(image.values.begin(), image.values.end());
-  if (!(*high > *low)) throw Error{Fault::data, "no circle: the picture is even"};
+  if (!(*high > *low)) throw Error{Fault::data, "no circle: the image is uniform"};
   cv::Mat grey(image.height, image.width, CV_8U);
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {

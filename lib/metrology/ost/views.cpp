@@ -121,7 +121,7 @@ void require_alike(std::span<const View> views) {
     if (contrast[i] >= least * usual) continue;
     throw Error{Fault::data, "views: the frame at " + format_number(views[i].angle_deg, 5) +
                                  " deg is dark, its contrast is " + format_number(contrast[i], 3) +
-                                 " and the others' " + format_number(usual, 3) + "; leave it out or take it again"};
+                                 " and the others' " + format_number(usual, 3) + "; remove it or record it again"};
   }
 }
 

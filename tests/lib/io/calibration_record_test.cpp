@@ -82,7 +82,7 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(has(refusal(calibration, now_s), "current-beam.json: is no"));
   std::filesystem::remove(folder / "records/current-beam.json");
   write_record(calibration, "axis", {{"status", "pass"}, {"values", Json::object()}}, now_s);
-  CHECK(has(refusal(calibration, now_s), "lacks what a record of axis holds"));
+  CHECK(has(refusal(calibration, now_s), "incomplete record of axis"));
   auto none = calibration;
   none.folder.clear();
   CHECK(refusal(none, now_s).empty());
