@@ -119,7 +119,7 @@ TEST_CASE("A lit row seen from the side: waist, focus and divergence of the simu
   printer.camera.azimuth_deg = 60;
   CHECK(message_of([&] {
           (void)metrology::side_widths(Image(200, 60), {0.15, 99.5}, printer, 9);
-        }).find("at 60 degrees to the light") != std::string::npos);
+        }).find("at 60 degrees to the beam") != std::string::npos);
   printer.camera.azimuth_deg = 90;
   CHECK(message_of([&] {
           (void)metrology::side_widths(Image(20, 60), {0.15, 9.5}, printer, 9);
