@@ -3,6 +3,7 @@
 
 #include "base/json.hpp"
 #include "io/settings/report.hpp"
+#include "moved.hpp"
 #include "printer.hpp"
 #include "vam-ost/session.hpp"
 
@@ -24,17 +25,14 @@ cli::Manual manual() {
        "--step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are weighted, and "
        "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the middle row is z = "
        "0.",
-       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-ost threshold) the print is { "
+       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
        "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator.",
        "--live reads frames as they arrive, keeps the last full turn, and for every turn (or every --every degrees) "
        "writes a volume into the folder -o, a line of JSON to --log, and updates --projections and --page. With "
        "--reference it reports how much of the design is cured, missing and overcured; with --until it prints one line "
        "of JSON on standard output when the conditions hold, and exits: the signal to darken the projector. Frames are "
        "read while a volume is computed; dark and saturated frames are skipped and counted, and until something has "
-       "gelled the log reports that the tool is waiting.",
-       "vam-ost threshold takes the scattering volume of a printed standard cylinder, of known diameter or measured on "
-       "a profilometer's image, and determines I_p with its standard deviation: the mean along the true circle in the "
-       "overhead mean over the standard's height. --resin of vam-ost and vam-sdf reads the record."},
+       "gelled the log reports that the tool is waiting."},
       {{"Views of a synthetic cylinder as a camera records them:",
         "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
         "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},
@@ -42,7 +40,7 @@ cli::Manual manual() {
         "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
         "scatter.vdb --projections seen.png"},
        {"Calibrate the gelation threshold with it, and use it:",
-        "vam-ost threshold scatter.vdb --diameter 6 -o resin.json\nvam-ost views --step 4 --pixel 0.065 --set "
+        "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\nvam-ost views --step 4 --pixel 0.065 --set "
         "camera.distance_mm=119.808 --resin resin.json --mesh print.ply -o again.vdb"}},
       {"Memory: about four times the views of one turn and the volume. Time: about a second for 180 views of 480 x 300 "
        "pixels on two cores.",
@@ -51,7 +49,7 @@ cli::Manual manual() {
        "their standard deviations are reported.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022; Shepp & Vardi, "
        "maximum likelihood reconstruction, 1982 (--statistical)."},
-      {"vam-capture", "vam-sdf", "vam-view", "vam-resample"},
+      {"vam-calibrate", "vam-capture", "vam-sdf", "vam-view", "vam-resample"},
       {"In captured stacks the attributes vam:angle_deg and vam:time_s give a view's angle and time; a view marked "
        "vam:incomplete is skipped with a warning that names its vam:number."}};
 }
@@ -89,7 +87,7 @@ void declare(cli::App& app, Options& o) {
   app.flag("--no-refraction", o.no_refraction, "Treat image columns as parallel rays (for comparison).");
   app.group("Print");
   app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
-  app.option("--resin", "FILE", o.resin_record, "Record of vam-ost threshold that holds I_p.");
+  app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
   app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.");
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
   app.option("--reference", "FILE.vdb", o.reference, "Design to compare with, in the same frame of reference.");
@@ -105,15 +103,6 @@ void declare(cli::App& app, Options& o) {
   app.group("Output and machine");
   cli::add_report(app, o.report);
   cli::add_threads(app);
-
-  cli::App& threshold =
-      app.subcommand("threshold", "determine the gelation threshold from a printed standard cylinder", o.command);
-  threshold.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).");
-  threshold.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
-  threshold.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
-  threshold.option("--profile", "FILE.png", o.profile,
-                   "Profilometer's height image of the standard, to measure its diameter.");
-  threshold.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel size of that image.");
 }
 
 void once(const cli::App& app, const Options& options) {
@@ -134,13 +123,14 @@ void once(const cli::App& app, const Options& options) {
 
 void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer)) return;
-  if (options.command == "threshold") return ost_tool::threshold(options);
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  const int moved = tool::follow_moved(argc, argv, {"threshold"}, "vam-calibrate resin");
+  if (moved >= 0) return moved;
   cli::App app(manual());
   Options options;
   declare(app, options);

@@ -54,7 +54,7 @@ void declare(cli::App& app, Options& options) {
              "Write the aligned print with distances and colours at its vertices.");
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
-  app.option("--resin", "FILE", options.resin_record, "Record of vam-ost threshold that holds the isovalue.");
+  app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.");
   app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
              "Isovalue of a reference volume's surface.");
   app.was("--reference-level");

@@ -23,11 +23,11 @@ fails 64 'needs --pixel' vam-calibrate beam --from beam
 fails 64 'omit --first and --step' vam-calibrate beam --from beam --side --step 1
 fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames have 160 x 32' vam-calibrate beam --from beam --side --dark ramp/00000.png
 fails 65 'at least 32 are needed' vam-calibrate beam --from ramp --side
-fails 65 'looks at 45 degrees to the light' vam-calibrate beam --from beam --side --set camera.azimuth_deg=45
+fails 65 'looks at 45 degrees to the beam' vam-calibrate beam --from beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-calibrate check
 fails 65 'cannot be split into 16 levels' vam-calibrate response --from ramp --steps 16
 for azimuth in 0 -45 100 180; do
-  fails 65 "looks at $azimuth degrees to the light" vam-calibrate edges --from sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
+  fails 65 "looks at $azimuth degrees to the beam" vam-calibrate edges --from sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
 done
 fails 65 'no height shows light' vam-calibrate edges --from flat --pitch 4 --width 2
 fails 65 '8 rows; at least 16' vam-calibrate beam --from ramp --pixel 0.0035 --step 1.27

@@ -22,7 +22,7 @@ is 'as many views as angles' "$(ls views | grep -c png)" 60
 quiet 'a folder of views' vam-ost views --step 6 $rig -o scatter.vdb --report ost.json --projections sums.png
 holds 'the axis is where it was put' "$(json ost.json axis_column_px) > 165.9 && $(json ost.json axis_column_px) < 166.1"
 holds 'and upright' "$(json ost.json axis_tilt_deg) > -0.05 && $(json ost.json axis_tilt_deg) < 0.05"
-quiet 'threshold of a standard' vam-ost threshold scatter.vdb --diameter 6 -o resin.json
+quiet 'threshold of a standard' vam-calibrate resin scatter.vdb --diameter 6 -o resin.json
 holds 'the circle is seen at its size' "$(json resin.json apparent_diameter_mm) > 5.7 && $(json resin.json apparent_diameter_mm) < 6.3"
 quiet 'with the record' vam-ost views --step 6 $rig --resin resin.json --mesh print.ply -o again.vdb
 quiet 'the print is the design' vam-sdf print.ply design.vdb --align icp --require 'rms<=0.15'
@@ -45,7 +45,7 @@ holds 'the axis is off by 3.7 px' "$(json boat.json axis_column_px) > 83.1 && $(
 holds 'and leans by 0.5 deg' "$(json boat.json axis_tilt_deg) > 0.45 && $(json boat.json axis_tilt_deg) < 0.55"
 "$render" cylinder:diameter=6,height=4 standard.exr noise=0.2
 quiet 'a standard cylinder' vam-ost standard.exr $glass -o standard.vdb
-quiet 'I_p by its known diameter' vam-ost threshold standard.vdb --diameter 6 -o glass.json
+quiet 'I_p by its known diameter' vam-calibrate resin standard.vdb --diameter 6 -o glass.json
 holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 3.8 && $(json glass.json height_mm) < 4.2"
 python3 - <<'PY'
 import struct, zlib
@@ -55,7 +55,7 @@ rows = b"".join(b"\0" + bytes(200 if ((x - 103) ** 2 + (y - 96) ** 2) ** 0.5 * p
 open("profile.png", "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", n, n, 8, 0, 0, 0, 0)) +
     chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
 PY
-quiet 'I_p by a profilometer' vam-ost threshold standard.vdb --profile profile.png --profile-pixel 0.05 -o profile.json
+quiet 'I_p by a profilometer' vam-calibrate resin standard.vdb --profile profile.png --profile-pixel 0.05 -o profile.json
 holds 'measures the standard' "$(json profile.json diameter_mm) > 5.95 && $(json profile.json diameter_mm) < 6.05"
 holds 'and its level lies on the edge' "$(json profile.json level) > 0.3 && $(json profile.json level) < 0.7"
 "$render" cylinder:diameter=4,height=4 other.exr noise=0.2
@@ -105,7 +105,10 @@ fails 65 'no volume' vam-ost views --step 2 $rig --live
 fails 64 'give their distance with --step' vam-ost views -o x.vdb
 fails 64 'need the gelation threshold' vam-ost views --step 6 --mesh p.ply -o x.vdb
 fails 64 'needs --projections' vam-ost views --step 6 --live --page p.html
-fails 64 'either --diameter or --profile' vam-ost threshold scatter.vdb
+fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
+vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
+is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: vam-ost threshold is now vam-calibrate resin'
+same 'with the same record' resin.json former.json
 fails 65 'no print at this threshold' vam-ost views --step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
 fails 65 'the turn is incomplete' vam-ost views --step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb

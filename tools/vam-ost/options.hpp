@@ -10,7 +10,6 @@
 namespace vam::ost_tool {
 
 struct Options {
-  std::string command;
   std::string views = "-";
   std::string output = "-";
   double step_deg = 0;
@@ -28,11 +27,6 @@ struct Options {
   std::string reference, until, log, page;
   std::string report;
   cli::PrinterOptions printer;
-  std::string scatter = "-";
-  std::string record = "-";
-  std::string profile;
-  std::optional<double> diameter_mm;
-  double profile_pixel_mm = 0.05;
 };
 
 }  // namespace vam::ost_tool

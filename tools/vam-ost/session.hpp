@@ -56,9 +56,6 @@ class Session {
 /// Reconstructs a sliding turn as frames come.
 void live(const cli::App& app, const Options& options);
 
-/// vam-ost threshold.
-void threshold(const Options& options);
-
 [[nodiscard]] model::Volume dense(const io::SparseVolume& sparse);
 
 }  // namespace vam::ost_tool

@@ -12,10 +12,11 @@ double gelation_level(const std::string& path) {
   try {
     const Json record = Json::parse(read_all(path));
     if (record.at("schema") != "vam-resin/1")
-      throw Error{Fault::data, path + ": not a record of vam-ost threshold, its schema is " + record["schema"].dump()};
+      throw Error{Fault::data,
+                  path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
     level = record.at("level").get<double>();
   } catch (const Json::exception& error) {
-    throw Error{Fault::data, path + ": not a record of vam-ost threshold (" + error.what() + ")"};
+    throw Error{Fault::data, path + ": not a record of vam-calibrate resin (" + error.what() + ")"};
   }
   if (!(level > 0)) throw Error{Fault::data, path + ": level is " + format_number(level) + "; it must be above 0"};
   return level;

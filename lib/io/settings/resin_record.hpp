@@ -5,7 +5,7 @@
 
 namespace vam::io {
 
-/// The gelation threshold I_p in the record that vam-ost threshold wrote. Throws Error: no_input, data (not such a
+/// The gelation threshold I_p in the record that vam-calibrate resin wrote. Throws Error: no_input, data (not such a
 /// record, or its level is not above 0).
 [[nodiscard]] double gelation_level(const std::string& path);
 
