@@ -42,8 +42,8 @@ void run(const cli::App& app, Options& options) {
   io::StackReader in(options.input);
   if (projector && in.info().kind == model::Kind::sinogram && in.info().space == model::Space::projector) {
     throw Error{Fault::data, (options.input == "-" ? "stdin" : options.input) +
-                                 ": holds the projector's columns already (vam-optimize --geometry vial, or resampled "
-                                 "before); leave vam-resample out"};
+                                 ": already has projector columns (from vam-optimize --geometry vial, or already "
+                                 "resampled); omit vam-resample"};
   }
   io::require(options.input, in.info(), model::Kind::sinogram,
               projector ? model::Space::virtual_ : model::Space::camera);

@@ -1,4 +1,4 @@
-// vam-score: is this dose printable?
+// vam-score: scores a dose against its target.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -41,7 +41,7 @@ score::Score score(const Inputs& in, const score::ScoreOptions& how) {
   return result;
 }
 
-/// A dose in mJ/cm3 knows the resin's critical dose, and how long the print takes.
+/// A dose in mJ/cm3 has a critical dose and a duration of the print.
 void settle_exposure(score::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
   how.circle = model::writable_circle(in.target().grid(), printer);
   if (in.dose().units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;

@@ -23,7 +23,8 @@ using sinogram_tool::Options;
 
 tomo::ProjectionSpec make_spec(const Options& options, const model::Printer& printer, const model::Grid& grid) {
   tomo::ProjectionSpec spec;
-  const double mu = options.resin ? printer.resin.absorption_per_mm : options.attenuation_per_mm.value_or(0);
+  const double mu =
+      options.printer_absorption ? printer.resin.absorption_per_mm : options.absorption_per_mm.value_or(0);
   spec.geometry = tomo::full_turn(grid, options.angles, options.columns.value_or(0), mu);
   spec.voxel_mm = grid.voxel_mm;
   spec.filter.window = tomo::window_from_name(options.filter);
@@ -49,10 +50,9 @@ model::StackInfo make_info(const tomo::ProjectionSpec& spec, const io::SparseVol
 }
 
 void run(const cli::App& app, const Options& options) {
-  if (options.resin && options.attenuation_per_mm)
-    throw Error{Fault::usage, "--attenuation: give it or --resin, not both"};
-  if (options.cutoff && options.filter == "none")
-    throw Error{Fault::usage, "--cutoff: has no meaning without --filter"};
+  if (options.printer_absorption && options.absorption_per_mm)
+    throw Error{Fault::usage, "--absorption: give either --absorption or --printer-absorption"};
+  if (options.cutoff && options.filter == "none") throw Error{Fault::usage, "--cutoff: requires --filter"};
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   io::refuse_same_file(options.input, options.output);

@@ -1,4 +1,4 @@
-// vam-slice: a mesh, numbered pictures or a shape to the target volume, with fractional coverage at its surface.
+// vam-slice: voxelises a mesh, numbered images or a shape, with fractional coverage at the surface.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -21,9 +21,9 @@ namespace {
 using namespace vam;
 using slice_tool::Options;
 
-void say_repairs(const solid::Part& part) {
+void report_repairs(const solid::Part& part) {
   if (!part.repair || (!part.repair->changed() && part.repair->closed())) return;
-  warn(part.subject + ": " + part.repair->summary() + (part.repair->closed() ? "" : "; inside is decided by vote"));
+  warn(part.subject + ": " + part.repair->summary() + (part.repair->closed() ? "" : "; the inside test is a vote"));
 }
 
 io::SparseVolume volume_of(const std::string& name, const solid::Part& part, const model::Grid& grid,
@@ -34,7 +34,7 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
     volume.write_slices(k0, count, slices);
     progress.tick(count);
   });
-  say_repairs(part);
+  report_repairs(part);
   return volume;
 }
 

@@ -6,7 +6,7 @@ vam-slice --shape hollow-cylinder --voxel 0.2 -o other.vdb || exit 1
 # The coverage itself is a perfect dose.
 quiet "a perfect dose" vam-score --grid target part.vdb --report perfect.json
 holds "its window is the whole dose, but for rounding" "$(json perfect.json pw) > 0.998"
-is "no voxel errs" "$(json perfect.json ver)" 0.0
+is "no voxel is wrong" "$(json perfect.json ver)" 0.0
 is "the print is the part" "$(json perfect.json iou)" 1.0
 ok "its own target, given by name" vam-score --grid target part.vdb --target part.vdb
 ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
@@ -33,7 +33,7 @@ fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'print-at' vam-score --grid target part.vdb --print-at -1
 fails 64 'is also the input' vam-score --grid target part.vdb --print part.vdb
 fails 65 "no grid 'dose'" vam-score part.vdb
-fails 65 'make the dose for this target' vam-score --grid target part.vdb --target other.vdb
+fails 65 'compute the dose on the grid' vam-score --grid target part.vdb --target other.vdb
 fails 65 'nothing prints' vam-score --grid target part.vdb --print none.ply --print-at 7
 fails 66 'absent.vdb' vam-score absent.vdb
 fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb

@@ -14,42 +14,42 @@ is "units" "$($exr attr pipe.exr vam:units)" mm
 is "pitch" "$($exr attr pipe.exr vam:pixel_mm)" 0.1
 is "angle step" "$($exr attr pipe.exr vam:angle_step_deg)" 1
 is "history grows" "$($exr attr pipe.exr vam:history | tail -n 1 | cut -d' ' -f1,3-)" "vam-sinogram part.vdb"
-is "and keeps what was there" "$($exr attr pipe.exr vam:history | sed -n 1p | cut -d' ' -f1)" vam-slice
+is "history keeps earlier lines" "$($exr attr pipe.exr vam:history | sed -n 1p | cut -d' ' -f1)" vam-slice
 middle=$((slices / 2)); centre=$((columns / 2))
 # The middle column lies within half a voxel of the axis, where the chord is the diameter to 1e-3.
 holds "the chord through the axis is the diameter, in mm" "($($exr get pipe.exr $middle $centre 33) - 8)^2 < 0.02^2"
 # Every row holds the mass of its slice: sum over all = volume / (voxel * voxel), 360 times.
-holds "the whole holds the part's volume" "($4 * 0.1 * 0.1 / 360 / (3.14159265 * 16 * 2) - 1)^2 < 1e-3^2"
+holds "the sum is the volume of the part" "($4 * 0.1 * 0.1 / 360 / (3.14159265 * 16 * 2) - 1)^2 < 1e-3^2"
 
-# --- filters: light * angle step, summed over the turn, is the part again ---
+# --- filters: intensity * angle step, summed over the turn, is the part ---
 vam-sinogram --filter ram-lak part.vdb >light.exr
-is "units of light" "$($exr attr light.exr vam:units)" 1/rad
-holds "light is negative beside the part" "$($exr get light.exr $middle $((centre + 43)) 7) < 0"
-holds "the light through the axis adds up to 1" "($($exr get light.exr $middle $centre 0) * 6.2831853 - 1)^2 < 0.05^2"
+is "units of intensity" "$($exr attr light.exr vam:units)" 1/rad
+holds "intensity is negative beside the part" "$($exr get light.exr $middle $((centre + 43)) 7) < 0"
+holds "intensity through the axis sums to 1" "($($exr get light.exr $middle $centre 0) * 6.2831853 - 1)^2 < 0.05^2"
 for filter in shepp-logan cosine hamming hann gaussian exponential; do
   ok "filter $filter" vam-sinogram --filter $filter --cutoff 0.8 --angles 12 part.vdb -o $filter.exr
 done
 vam-sinogram --filter ram-lak --negative clip part.vdb >clip.exr
 is "clip leaves 0" "$($exr get clip.exr $middle $((centre + 43)) 7)" 0
-is "and what is positive" "$($exr get clip.exr $middle $centre 7)" "$($exr get light.exr $middle $centre 7)"
+is "clip keeps positive values" "$($exr get clip.exr $middle $centre 7)" "$($exr get light.exr $middle $centre 7)"
 vam-sinogram --filter ram-lak --negative offset part.vdb >offset.exr
 holds "offset keeps differences" "(($($exr get offset.exr $middle $centre 7) - $($exr get offset.exr $middle 2 7)) - ($($exr get light.exr $middle $centre 7) - $($exr get light.exr $middle 2 7)))^2 < 1e-12"
-holds "and none is negative" "$($exr get offset.exr $middle $((centre + 43)) 7) >= 0"
+holds "offset leaves no negative value" "$($exr get offset.exr $middle $((centre + 43)) 7) >= 0"
 
 # --- absorption ---
-vam-sinogram --attenuation 0.2 part.vdb >exponential.exr
+vam-sinogram --absorption 0.2 part.vdb >exponential.exr
 # Through the axis: int_{-4}^{4} e^{0.2 u} du = 2 sinh(0.8) / 0.2 = 8.8811
 holds "the exponential transform of the diameter" "($($exr get exponential.exr $middle $centre 0) - 8.8811)^2 < 0.02^2"
-vam-sinogram --resin --set resin.absorption_per_mm=0.2 part.vdb | $exr sum - >resin
-is "--resin takes it from the printer" "$(cat resin)" "$($exr sum exponential.exr)"
-vam-sinogram --filter ram-lak --attenuation 0.2 part.vdb >axis.exr
-vam-sinogram --filter ram-lak --attenuation 0.2 --at-wall --set vial.radius_mm=10 part.vdb >wall.exr
+vam-sinogram --printer-absorption --set resin.absorption_per_mm=0.2 part.vdb | $exr sum - >resin
+is "--printer-absorption is that of the printer file" "$(cat resin)" "$($exr sum exponential.exr)"
+vam-sinogram --filter ram-lak --absorption 0.2 part.vdb >axis.exr
+vam-sinogram --filter ram-lak --absorption 0.2 --at-wall --set vial.radius_mm=10 part.vdb >wall.exr
 # e^{0.2 * 10} at the axis
-holds "light at the wall" "($($exr get wall.exr $middle $centre 0) / $($exr get axis.exr $middle $centre 0) - 7.389)^2 < 0.01^2"
+holds "intensity at the wall" "($($exr get wall.exr $middle $centre 0) / $($exr get axis.exr $middle $centre 0) - 7.389)^2 < 0.01^2"
 
 # --- sizes and streams ---
 vam-sinogram --columns 31 --angles 7 part.vdb | $exr sum - | cut -d' ' -f2,3 >size
-is "columns and angles as asked for" "$(cat size)" "31 7"
+is "number of columns and angles" "$(cat size)" "31 7"
 vam-sinogram <part.vdb >stdin.exr
 is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pipe.exr)"
 vam-sinogram --threads 1 --filter hann part.vdb >one.exr
@@ -70,10 +70,10 @@ fails 64 'angles' vam-sinogram --angles 0 part.vdb -o x.exr
 fails 64 'columns' vam-sinogram --columns 0 part.vdb -o x.exr
 fails 64 'filter' vam-sinogram --filter ramp part.vdb -o x.exr
 fails 64 'cutoff' vam-sinogram --filter hann --cutoff 0 part.vdb -o x.exr
-fails 64 'without --filter' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
-fails 64 'not both' vam-sinogram --resin --attenuation 1 part.vdb -o x.exr
-fails 64 'attenuation' vam-sinogram --attenuation -1 part.vdb -o x.exr
-fails 65 'overflows' vam-sinogram --attenuation 100 part.vdb -o x.exr
+fails 64 'requires --filter' vam-sinogram --cutoff 0.5 part.vdb -o x.exr
+fails 64 'give either' vam-sinogram --printer-absorption --absorption 1 part.vdb -o x.exr
+fails 64 'absorption' vam-sinogram --absorption -1 part.vdb -o x.exr
+fails 65 'overflows' vam-sinogram --absorption 100 part.vdb -o x.exr
 fails 64 'also the input' vam-sinogram part.vdb -o part.vdb
 fails 73 'nowhere' vam-sinogram part.vdb -o nowhere/x.exr
 fails 74 'full' vam-sinogram part.vdb -o /dev/full

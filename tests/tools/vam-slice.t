@@ -1,4 +1,4 @@
-# vam-slice: shapes, meshes and pictures in, target volumes out; and every input that is wrong.
+# vam-slice: shapes, meshes and images to target volumes; and every wrong input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 # mesh.py NAME: a test mesh. Cubes have an edge of 4; "x" is what is wrong with it.
@@ -59,7 +59,7 @@ volume 64 vam-slice cube.stl --voxel 0.25
 volume 64 vam-slice cube.stl --voxel 0.23 --rotate 30,40,50
 volume 64 vam-slice far.stl --voxel 0.25
 volume 64 vam-slice inside-out.stl --voxel 0.25
-is "turned over" "$(json report.json repair.triangles_flipped)" 12
+is "triangles flipped" "$(json report.json repair.triangles_flipped)" 12
 volume 56 vam-slice hollow.stl --voxel 0.25
 is "a cavity" "$(json report.json repair.cavities)" 1
 volume 64 vam-slice twice.stl --voxel 0.25
@@ -70,10 +70,10 @@ volume 8 vam-slice quads.obj --voxel 0.25
 volume 1000 vam-slice quads.obj --unit cm --scale 0.5 --voxel 0.25
 volume 216 vam-slice cube.stl --fit 6 --voxel 0.25
 volume 64 sh -c 'vam-slice --voxel 0.25 "$@" <cube.stl' -
-ok "repairs are said" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
-ok "votes are said" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 open edges remain; inside is decided by vote"'
-quiet "a closed mesh is not talked about" vam-slice cube.stl --voxel 0.5 -o out.vdb
-ok "as large as it gets" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
+ok "repairs are reported" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
+ok "votes are reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 open edges remain; the inside test is a vote"'
+quiet "a closed mesh needs no warning" vam-slice cube.stl --voxel 0.5 -o out.vdb
+ok "the largest size that fits" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
 holds "it fills the circle" "($(json report.json radius_mm) - $(json report.json writable_radius_mm))^2 < 1e-12"
 ok "the writable circle" vam-slice cube.stl --extent writable --voxel 0.25 -o out.vdb --report report.json
 is "its voxels" "$(json report.json voxels.0)" 70
@@ -83,7 +83,7 @@ ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --v
 ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
 ok "a mesh as insert, longer than the part" vam-slice cube.stl --insert hollow.stl --voxel 0.25 -o insert.vdb
 
-# Pictures: 6 x 4 pixels, 3 slices; the middle one half grey
+# Images: 6 x 4 pixels, 3 slices; the middle one half grey
 cat >pictures.py <<'PY'
 import os, struct, sys, zlib
 def png(name, rows):
@@ -99,21 +99,21 @@ for k, level in enumerate((255, 51, 255)):
 PY
 python3 pictures.py
 volume 52.8 vam-slice stack --voxel 1 --stretch-z 1
-is "as many slices as pictures" "$(json report.json voxels.2)" 3
+is "as many slices as images" "$(json report.json voxels.2)" 3
 volume 52.8 vam-slice stack --voxel 1
 volume 15 vam-slice odd --voxel 1 --stretch-z 1
 is "whole voxels" "$(json report.json surface_voxels)" 0
 
-# What is wrong
+# Wrong inputs
 fails 64 'unknown.*did you mean gyroid' vam-slice --shape gyrod -o x.vdb
 fails 64 'outside' vam-slice --shape sphere:diameter=-3 -o x.vdb
 fails 64 '--voxel' vam-slice --shape sphere --voxel -1 -o x.vdb
 fails 64 '--voxel' vam-slice --shape sphere --voxel 0 -o x.vdb
 fails 64 '--rotate' vam-slice --shape sphere --rotate 1,2 -o x.vdb
 fails 64 'either PART or --shape' vam-slice cube.stl --shape sphere -o x.vdb
-fails 64 'for meshes' vam-slice --shape sphere --unit in -o x.vdb
+fails 64 'applies to meshes' vam-slice --shape sphere --unit in -o x.vdb
 fails 64 'either --fit' vam-slice cube.stl --fit 3 --fit-writable -o x.vdb
-fails 64 'taken as they are' vam-slice stack --fit 3 -o x.vdb
+fails 64 'does not apply to images' vam-slice stack --fit 3 -o x.vdb
 fails 65 'truncated' vam-slice cut.stl -o x.vdb
 fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb

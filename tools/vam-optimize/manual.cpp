@@ -10,8 +10,8 @@ namespace {
 std::vector<std::string> methods() {
   std::vector<std::string> texts;
   for (const auto& entry : optimize::method_table()) {
-    texts.push_back("Method " + entry.name + ": " + entry.summary + " Reads " + join(entry.options, ", ") +
-                    ". Source: " + entry.paper + ".");
+    const std::string reads = entry.options.empty() ? "" : " Reads " + join(entry.options, ", ") + ".";
+    texts.push_back("Method " + entry.name + ": " + entry.summary + reads + " Source: " + entry.paper + ".");
   }
   return texts;
 }

@@ -6,15 +6,15 @@ cli::Manual manual() {
   return {
       "vam-resample",
       "map sinograms between the parallel beam and a real projector or camera",
-      {"Projections are computed for parallel light. A real projector's rays diverge, and the vial refracts them like "
-       "a strong lens: the light of column x_p runs through the resin along another line, at offset x_v and turned by "
-       "delta. vam-resample turns a virtual (parallel-beam) sinogram S_v into the one to project, S_p(x_p, theta) = "
-       "S_v(x_v, theta + delta) J/T, where J = dx_v/dx_p keeps the light per width and T is the Fresnel transmittance. "
-       "The map is exact for any number of concentric shells (vial.wall_mm), a telecentric or diverging lens, and a "
-       "bath behind a flat window.",
-       "With --to virtual it does the reverse for a camera that looks at the vial: camera sinograms become "
-       "parallel-beam ones, ready for filtered back-projection. The camera's azimuth counts counter-clockwise from the "
-       "projector, seen from above.",
+      {"Projections are computed for a parallel beam. The rays of a real projector diverge, and the vial refracts them "
+       "like a strong lens: the ray of column x_p passes through the resin along another line, at offset x_v and "
+       "rotated by delta. vam-resample converts a virtual (parallel-beam) sinogram S_v to a projector sinogram, "
+       "S_p(x_p, theta) = S_v(x_v, theta + delta) J/T, where J = dx_v/dx_p conserves energy per width and T is the "
+       "Fresnel transmittance. The map is exact for any number of concentric shells (vial.wall_mm), a telecentric or "
+       "diverging lens, and a bath behind a flat window.",
+       "With --to virtual it performs the inverse for a camera that views the vial: camera sinograms become "
+       "parallel-beam sinograms, ready for filtered back-projection. The azimuth of the camera is counter-clockwise "
+       "from the projector, seen from above.",
        "Columns whose ray misses the resin, or falls outside the input, are 0. The sinogram must cover one full turn. "
        "The output of --to projector has the projector's columns, with the axis at projector.axis_column."},
       {{"Correct the projections of a part for the default printer:",
@@ -25,14 +25,15 @@ cli::Manual manual() {
        {"The same part for a vial with a glass wall:",
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-resample --set "
         "vial.wall_mm=1 --set vial.index_glass=1.52 -o wall.exr"}},
-      {"Memory: five batches of 16 slices, whatever the length of the stack. Time: below 1 ms a slice of 1024 x 360 "
-       "and core.",
+      {"Memory: five batches of 16 slices, independent of the length of the stack. Time: below 1 ms per slice of 1024 "
+       "x "
+       "360 and core.",
        "Accuracy: the ray map agrees with a vector ray tracer to 1e-9. Cubic (Catmull-Rom) interpolation is of third "
-       "order and the default because it measures better than linear, which the paper uses. Its overshoot below 0, and "
-       "whatever else is negative, is set to 0 on the way to a projector, which cannot show it; --keep-negative leaves "
-       "it. An output with coarser columns than its input is averaged over the width of its columns.",
-       "Weights: to the projector J/T by default. From the camera none by default; --fresnel divides by T, the light "
-       "that was lost on its way out, and --jacobian divides by J.",
+       "order and the default because it is more accurate than linear, which the paper uses. Negative values, its "
+       "overshoot included, are set to 0 for a projector, which cannot show them, unless --keep-negative is given. An "
+       "output with coarser columns than the input is averaged over the width of its columns.",
+       "Weights: to the projector J/T by default. From the camera none by default; --fresnel divides by T, "
+       "the loss on the way out, and --jacobian divides by J.",
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "3-7 and fig 4; Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, eq 5-9, with "
        "the exact angles."},

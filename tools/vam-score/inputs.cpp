@@ -26,8 +26,8 @@ Inputs read_grids(const Options& options) {
     }
     throw Error{Fault::data, options.input + ": has no grid '" + name + "'; " + remedy};
   };
-  in.dose_at = find(options.grid, "name the grid to judge with --grid");
-  in.target_at = find("target", "name the target's file with --target");
+  in.dose_at = find(options.grid, "select the grid with --grid");
+  in.target_at = find("target", "give the target's file with --target");
   return in;
 }
 
@@ -44,7 +44,7 @@ void check_same_place(const Options& options, const model::Grid& dose, const mod
     same = same && std::abs(dose.origin_mm[axis] - target.origin_mm[axis]) <= slack;
   if (!same) {
     throw Error{Fault::data, options.input + ": the dose has " + text(dose) + ", but the target has " + text(target) +
-                                 "; make the dose for this target"};
+                                 "; compute the dose on the grid of this target"};
   }
 }
 

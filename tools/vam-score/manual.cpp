@@ -5,30 +5,30 @@ namespace vam::score_tool {
 cli::Manual manual() {
   return {
       "vam-score",
-      "judge a dose against its target",
-      {"vam-score compares the dose in every voxel (VDB, as vam-dose writes it) with the target and prints the figures "
-       "of merit of volumetric printing, one a line: name, value, meaning. G is the part, V the void inside the "
+      "score a dose against its target",
+      {"Compares the dose in every voxel (VDB, as vam-dose writes it) with the target and prints the figures "
+       "of merit of volumetric printing, one per line: name, value, meaning. G is the part, V the void inside the "
        "writable circle, f the dose: VER = #{V: f >= min_G f} / (#G + #V). PW, the process window, = min_G f - max_V "
        "f; where it is positive some threshold dose prints the part exactly. IPDR = max_G f - min_G f. CV = sigma_G / "
        "mean_G. IoU = |print and part| / |print or part| at the threshold where it is best.",
        "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures take "
-       "the ALPHA/2 and 1 - ALPHA/2 percentiles for the extremes, so that single voxels count for less.",
-       "A dose in mJ/cm3, of a turn in full light or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 also "
-       "give the exposure: the fewest whole turns, their time, and the fraction of full light with which the critical "
-       "dose lies in the middle of the process window.",
-       "Voxels that the part's surface cuts (0 < coverage < 1) are judged only with --surface.",
-       "With --require the exit status is 1 when a condition does not hold, so that a Makefile can refuse a part that "
+       "the ALPHA/2 and 1 - ALPHA/2 percentiles for the extremes, to limit the influence of single voxels.",
+       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
+       "also determine the exposure: the minimum number of whole turns, their duration, and the fraction of full "
+       "intensity that puts the critical dose in the middle of the process window.",
+       "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
+       "With --require the exit status is 1 if a condition does not hold, so that a Makefile can reject a part that "
        "will not print."},
-      {{"Score what simple projections would print:",
+      {{"Score a simulated print:",
         "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose --like part.vdb -o "
         "dose.vdb && vam-score dose.vdb --target part.vdb"},
-       {"Refuse a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
-       {"Look at the print, as a mesh and as points coloured by dose:",
+       {"Reject a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
+       {"Write the print as a mesh and as points coloured by dose:",
         "vam-score dose.vdb --target part.vdb --print print.ply && vam-score dose.vdb --target part.vdb --print "
         "points.ply --print-as points"}},
       {"Accuracy: extremes, means and the figures at the critical dose are exact; VER, IoU and percentiles resolve the "
-       "dose to 2^-12 of its value, and VER counts doubtful voxels as errors.",
-       "Memory: both volumes as they are in their files, and 16 slices. --print holds the dose once more.",
+       "dose to 2^-12 of its value, and VER counts undecided voxels as errors.",
+       "Memory: both volumes as in their files, and 16 slices. --print keeps a second copy of the dose.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017, fig 8 (print as points); Rackson et al., Object-space "
        "optimization of tomographic reconstructions, 2021 (VER, PW, IPDR)."},
       {"vam-dose", "vam-optimize", "vam-sdf", "vam-view"}};

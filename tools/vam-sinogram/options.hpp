@@ -19,8 +19,8 @@ struct Options {
   std::string filter = "none";
   std::optional<double> cutoff;
   std::string negative = "keep";
-  std::optional<double> attenuation_per_mm;
-  bool resin = false;
+  std::optional<double> absorption_per_mm;
+  bool printer_absorption = false;
   bool at_wall = false;
   cli::PrinterOptions printer;
   io::StackOptions stack;

@@ -6,24 +6,24 @@ namespace vam::slice_tool {
 cli::Manual manual() {
   cli::Manual manual{
       "vam-slice",
-      "turn a mesh, pictures or a test part into the target volume",
-      {"Writes the grid 'target': for every voxel the fraction, 0 to 1, that the part fills. Coordinates are "
+      "voxelise a mesh, images or a test part into the target volume",
+      {"Writes the grid 'target': the fraction, 0 to 1, of every voxel that the part covers. Coordinates are "
        "millimetres; x = y = 0 is the rotation axis, z points up along it, and z = 0 is the middle of the projector's "
-       "rows (projector.axis_row). A second grid, 'insert', holds an opaque object that is printed around.",
-       "PART is a mesh (STL, OBJ, PLY, OFF or 3MF, told by its content), or a folder of numbered grey pictures (PNG or "
+       "rows (projector.axis_row). A second grid, 'insert', is an opaque object to print around.",
+       "PART is a mesh (STL, OBJ, PLY, OFF or 3MF, identified by content), or a folder of numbered grey images (PNG or "
        "TIFF), one for each slice from the lowest up, white inside, each pixel a voxel. --shape makes a test part "
-       "without any file.",
-       "Meshes are repaired first: equal points welded, cracks of rounding closed, degenerate and duplicate triangles "
-       "dropped, all others turned outwards. Solids may overlap; what has several shells is a solid within a solid, or "
-       "a cavity where the inner shell faces inwards in the file. What was done is said in a warning. When holes "
-       "remain, inside is decided by a vote: along x, y and z each, windings are counted from both ends of every row "
-       "of voxels, and the median decides. A surface that encloses nothing is an error.",
-       "The vial shrinks the picture of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. "
-       "2022). The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the "
-       "print comes out in its true height. --stretch-z 1 switches this off. The factor is recorded as vam:stretch_z."},
+       "without a file.",
+       "Meshes are repaired first: coincident points are welded, rounding cracks closed, degenerate and duplicate "
+       "triangles removed, all others oriented outwards. Solids may overlap; nested shells are a solid within a solid, "
+       "or a cavity if the inner shell faces inwards in the file. Repairs are reported in a warning. If holes remain, "
+       "the inside test is a vote: along x, y and z, windings are counted from both ends of every row of voxels, and "
+       "the median decides. A surface that encloses no volume is an error.",
+       "The vial reduces the image of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. 2022). "
+       "The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the print "
+       "has its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z."},
       {{"The gyroid of Orth et al. 2022, cell 7 mm, sheet 1 mm, in a cylinder of 14 mm x 10 mm:",
         "vam-slice --shape gyroid -o gyroid.vdb"},
-       {"The disc grid of Orth et al. 2021 on a coarser grid, and what was measured:",
+       {"The disc grid of Orth et al. 2021 on a coarser grid, with a report:",
         "vam-slice --shape disc-grid:height=1 --voxel 0.13 --report discs.json -o discs.vdb"},
        {"A boat as large as the printer allows:", "vam-slice --shape boat --fit-writable --voxel 0.13 -o boat.vdb"},
        {"A handle to be printed around the shaft of a screwdriver:",
@@ -35,10 +35,10 @@ cli::Manual manual() {
       "surfaces of two overlapping solids cross within a voxel its coverage is their sum, at most 1. With holes of 8 % "
       "of the diameter or 0.5 % of the facets missing, fewer than one voxel in 1000 is wrong by more than a half. "
       "Shapes: 2e-4 of the volume for features of a few voxels.",
-      "Speed and memory: a million triangles on 512 x 512 x 512 voxels take 2 s on two cores. In memory are the mesh, "
-      "16 slices, and the volume with its interior as tiles.",
-      "The volume is square in x and y and just holds the part's bounding circle; metrics that look at the void use "
-      "the writable circle, whatever the size of the volume. --extent writable makes volumes of several parts match.",
+      "Speed and memory: a million triangles on 512 x 512 x 512 voxels take 2 s on two cores. Memory: the "
+      "mesh, 16 slices, and the volume with its interior as tiles.",
+      "The volume is square in x and y and just contains the bounding circle of the part; metrics of the void use the "
+      "writable circle, regardless of the size of the volume. --extent writable makes volumes of several parts match.",
       "Sources: [CAL17] Kelly et al., Computed Axial Lithography, 2017; [CAL19] Kelly et al., Science 2019; [RAY21] "
       "Orth et al., Opt. Express 2021; [OST22] Orth et al., On-the-fly 3D metrology, 2022; [CURE19] Pritchard et al., "
       "2019.",

@@ -10,31 +10,31 @@
 namespace vam::slice_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("PART", options.input, "Mesh, or folder of numbered pictures.");
+  app.positional("PART", options.input, "Mesh, or folder of numbered images.");
   cli::add_output(app, options.output);
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
-             "A test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; IMPLEMENTATION NOTES lists all.");
+             "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.");
   app.option("--insert", "MESH", options.insert, "Object to print around, in the coordinates of PART.");
   app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape,
-             "The same by name; in mm, centred on the axis.");
+             "Object to print around, by name; in mm, centred on the axis.");
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
-             "How inside is found: exactly, which needs a closed mesh, by vote, or as the mesh allows.");
-  app.option("--voxel", "MM", options.voxel_mm, cli::positive,
-             "Edge of a voxel, and of a picture's pixel; without it projector.pixel_mm.");
+             "Inside test: exact, for closed meshes; by vote, for meshes with holes; or chosen by the mesh.");
+  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
+  app.default_is("projector.pixel_mm");
   app.choice("--extent", options.extent, {"part", "writable"},
-             "Size of the volume in x and y: the part's bounding circle, or the whole writable circle.");
-  app.group("Placement, in this order");
+             "Size of the volume in x and y: bounding circle of the part, or the whole writable circle.");
+  app.group("Placement, applied in this order");
   app.choice("--unit", options.unit, {"mm", "cm", "m", "in", "um"}, "Unit of the file's coordinates.");
-  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Enlarge.");
-  app.option("--rotate", "X,Y,Z", options.rotate_deg, 3, "Turn about x, then y, then z, in degrees, right-handed.");
+  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
+  app.option("--rotate", "X,Y,Z", options.rotate_deg, 3, "Rotate about x, then y, then z, in degrees, right-handed.");
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive, "Scale so that the largest dimension is MM.");
   app.flag("--fit-writable", options.placement.fit_writable, "Scale to fill the writable cylinder.");
   app.flag("--no-center", options.no_center,
-           "Keep the file's origin; without it the middle of the bounding box comes to x = y = z = 0.");
-  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive,
-             "Stretch along z; without it 1/M_vp of the printer.");
+           "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
+  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
+  app.default_is("1/M_vp of the printer");
   cli::add_printer(app, options.printer);
-  app.group("Report and machine");
+  app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }
@@ -52,20 +52,19 @@ void check(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
   }
   if (options.placement.fit_writable && options.no_center) {
-    throw Error{Fault::usage, "--fit-writable: centres the part; leave --no-center out"};
+    throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-center"};
   }
   if (!options.insert.empty() && !options.insert_shape.empty()) {
     throw Error{Fault::usage, "--insert-shape: give either --insert or --insert-shape"};
   }
   if (options.insert == "-") throw Error{Fault::usage, "--insert: must be a file; standard input is for PART"};
   if (!options.shape.empty() || is_folder(options.input)) {
-    if (app.given("--unit")) throw Error{Fault::usage, "--unit: is for meshes"};
-    if (app.given("--fill")) throw Error{Fault::usage, "--fill: is for meshes"};
+    if (app.given("--unit")) throw Error{Fault::usage, "--unit: applies to meshes only"};
+    if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
   }
   if (is_folder(options.input)) {
     for (const char* flag : {"--scale", "--rotate", "--fit", "--fit-writable", "--no-center", "--insert"}) {
-      if (app.given(flag))
-        throw Error{Fault::usage, std::string(flag) + ": pictures are taken as they are; use --voxel"};
+      if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to images; use --voxel"};
     }
   }
 }

@@ -1,4 +1,4 @@
-// What the user asks of vam-slice, for all its files.
+// The options of vam-slice, for all its files.
 #pragma once
 
 #include <optional>
