@@ -1,7 +1,7 @@
-# vam-curethrough from end to end: the paper's ladder, an egg shell, measured data, and input that cannot be used.
+# vam-curethrough from end to end: the paper's ladder, an egg shell, measured data, and wrong inputs.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
-light="--max-intensity 110 --min-intensity 0.2"  # what gives the paper's figures 2 and 4
+light="--max-irradiance 110 --min-irradiance 0.2"  # what gives the paper's figures 2 and 4
 
 quiet "slice the ladder" vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb
 
@@ -22,7 +22,7 @@ is "the last slice is shown at 52 x 0.18 s" "$(tail -n 1 slices/frames.csv)" "00
 ok "model corrected slices" vam-curethrough model slices.exr --part ladder.vdb $light --plane corrected.png --report exact.json
 is "no cure-through" "$(json exact.json cure_through.voxels)" 0
 is "no undercure" "$(json exact.json undercured.voxels)" 0
-ok "model the 8-bit pictures" vam-curethrough model slices --part ladder.vdb $light --report grey.json
+ok "model the 8-bit images" vam-curethrough model slices --part ladder.vdb $light --report grey.json
 is "8 bits: no undercure" "$(json grey.json undercured.voxels)" 0
 is "8 bits: no cure-through" "$(json grey.json cure_through.voxels)" 0
 holds "8 bits: height errors fall by more than 99 %" \
@@ -58,19 +58,19 @@ fi
 
 # ---- the forms of the output
 quiet "the response on the way out and in again" sh -c "printf 'grey,intensity\n0,0.2\n60,4\n128,25\n255,110\n' > response.csv &&
-  vam-curethrough correct ladder.vdb --max-intensity 110 --response response.csv --values grey -o grey.exr &&
-  vam-curethrough model grey.exr --part ladder.vdb --max-intensity 110 --response response.csv --report response.json >/dev/null"
+  vam-curethrough correct ladder.vdb --max-irradiance 110 --response response.csv --values grey -o grey.exr &&
+  vam-curethrough model grey.exr --part ladder.vdb --max-irradiance 110 --response response.csv --report response.json >/dev/null"
 is "no cure-through after the round trip" "$(json response.json cure_through.voxels)" 0
 is "no undercure after the round trip" "$(json response.json undercured.voxels)" 0
 quiet "a stack of levels" vam-curethrough correct ladder.vdb $light --quantise -o levels.exr
-ok "is what the pictures show" vam-curethrough model levels.exr --part ladder.vdb $light --report levels.json
+ok "equals the images" vam-curethrough model levels.exr --part ladder.vdb $light --report levels.json
 is "same errors" "$(json levels.json height_error.mean_error_um)" "$(json grey.json height_error.mean_error_um)"
 quiet "platform at the top" vam-curethrough correct ladder.vdb $light --platform top -o top.exr
 ok "and back" vam-curethrough model top.exr --part ladder.vdb --platform top $light --report top.json
 is "no cure-through either" "$(json top.json cure_through.voxels)" 0
 quiet "omega-max" vam-curethrough correct ladder.vdb $light --omega-max inf -o inf.exr
-ok "a higher dose inside" vam-curethrough model inf.exr --part ladder.vdb $light --report inf.json
-is "and still no cure-through" "$(json inf.json cure_through.voxels)" 0
+ok "model it" vam-curethrough model inf.exr --part ladder.vdb $light --report inf.json
+is "still no cure-through" "$(json inf.json cure_through.voxels)" 0
 quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure layered --speed 100 -o layered.exr
 ok "its dose" vam-curethrough model layered.exr --part ladder.vdb $light --report layered.json
 is "no undercure layer by layer" "$(json layered.json undercured.voxels)" 0
@@ -78,7 +78,7 @@ is "no cure-through layer by layer" "$(json layered.json cure_through.voxels)" 0
 quiet "one thread" vam-curethrough correct ladder.vdb $light --threads 1 -o same.exr
 quiet "three threads" sh -c "mkdir three && cp ladder.vdb three && cd three && vam-curethrough correct ladder.vdb $light --threads 3 -o same.exr"
 sed 's/--threads 3/--threads 1/' <three/same.exr >three.exr
-same "the threads do not matter" same.exr three.exr
+same "any number of threads gives the same bytes" same.exr three.exr
 quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame --set projector.pixel_mm=0.05 -o full.exr
 
 # ---- a catalogue
@@ -86,7 +86,7 @@ printf 'name,absorbance_height_um,critical_dose_mj_cm3\nclear,2000,576\ndark,300
 ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --speeds 1000,8000 --report catalogue.json
 holds "the darker resin keeps narrower gaps open" \
   "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
-is "beyond the limit nothing prints" "$(json catalogue.json catalogue.1.prints)" false
+is "nothing prints beyond the speed limit" "$(json catalogue.json catalogue.1.prints)" false
 
 # ---- working curve, response, sweep
 printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n50,1175\n130,2004\n130,1996\n' >curve.csv
@@ -96,19 +96,19 @@ is "the logarithm is stated" "$(json curve.json logarithm_base)" 10
 printf 'grey,reading\n0,1.2\n64,6.3\n128,25\n192,58\n255,111\n' >diode.csv
 ok "response" vam-curethrough response diode.csv --dark 1 -o table.csv --plot response.png --report diode.json
 is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
-quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-intensity 110 --response table.csv -o x.exr
+quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-irradiance 110 --response table.csv -o x.exr
 ok "sweep" vam-curethrough sweep dc=4..6,omega_max=1/inf $light --plot sweep.png --report sweep.json
 holds "least error where the assumed dose is the real one" "$(json sweep.json points.2.ratio) < 0.001"
-holds "more below" "$(json sweep.json points.0.ratio) > 0.1"
-holds "more above" "$(json sweep.json points.4.ratio) > 0.1"
+holds "larger errors below" "$(json sweep.json points.0.ratio) > 0.1"
+holds "larger errors above" "$(json sweep.json points.4.ratio) > 0.1"
 
-# ---- what cannot be used
+# ---- wrong inputs
 fails 64 'no command' vam-curethrough
 fails 65 'the minimum, 120 mW/cm2, must be at least 0 and below the maximum' \
-  vam-curethrough correct ladder.vdb --min-intensity 120 --max-intensity 110 -o no.exr
+  vam-curethrough correct ladder.vdb --min-irradiance 120 --max-irradiance 110 -o no.exr
 fails 65 'slice height: 50 um is more than ten absorbance heights' \
   vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr
-fails 65 'nothing cures; give more light or print slower' vam-curethrough correct ladder.vdb --max-intensity 10 -o no.exr
+fails 65 'nothing cures; increase the intensity or print slower' vam-curethrough correct ladder.vdb --max-irradiance 10 -o no.exr
 printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
 printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
@@ -118,11 +118,11 @@ fails 65 '2 different exposures do not judge a line; measure at least 3' vam-cur
 printf 'exposure,thickness_um\n20,370\n' >names.csv
 fails 65 "no column 'exposure_mj_cm2'" vam-curethrough working-curve names.csv
 fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr
-fails 65 'do not belong to' vam-curethrough model full.exr --part ladder.vdb $light
+fails 65 'do not match' vam-curethrough model full.exr --part ladder.vdb $light
 fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder.vdb --part egg.vdb $light
 fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
 mkdir letters; echo hello >letters/letter.txt
-fails 73 'letter.txt, which is no frame' vam-curethrough correct ladder.vdb $light --png letters
+fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters
 fails 64 'the table goes to standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
 quiet "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb

@@ -136,7 +136,7 @@ void write_levels(const Correct& options, const Job& job, const resin::GreyLevel
 void warn_of_gaps(const std::string& name, const Job& job) {
   if (job.gaps.infeasible_columns == 0) return;
   warn(name + ": " + std::to_string(job.gaps.infeasible_columns) + " of " + std::to_string(job.survey.columns) +
-       " columns have gaps of a single slice, in which no light keeps the dose below the critical one; they will fuse "
+       " columns have gaps of a single slice, in which no intensity keeps the dose below critical; they will fuse "
        "(--mask shows them)");
 }
 
@@ -175,38 +175,37 @@ Job prepare(const cli::App& root, const Correct& options, bool writes) {
 void declare(cli::App& app, Correct& options) {
   app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.");
   cli::add_output(app, options.output);
-  app.option(
-      "--png", "FOLDER", options.png,
-      "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); then -o is off unless given.");
+  app.option("--png", "FOLDER", options.png,
+             "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
+             "unless -o is given.");
   app.choice("--values", options.values, {"intensity", "grey"},
              "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the "
              "response.");
   app.flag("--quantise", options.quantise,
-           "The stack holds the levels of the PNGs instead of exact values; all slices are then in memory (2 bytes a "
-           "pixel).");
+           "Write the grey levels of the PNGs to the stack instead of exact values; all slices are then in memory (2 "
+           "bytes per pixel).");
   app.flag("--full-frame", options.full_frame,
-           "Place the part in a picture of projector.columns x rows, the axis at axis_column, axis_row.");
+           "Place the part in an image of projector.columns x rows, the axis at axis_column, axis_row.");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   app.group("Correction");
   app.option("--omega-max", "DOSE", options.limit.omega_max, {1, std::numeric_limits<double>::infinity()},
-             "Largest dose inside features, in critical doses; inf for no limit.");
-  app.flag(
-      "--strong-base", options.limit.strong_base,
-      "Features that stand on the platform get full light whatever --omega-max says: there is no resin behind them "
-      "to cure.");
+             "Maximum dose inside features, in critical doses; inf is no limit.");
+  app.flag("--strong-base", options.limit.strong_base,
+           "Expose features on the platform at maximum intensity regardless of --omega-max: there is no resin behind "
+           "them to cure.");
   app.option("--clear", "DOSE", options.clear, {0, 1, true},
-             "A gap whose dose nowhere falls to so many critical doses is reported as tight.");
+             "A gap whose dose nowhere falls to this number of critical doses is reported as tight.");
   add_part(app, options.part);
   app.option("--mask", "FILE", options.mask,
-             "PNG of the columns: 0 fine or empty, 128 with a tight gap, 255 with a gap that must fuse.");
+             "PNG of the columns: 0 good or empty, 128 with a tight gap, 255 with a gap that must fuse.");
   app.group("Catalogue");
   app.option("--catalogue", "FILE", options.catalogue,
              "CSV name,absorbance_height_um,critical_dose_mj_cm3: print a table that compares these resins for this "
-             "part; slices are then written only where -o or --png is given.");
-  app.option("--speeds", "MM_H,...", options.speeds_mm_h, 0,
-             "Speeds of the table; without them 20, 40, 60 and 80 % of each resin's limit.");
+             "part; slices are then written only with -o or --png.");
+  app.option("--speeds", "MM_H,...", options.speeds_mm_h, 0, "Speeds of the table.");
+  app.default_is("20, 40, 60 and 80 % of the limit of each resin");
   add_print(app, options.print);
-  app.group("Report and machine");
+  app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }
@@ -218,7 +217,7 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
   if (stack && !options.catalogue.empty() && options.output == "-") {
     throw Error{Fault::usage, "--catalogue: the table goes to standard output; give -o a file name"};
   }
-  if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: has a meaning only for a stack; give -o"};
+  if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: requires a stack; give -o"};
   Job job = prepare(root, options, stack || pictures);
   Json report = figures(options, job);
   if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.part.columns());

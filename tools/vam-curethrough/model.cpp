@@ -72,7 +72,7 @@ Inputs open_inputs(const cli::App& app, const Model& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
   if (is_volume(options.input) && !design.path.empty()) {
-    throw Error{Fault::usage, "--part: " + options.input + " is a part itself; give slices, or leave out --part"};
+    throw Error{Fault::usage, "--part: " + options.input + " is a part itself; give slices, or omit --part"};
   }
   if (is_volume(options.input)) design.path = options.input;
   if (!design.path.empty()) in.part = std::make_shared<Part>(design, exposure_of(options.print));
@@ -89,8 +89,8 @@ Inputs open_inputs(const cli::App& app, const Model& options) {
   if (grid.nx != in.slices.width || grid.ny != in.slices.height || grid.nz > in.slices.count) {
     throw Error{Fault::data, in.slices.name + ": " + std::to_string(in.slices.count) + " slices of " +
                                  std::to_string(in.slices.width) + " x " + std::to_string(in.slices.height) +
-                                 " pixels do not belong to " + in.part->name() + " of " + std::to_string(grid.nx) +
-                                 " x " + std::to_string(grid.ny) + " x " + std::to_string(grid.nz) + " voxels"};
+                                 " pixels do not match " + in.part->name() + " of " + std::to_string(grid.nx) + " x " +
+                                 std::to_string(grid.ny) + " x " + std::to_string(grid.nz) + " voxels"};
   }
   return in;
 }
@@ -196,20 +196,20 @@ void read_twice(const Inputs& in, Judge& judge) {
 void declare(cli::App& app, Model& options) {
   options.part.path.clear();
   app.positional("SLICES", options.input,
-                 "EXR frame stack, folder of numbered pictures, or a target volume (.vdb, or standard input): full "
-                 "light in the part, the least outside.");
+                 "EXR frame stack, folder of numbered images, or a target volume (.vdb, or standard input): maximum "
+                 "intensity in the part, minimum outside.");
   app.option("-o,--output", "FILE", options.output,
-             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the voxels' centres).");
-  app.option("--part", "FILE", options.part.path, "The part that the slices are meant to give, for the cure map.");
+             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).");
+  app.option("--part", "FILE", options.part.path, "Part that the slices should give, for the cure map.");
   add_part(app, options.part);
-  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of pictures without --part.");
-  app.group("Picture");
+  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of images without --part.");
+  app.group("Figure");
   app.option("--plane", "FILE", options.plane,
-             "PNG of an x-z plane: slices, cure map, and light and dose along one column.");
-  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the plane; without it the middle one.");
-  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves; without it the middle one.");
+             "PNG of an x-z plane: slices, cure map, and intensity and dose along one column.");
+  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the plane.").default_is("the middle");
+  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.").default_is("the middle");
   add_print(app, options.print);
-  app.group("Report and machine");
+  app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }

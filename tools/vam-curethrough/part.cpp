@@ -40,9 +40,8 @@ std::uint64_t reversed(std::uint64_t bits, int count) {
 
 void add_part(cli::App& app, PartOptions& options) {
   app.choice("--platform", options.platform, {"bottom", "top"},
-             "Which end of the volume sticks to the platform and is printed first; the light comes from the other.");
-  app.option("--threshold", "FRACTION", options.threshold, {0, 1, true},
-             "Coverage from which on a voxel belongs to the part.");
+             "End of the volume that adheres to the platform and is printed first; the light enters from the other.");
+  app.option("--threshold", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a part voxel.");
 }
 
 Part::Part(const PartOptions& options, resin::Exposure exposure)

@@ -13,20 +13,22 @@ namespace vam::curethrough {
 void add_print(cli::App& app, PrintOptions& options) {
   app.group("Print");
   app.option("--speed", "MM_H", options.speed_mm_h, cli::positive, "Speed of the platform.");
-  app.option(
-      "--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
-      "Depth in which the light falls to a tenth (base 10); without it from resin.absorption_per_mm, else 2000.");
-  app.option("--critical-dose", "MJ_CM3", options.critical_dose_mj_cm3, cli::positive,
-             "Dose that cures; without it resin.critical_dose_mj_cm3, else 576.");
-  app.option("--min-intensity", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
-             "At the window, at grey 0; without it projector.min_intensity.");
-  app.option("--max-intensity", "MW_CM2", options.max_intensity_mw_cm2, cli::positive,
-             "At the window, at full grey; without it projector.max_intensity_mw_cm2.");
+  app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
+             "Depth in which the intensity falls to a tenth (base 10).");
+  app.default_is("determined by resin.absorption_per_mm, else 2000");
+  app.option("--critical-dose", "MJ_CM3", options.critical_dose_mj_cm3, cli::positive, "Dose that cures.");
+  app.default_is("resin.critical_dose_mj_cm3, else 576");
+  app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
+             "Irradiance at the window, at grey 0.");
+  app.default_is("projector.min_intensity_mw_cm2").was("--min-intensity");
+  app.option("--max-irradiance", "MW_CM2", options.max_intensity_mw_cm2, cli::positive,
+             "Irradiance at the window, at full grey.");
+  app.default_is("projector.max_intensity_mw_cm2").was("--max-intensity");
   app.option("--response", "FILE", options.response,
-             "Measured grey response (CSV grey,intensity); without it projector.response, else a straight line. Its "
-             "first entry sets the minimum intensity.");
+             "Measured grey response (CSV grey,intensity). Its first entry determines the minimum irradiance.");
+  app.default_is("projector.response, else a straight line");
   app.choice("--exposure", options.exposure, {"continuous", "layered"},
-             "The platform moves all the time, or rests for each layer (exposed for slice height / speed).");
+             "The platform moves continuously, or rests for each layer (exposed for slice height / speed).");
   cli::add_printer(app, options.printer);
 }
 

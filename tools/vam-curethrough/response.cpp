@@ -13,11 +13,11 @@
 namespace vam::curethrough {
 
 void declare(cli::App& app, GreyResponse& options) {
-  app.positional("DATA", options.input, "CSV with the columns grey,reading; a line for each repeat.");
+  app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.");
   cli::add_output(app, options.output);
-  app.option("--dark", "READING", options.dark, cli::any, "What the diode reads without light; subtracted.");
-  app.option("--scale", "MW_CM2", options.scale, cli::positive, "Intensity of one unit of reading.");
-  app.option("--plot", "FILE", options.plot, "PNG of the readings' means and the curve through them.");
+  app.option("--dark", "READING", options.dark, cli::any, "Dark reading of the photodiode; subtracted.");
+  app.option("--scale", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.");
+  app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.");
   cli::add_report(app, options.report);
 }
 

@@ -25,7 +25,7 @@ Slices from_folder(const std::string& path, const resin::Response& response) {
     slice = Image(grey.width, grey.height);
     for (std::size_t p = 0; p < slice.size(); ++p) {
       if (grey.values[p] >= light.size()) {
-        throw Error{Fault::data, folder->path(n) + ": has more grey levels than the first picture"};
+        throw Error{Fault::data, folder->path(n) + ": has more grey levels than the first image"};
       }
       slice.values[p] = light[grey.values[p]];
     }

@@ -106,17 +106,17 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
 
 void declare(cli::App& app, Sweep& options) {
   app.positional("RANGES", options.ranges,
-                 "What to vary: dc, the assumed critical dose in gelation doses, and omega_max. Each is FROM..TO, "
-                 "FROM..TO..STEP or VALUE/VALUE/...; dc=1..8,omega_max=1..5 when absent.");
+                 "Parameters to vary: dc, the assumed critical dose in gelation doses, and omega_max. Each is "
+                 "FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
   app.option("--heights", "SLICES,...", options.heights, 0,
-             "Heights of the ladder's rungs; each gap is as high as the rung after it.");
+             "Heights of the rungs of the ladder; each gap is as high as the next rung.");
   app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height.");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
-             "Gelation dose D_gel of the working curve; without it a fifth of the critical dose, which is what the "
-             "paper found.");
-  app.option("--plot", "FILE", options.plot, "PNG of the ratios against dc.");
+             "Gelation dose D_gel of the working curve.");
+  app.default_is("a fifth of the critical dose, as in the paper");
+  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.");
   add_print(app, options.print);
-  app.group("Report and machine");
+  app.group("Report and performance");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }

@@ -76,8 +76,8 @@ std::string table_of(const resin::WorkingCurve& curve, const io::CsvTable& csv,
 }  // namespace
 
 void declare(cli::App& app, WorkingCurve& options) {
-  app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; a line for each repeat.");
-  app.option("--confidence", "FRACTION", options.confidence, {0.5, 0.9999}, "Of the intervals.");
+  app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; one line per measurement.");
+  app.option("--confidence", "FRACTION", options.confidence, {0.5, 0.9999}, "Confidence level of the intervals.");
   app.option("--plot", "FILE", options.plot, "PNG of the samples, the line and its interval.");
   cli::add_report(app, options.report);
 }

@@ -219,13 +219,13 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
   }
 }
 
-TEST_CASE("light that cannot print is refused with a remedy") {
+TEST_CASE("an intensity range that cannot print is refused with a remedy") {
   const resin::PartColumns part = part_of(random_part(40, 1), 40, Exposure::continuous, 8);
   resin::Limits limits = limits_for(Exposure::continuous);
   limits.phi_max = 0.5;
   CHECK_THROWS_WITH_AS(resin::require_printable(limits),
-                       "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; give more light "
-                       "or print slower than 0.5 times this speed",
+                       "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; increase "
+                       "the intensity or print slower than 0.5 times this speed",
                        Error);
   limits.phi_max = 9;
   limits.phi_min = 1.5;
