@@ -24,28 +24,28 @@ struct Figure {
 
 const std::vector<Figure>& figure_list() {
   static const std::vector<Figure> all{
-      {"ver", "voxel error rate: void voxels with at least the part's least dose, of all"},
-      {"pw", "process window: least part dose - largest void dose (> 0: a threshold prints it exactly)"},
-      {"ipdr", "in-part dose range: largest - least part dose"},
-      {"cv", "coefficient of variation of the part's dose"},
+      {"ver", "voxel error rate: fraction of voxels that are void with at least the minimum part dose"},
+      {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)"},
+      {"ipdr", "in-part dose range: maximum - minimum part dose"},
+      {"cv", "coefficient of variation of the part dose"},
       {"iou", "|print and part| / |print or part| at the best threshold"},
-      {"threshold", "that threshold"},
-      {"min_part", "least dose in the part"},
+      {"threshold", "best threshold"},
+      {"min_part", "minimum dose in the part"},
       {"mean_part", "mean dose in the part"},
-      {"max_part", "largest dose in the part"},
-      {"max_void", "largest dose in the void"},
-      {"max_dose", "largest dose of both"},
+      {"max_part", "maximum dose in the part"},
+      {"max_void", "maximum dose in the void"},
+      {"max_dose", "maximum dose"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
       {"cured_void", "at the critical dose: fraction of the void that cures"},
       {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
-      {"cured_wrong", "at the critical dose: wrong voxels, of all"},
+      {"cured_wrong", "at the critical dose: fraction of wrong voxels"},
       {"turns", "whole turns that put the critical dose in the middle of the process window"},
-      {"seconds", "the time they take"},
-      {"multiplier", "of full light, with which they do"},
-      {"peak_intensity", "of the brightest pixel then, mW/cm2"},
-      {"efficiency", "mean / largest value of the projections"}};
+      {"seconds", "duration of these turns"},
+      {"multiplier", "fraction of full intensity during these turns"},
+      {"peak_intensity", "irradiance of the brightest pixel during these turns, mW/cm2"},
+      {"efficiency", "mean / maximum of the projections"}};
   return all;
 }
 
@@ -69,7 +69,7 @@ void Score::add(const float* dose, const float* target, int count) {
     for (std::size_t i = 0; i < inside_.size(); ++i) {
       const float d = dose[first + i];
       const float f = target[first + i];
-      if (!std::isfinite(d)) throw Error{Fault::data, "the dose is not a number in places; compute it again"};
+      if (!std::isfinite(d)) throw Error{Fault::data, "the dose is not finite everywhere; compute it again"};
       auto label = model::label_of(f);
       if (!inside_[i] && label == model::Label::void_) continue;
       if (label == model::Label::surface) {
@@ -121,7 +121,7 @@ Json Score::figures() const {
   const auto m = statistics_.metrics(!options_.absolute);
   if (m.part == 0) throw Error{Fault::data, "the target has no voxel wholly inside the part; use smaller voxels"};
   if (m.void_ == 0)
-    throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to tell apart"};
+    throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to compare"};
   Json json;
   json["part_voxels"] = m.part;
   json["void_voxels"] = m.void_;

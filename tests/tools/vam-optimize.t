@@ -101,7 +101,7 @@ open("cut.state", "wb").write(bytes[:3000])
 EOF
 fails 65 'nan.state: .*NaN' vam-optimize --iterations 100000 --patience 0 --checkpoint nan.state part.vdb -o out.exr
 fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
-fails 65 'not a state' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
+fails 65 'not a checkpoint' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
 
 quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr

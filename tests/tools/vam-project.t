@@ -104,7 +104,7 @@ fails 64 'not one of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
 fails 64 'frames a turn' vam-project part.exr --speed 300 -o x/
 fails 64 'part.exr' vam-project part.exr -o part.exr
 mkdir other; echo hello >other/letter.txt
-fails 73 'letter.txt, which is no frame' vam-project part.exr -o other/
+fails 73 'letter.txt, which is not a frame' vam-project part.exr -o other/
 ok "an older folder of frames is replaced" vam-project part.exr --turns 0.5 -o frames/
 is "whole" "$(ls frames | grep -c png)" 18
 ln -s /dev/full full.mkv

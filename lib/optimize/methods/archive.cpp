@@ -23,7 +23,7 @@ void Archive::seal() {
   const std::uint64_t sum = sum_;
   std::uint64_t given = sum;
   move(&given, sizeof given);
-  if (given != sum) throw Error{Fault::data, name_ + ": damaged (its checksum is wrong); start afresh without it"};
+  if (given != sum) throw Error{Fault::data, name_ + ": damaged (its checksum is wrong); start again without it"};
 }
 
 std::size_t Archive::count(std::size_t size) {
@@ -31,20 +31,20 @@ std::size_t Archive::count(std::size_t size) {
   std::uint64_t n = size;
   (*this)(n);
   if (n > most)
-    throw Error{Fault::data, name_ + ": damaged (a list of " + std::to_string(n) + " values); start afresh"};
+    throw Error{Fault::data, name_ + ": damaged (a list of " + std::to_string(n) + " values); start again"};
   return static_cast<std::size_t>(n);
 }
 
 void Archive::numbers(float* values, std::size_t size) {
   move(values, size * sizeof(float));
   if (!reading() || std::all_of(values, values + size, [](float v) { return std::isfinite(v); })) return;
-  throw Error{Fault::data, name_ + ": holds values that are not finite numbers (NaN); start afresh without it"};
+  throw Error{Fault::data, name_ + ": holds values that are not finite numbers (NaN); start again without it"};
 }
 
 void Archive::operator()(double& value) {
   move(&value, sizeof value);
   if (reading() && !std::isfinite(value)) {
-    throw Error{Fault::data, name_ + ": holds values that are not finite numbers (NaN); start afresh without it"};
+    throw Error{Fault::data, name_ + ": holds values that are not finite numbers (NaN); start again without it"};
   }
 }
 
@@ -54,7 +54,7 @@ void Archive::operator()(Slab& slab) {
   (*this)(slab.height);
   if (slab.width < 0 || slab.height < 0 || slab.width > most || slab.height > most) {
     throw Error{Fault::data, name_ + ": damaged (a slice of " + std::to_string(slab.width) + " x " +
-                                 std::to_string(slab.height) + "); start afresh"};
+                                 std::to_string(slab.height) + "); start again"};
   }
   if (reading()) slab = Slab(slab.width, slab.height);
   numbers(slab.values.data(), slab.values.size());

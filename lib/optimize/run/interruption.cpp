@@ -14,7 +14,7 @@ void begin(Archive& to, Record record) {
 }
 
 [[noreturn]] void damaged(const Archive& from) {
-  throw Error{Fault::data, from.name() + ": damaged; remove it and start afresh"};
+  throw Error{Fault::data, from.name() + ": damaged; remove it and start again"};
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ void exchange(Archive& archive, const RunMark& mark) {
   constexpr int magic = 0x564D4F31;
   int given_magic = magic;
   archive(given_magic);
-  if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a state that vam-optimize kept"};
+  if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a checkpoint of vam-optimize"};
   std::string job = mark.job;
   Digest target = mark.target;
   int watched = mark.watched ? 1 : 0;
@@ -31,9 +31,8 @@ void exchange(Archive& archive, const RunMark& mark) {
   archive(target);
   archive(watched);
   if (job == mark.job && target == mark.target && (watched != 0) == mark.watched) return;
-  throw Error{Fault::data, archive.name() +
-                               ": is the state of another job; remove it, or give the same target and options as "
-                               "then"};
+  throw Error{Fault::data,
+              archive.name() + ": is a checkpoint of another job; remove it, or give the same target and options"};
 }
 
 void keep_finished(Archive& to, std::vector<Image>& images) {
