@@ -30,7 +30,7 @@ quiet 'the print is the design' vam-sdf print.ply design.vdb --align icp --requi
 quiet 'live' vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb \
   -o live --log log.jsonl --projections now.png --page now.html
 is 'one volume a turn' "$(ls live)" scatter-0000.vdb
-is 'one line a volume' "$(grep -c missing_percent log.jsonl)" 1
+is 'one line per volume' "$(grep -c missing_percent log.jsonl)" 1
 grep -q 'now.png' now.html; report $? 'the page shows the image'
 event=$(vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
@@ -57,9 +57,9 @@ open("profile.png", "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pac
 PY
 quiet 'I_p by a profilometer' vam-calibrate resin standard.vdb --profile profile.png --profile-pixel 0.05 -o profile.json
 holds 'measures the standard' "$(json profile.json diameter_mm) > 5.95 && $(json profile.json diameter_mm) < 6.05"
-holds 'and its level lies on the edge' "$(json profile.json level) > 0.3 && $(json profile.json level) < 0.7"
+holds 'and its isovalue is on the edge' "$(json profile.json level) > 0.3 && $(json profile.json level) < 0.7"
 "$render" cylinder:diameter=4,height=4 other.exr noise=0.2
-quiet 'the record is picked up' vam-ost other.exr $glass --resin glass.json --mesh other.ply -o other.vdb
+quiet 'the record is read' vam-ost other.exr $glass --resin glass.json --mesh other.ply -o other.vdb
 diameter=$(python3 - <<'PY'
 import struct
 data = open("other.ply", "rb").read()
@@ -83,14 +83,14 @@ is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
 cat grows.exr | vam-ost --live $glass --resin glass.json --reference four.vdb --until 'missing<=5%' \
   -o turns --log turns.jsonl --projections turns.png --page turns.html >event.json 2>.log/err
 report $? 'a print that grows'
-is 'it says nothing on the way' "$(cat .log/err)" ''
+is 'nothing on standard error' "$(cat .log/err)" ''
 is 'it stops once' "$(grep -c '"event":"stop"' event.json)" 1
 python3 - <<'PY'
 import json
 missing = [json.loads(line)["missing_percent"] for line in open("turns.jsonl")]
 assert len(missing) >= 3 and missing == sorted(missing, reverse=True) and missing[-1] <= 5 < missing[-2], missing
 PY
-report $? 'what is missing falls from turn to turn'
+report $? 'the missing part decreases from turn to turn'
 is 'a volume for every line' "$(ls turns | wc -l)" "$(wc -l <turns.jsonl)"
 grep -q 'missing_percent' turns.html; report $? 'the page has the figures'
 "$render" cylinder:diameter=4,height=4 faint.exr noise=0.05 turns=2 growth=0 angles=60
@@ -98,7 +98,7 @@ vam-ost faint.exr --live $glass --level 0.5 --window ram-lak -o faint --log - >.
 is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''
 is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is now --filter' .log/err)" 2
 grep -q 'nothing visible' .log/err; report $? 'the log is there'
-quiet 'live waits while nothing is there' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
+quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
 is 'and says so' "$(grep -c 'nothing visible' faint.jsonl)" 1
 fails 65 'no volume' vam-ost views --step 2 $rig --live
 

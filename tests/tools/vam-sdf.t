@@ -7,7 +7,7 @@ awk 'NR < 3 { print; next } NF == 3 { print -1.01 * $2 + 10, 1.01 * $1 + 20, 1.0
 
 quiet 'a box against itself' vam-sdf box.off box.off --align none --report same.json
 holds 'deviates by nothing' "$(json same.json print_to_reference.rms_mm) < 1e-9"
-quiet 'a moved and grown box' vam-sdf moved.off box.off --scale --report moved.json -o moved.ply --histogram moved.csv
+quiet 'a moved and enlarged box' vam-sdf moved.off box.off --scale --report moved.json -o moved.ply --histogram moved.csv
 holds 'is found again' "$(json moved.json hausdorff_mm) < 1e-3"
 holds 'with its growth' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
 quiet 'the histogram as an image' vam-sdf moved.off box.off --histogram moved.png
@@ -24,7 +24,7 @@ quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --ali
 # The bigger sphere stands on the same plane: its centre is 0.2 higher. Mean over the sphere 0.2 + d^2/(3R) = 0.204.
 holds 'two spheres of different size' "$(json volume.json print_to_reference.mean_mm) > 0.19 && $(json volume.json print_to_reference.mean_mm) < 0.22"
 
-quiet 'a verdict that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
+quiet 'a condition that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
 fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --require 'rms<=0.001'
 
 # An embossed badge seen from above, 2 % too small, on a disc.

@@ -89,7 +89,7 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(fault_of([&] { (void)write_record(none, "edges", edges(1, 1), now_s); }) == Fault::usage);
 }
 
-TEST_CASE("records stand above the printer file and below --set") {
+TEST_CASE("records override the printer file and --set overrides records") {
   const scratch::Folder folder;
   std::ofstream(folder / "printer.toml") << "[projector]\naxis_column = 400\nlatency_ms = 3\n[vial]\nradius_mm = 11\n"
                                             "[calibration]\nfolder = \"records\"\ninstrument = \"printer 1\"\n"

@@ -44,7 +44,7 @@ TEST_CASE("a table of numbers alone needs no header") {
   CHECK(io::read_csv(file.path, {"a", "b"}).number(1, 0) == 3);
 }
 
-TEST_CASE("damaged tables say where") {
+TEST_CASE("damaged tables report the line") {
   CHECK(message("remark,note\n1,2\n") == ":1: no column 'a'; the header must name a,b");
   CHECK(message("a,b\n1\n") == ":2: 1 cells; give a,b");
   CHECK(message("a,b\n1,two\n") == ":2: b 'two' is not a number");

@@ -30,7 +30,7 @@ TEST_CASE("sizes are checked before memory is taken") {
   CHECK(line.find("2000000001 x 2000000001") != std::string::npos);
 }
 
-TEST_CASE("a pixel that is no number is refused, with its place") {
+TEST_CASE("a pixel that is not a number is an error with its position") {
   const scratch::Folder folder;
   const float nan = std::numeric_limits<float>::quiet_NaN();
   Image image(5, 4);
@@ -60,7 +60,7 @@ TEST_CASE("a pixel that is no number is refused, with its place") {
   CHECK(line.find("pixel 3, 2 of image 1") != std::string::npos);
 }
 
-TEST_CASE("a cut stack is 65 wherever it is cut, and a flipped bit never crashes") {
+TEST_CASE("a stack truncated anywhere is status 65, and a flipped bit never crashes") {
   const scratch::Folder folder;
   const auto info = sinogram(9, 35, 3);
   const auto read = [&](const std::string& bytes) {

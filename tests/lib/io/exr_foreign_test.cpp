@@ -78,7 +78,7 @@ TEST_CASE("stacks of OpenEXR's own writer: other channels, types, compressions, 
   }
 }
 
-TEST_CASE("what is no stack is refused with 65") {
+TEST_CASE("a file that is not a stack is status 65") {
   const scratch::Folder folder;
   std::string line;
   const auto open = [&](const std::string& name) { return status([&] { StackReader reader(folder / name); }, &line); };

@@ -179,7 +179,7 @@ TEST_CASE("part names grow with the number of parts, so that they sort") {
   CHECK(file.header(10'000).name() == "z10000");
 }
 
-TEST_CASE("half is refused where it cannot hold a value") {
+TEST_CASE("half is an error where it cannot represent a value") {
   const scratch::Folder folder;
   CHECK(status([&] {
           StackWriter(folder / "s.exr", sinogram(5, 4, 1), {true, "rle"}).write(Image(5, 4, 70000));
@@ -187,7 +187,7 @@ TEST_CASE("half is refused where it cannot hold a value") {
   CHECK(folder.count() == 0);
 }
 
-TEST_CASE("images that were announced must come, in number and size") {
+TEST_CASE("the announced number and size of images are enforced") {
   const scratch::Folder folder;
   const auto info = sinogram(5, 4, 2);
   CHECK(status([&] {
@@ -201,7 +201,7 @@ TEST_CASE("images that were announced must come, in number and size") {
   CHECK(folder.count() == 0);
 }
 
-TEST_CASE("wrong kind or space is refused by name") {
+TEST_CASE("the wrong kind or space is an error that names it") {
   auto info = sinogram(4, 4, 4);
   CHECK(status([&] { require("a.exr", info, model::Kind::sinogram, model::Space::virtual_); }) == 0);
   CHECK(status([&] { require("a.exr", info, model::Kind::sinogram); }) == 0);

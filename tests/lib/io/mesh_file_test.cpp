@@ -260,7 +260,7 @@ TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
   CHECK(has(slurp(folder / "cloud.ply"), "element face 0\n"));
 }
 
-TEST_CASE("a cut file is refused wherever it is cut") {
+TEST_CASE("a file truncated anywhere is an error") {
   const scratch::Folder folder;
   vam::io::write_stl(folder / "box.stl", box());
   vam::io::write_ply(folder / "box.ply", box());

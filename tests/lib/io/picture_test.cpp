@@ -47,7 +47,7 @@ TEST_CASE("PNG of every depth comes back through OpenCV's decoder: level / full 
   }
 }
 
-TEST_CASE("PNG headers say what is inside: depth, sBIT for 10 bits, text") {
+TEST_CASE("PNG headers state their content: depth, sBIT for 10 bits, text") {
   const std::string png = encode_png(all_levels(2), {{"Software", "vam"}});
   CHECK(png[24] == 2);  // bit depth
   CHECK(png[25] == 0);  // grey
@@ -64,7 +64,7 @@ TEST_CASE("TIFF of 8 and 16 bits comes back") {
   }
 }
 
-TEST_CASE("colours are written as they are and read as luma") {
+TEST_CASE("colours are written unchanged and read as luma") {
   const scratch::Folder folder;
   vam::RgbImage image(3, 1);
   image(0, 0) = {255, 0, 0};
@@ -77,7 +77,7 @@ TEST_CASE("colours are written as they are and read as luma") {
   CHECK(grey(2, 0) == 80);
 }
 
-TEST_CASE("cut, damaged and foreign pictures are refused") {
+TEST_CASE("truncated, damaged and foreign images are errors") {
   const scratch::Folder folder;
   const std::string png = encode_png(all_levels(8));
   const auto refused = [&](const std::string& bytes) {
@@ -97,7 +97,7 @@ TEST_CASE("cut, damaged and foreign pictures are refused") {
   error_of([&] { (void)read_picture(folder / "none.png"); }, vam::Fault::no_input);
 }
 
-TEST_CASE("a folder is read in the order of the numbers, and gaps and sizes are watched") {
+TEST_CASE("a folder is read in numerical order; gaps and differing sizes are errors") {
   const scratch::Folder folder;
   for (int i = 1; i <= 12; ++i) {
     GreyImage image(4, 3, 8);

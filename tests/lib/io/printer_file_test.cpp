@@ -109,7 +109,7 @@ TEST_CASE("settings apart from the default can be given to --set again") {
   CHECK(printer_toml(load_printer("", {"vial.radius_mm=10.0", "resin.name=\"resin2\""})) == printer_toml(changed));
 }
 
-TEST_CASE("the named file wins over $VAM_PRINTER; a response is relative to the file") {
+TEST_CASE("the named file overrides $VAM_PRINTER; a response is relative to the file") {
   const scratch::Folder folder;
   const std::string named = folder.write("a.toml", "[vial]\nradius_mm = 11\n[projector]\nresponse = \"r.csv\"\n");
   const std::string exported = folder.write("b.toml", "[vial]\nradius_mm = 9\n");

@@ -59,7 +59,7 @@ TEST_CASE("commit replaces a file, keeps its mode and follows a link to it") {
   CHECK(folder.count() == 2);
 }
 
-TEST_CASE("a dangling link is given its file") {
+TEST_CASE("a dangling link is followed to a new file") {
   const scratch::Folder folder;
   std::filesystem::create_symlink("later.txt", folder / "link.txt");
   OutputFile file(folder / "link.txt");

@@ -12,7 +12,7 @@ using namespace vam::io;
 using namespace vam::volumes;
 using scratch::status;
 
-TEST_CASE("blocks that pass by make the volume that is read whole") {
+TEST_CASE("blocks read in passing equal the volume read whole") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(200, 45, 150, 0.065, 0.4);
   std::vector<SparseVolume> volumes;

@@ -18,7 +18,7 @@ extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserv
 extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology"; }  // NOLINT
 #endif
 
-TEST_CASE("a cut archive is 65 wherever it is cut, and a flipped bit never crashes") {
+TEST_CASE("an archive truncated anywhere is status 65, and a flipped bit never crashes") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(30, 30, 30, 0.1);
   SparseVolume volume = filled("target", grid, ball(grid));

@@ -47,7 +47,7 @@ TEST_CASE("a level set of another program gets its active box, off the index ori
   check(again);
 }
 
-TEST_CASE("what cannot be used is refused with 65 and its reason") {
+TEST_CASE("unusable grids are status 65 with the reason") {
   const scratch::Folder folder;
   openvdb::initialize();
   std::string line;

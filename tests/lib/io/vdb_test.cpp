@@ -66,7 +66,7 @@ TEST_CASE("several threads read at once") {
   CHECK(out == values);
 }
 
-TEST_CASE("a background other than 0 is where nothing was written") {
+TEST_CASE("unwritten voxels have the background value, also other than 0") {
   const auto grid = model::centred_grid(20, 20, 20, 0.1);
   SparseVolume volume("sdf", grid, 7.5F);
   CHECK(dense(volume) == std::vector<float>(grid.size(), 7.5F));
@@ -191,7 +191,7 @@ TEST_CASE("a grid is chosen by name") {
   CHECK(line.ends_with("choose one by name"));
 }
 
-TEST_CASE("wrong use and a full device are told from each other") {
+TEST_CASE("wrong use and a full device are different errors") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(10, 10, 10, 0.1);
   SparseVolume volume = filled("target", grid, ball(grid));

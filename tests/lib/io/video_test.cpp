@@ -113,7 +113,7 @@ TEST_CASE("without commit nothing is left; other endings, missing and foreign fi
   CHECK(fault_of([&] { write_video(folder / "full.mkv", 3, 8); }) == vam::Fault::io);
 }
 
-TEST_CASE("no cut video passes for a shorter one") {
+TEST_CASE("a truncated video is never read as a shorter one") {
   const scratch::Folder folder;
   for (const char* name : {"a.mkv", "a.mp4"}) {
     write_video(folder / name, 10, 8);

@@ -91,7 +91,7 @@ TEST_CASE("Vial edges: the tangent column is further out than the vial") {
   CHECK(found.blur_px.value == doctest::Approx(truth.blur_px).epsilon(0.2));
 }
 
-TEST_CASE("Vial edges: a sweep that misses an edge, a dark one, and a picture without rows are refused") {
+TEST_CASE("Vial edges: a sweep without an edge, a dark one, and an image without rows are errors") {
   vam::oracle::Random random(5);
   vam::oracle::SweepTruth truth;
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 500, 800, random), printer_of(truth)); }) == Fault::data);

@@ -60,7 +60,7 @@ TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling
   CHECK(levels.worst() < 0.02);
 }
 
-TEST_CASE("Response: few levels, single readings, darkness and falling light are refused") {
+TEST_CASE("Response: few levels, single readings, darkness and falling intensity are errors") {
   vam::oracle::Random random(12);
   const auto refused = [](const ResponseScan& scan) { return message_of([&] { (void)measure_response(scan); }); };
   auto few = ramp(1, 0, 5, 0.01, random);
@@ -79,7 +79,7 @@ TEST_CASE("Response: few levels, single readings, darkness and falling light are
   CHECK(refused(unsorted).find("must rise") != std::string::npos);
 }
 
-TEST_CASE("Flat field: the shape of the light comes out, dead pixels are mended") {
+TEST_CASE("Flat field: the illumination profile is recovered, dead pixels are interpolated") {
   vam::oracle::Random random(13);
   const auto truth = [](int x, int y) { return 1 + 0.2 * std::sin(0.2 * x) * std::cos(0.1 * y); };
   FrameMean frames;

@@ -49,7 +49,7 @@ TEST_CASE("a reference on a finer grid is the same reference") {
   CHECK(cured(print, 0.5, design).iou > 0.99);
 }
 
-TEST_CASE("sum projections look from above, the front and the side, z and y upwards") {
+TEST_CASE("sum projections are seen from above, the front and the side, z and y upwards") {
   const model::Grid grid{3, 4, 5, 0.5, {0, 0, 0}};
   model::Volume volume{grid, std::vector<float>(grid.size())};
   volume.slice(1)[2 * 3 + 0] = 7;  // i 0, j 2, k 1
@@ -61,7 +61,7 @@ TEST_CASE("sum projections look from above, the front and the side, z and y upwa
   CHECK(sum_projections(volume, 8).along_z(0, 1) == 0.0F);
 }
 
-TEST_CASE("the threshold from a noisy standard cylinder gives its diameter back within 0.1 mm") {
+TEST_CASE("the threshold from a noisy standard cylinder reproduces its diameter within 0.1 mm") {
   // A 12 mm cylinder whose edge is blurred by 0.4 mm, 0.155 mm pixels, off centre, noise of 3 %.
   const double pixel_mm = 0.155;
   Image overhead(120, 110);

@@ -69,7 +69,7 @@ Image picture(const Print& print, double pixel_mm) {
 
 }  // namespace
 
-TEST_CASE("shrinkage, turn, shift and height of an embossed print are found in its height picture") {
+TEST_CASE("shrinkage, turn, shift and height of an embossed print are found in its height image") {
   const double pixel_mm = 0.05;
   const Print print{0.985, 97, 0.4, -0.7, 0.01};
   const Relief relief = levelled(picture(print, pixel_mm), pixel_mm);
@@ -109,7 +109,7 @@ TEST_CASE("a section shows print and design") {
   CHECK(highest(line.design_mm) == doctest::Approx(0.65).epsilon(1e-4));
 }
 
-TEST_CASE("pictures and designs without relief are refused") {
+TEST_CASE("images and designs without relief are errors") {
   CHECK_THROWS_WITH_AS((void)levelled(Image(50, 50, 1.0F), 0.05), doctest::Contains("flat"), Error);
   CHECK_THROWS_WITH_AS((void)levelled(Image(50, 50, std::numeric_limits<float>::quiet_NaN()), 0.05),
                        doctest::Contains("0 of 2500"), Error);

@@ -102,11 +102,13 @@ void judge(const std::string& shape, double size_mm, int columns, int rows) {
 
 }  // namespace
 
-TEST_CASE("a gyroid comes back within a voxel and 1 % of its size") {
+TEST_CASE("a gyroid is reconstructed within a voxel and 1 % of its size") {
   judge("gyroid:cell=5,sheet=1,diameter=9,height=5", 9, 368, 144);
 }
 
-TEST_CASE("a boat comes back within a voxel and 1 % of its size") { judge("boat:length=10,wall=0.8", 10, 424, 200); }
+TEST_CASE("a boat is reconstructed within a voxel and 1 % of its size") {
+  judge("boat:length=10,wall=0.8", 10, 424, 200);
+}
 
 TEST_CASE("struts three voxels apart are resolved with a contrast of 20 % at least") {
   // Upright bars of one and a half voxels, a pitch of three voxels, beside the axis where refraction has most to say.

@@ -67,7 +67,7 @@ double surface_rms_mm(const model::Volume& volume) {
 
 }  // namespace
 
-TEST_CASE("a sphere seen through glass and resin, with noise and binning, comes back within 1 % of its size") {
+TEST_CASE("a sphere imaged through glass and resin, with noise and binning, is reconstructed within 1 % of its size") {
   const model::Printer printer = test::glass_rig();
   const double pixel_mm = 0.04;
   const auto camera = test::camera_bench(printer, 512, 256, pixel_mm);

@@ -19,7 +19,7 @@ TEST_CASE("a volume is due after each full turn, of one turn's views") {
   CHECK(turn.turns() == doctest::Approx((279 * 4) / 360.0));
 }
 
-TEST_CASE("more often than a turn, and the other way round") {
+TEST_CASE("volumes more often than each turn, and in the opposite direction") {
   SlidingTurn turn(90);
   std::vector<int> due;
   for (int i = 0; i < 180; ++i) {

@@ -38,7 +38,9 @@ Image mean_view(int width, int height, double column, double tilt_deg, double no
 
 }  // namespace
 
-TEST_CASE("axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and 0.05 deg, and sigma is honest") {
+TEST_CASE(
+    "axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and 0.05 deg, and sigma is consistent with the "
+    "error") {
   for (const double noise : {0.0, 0.02}) {
     const auto found = find_axis(mean_view(320, 240, 0.5 * 319 + 3.7, 0.5, noise));
     CHECK(std::abs(found.pose.column - (0.5 * 319 + 3.7)) < 0.1);
@@ -48,9 +50,9 @@ TEST_CASE("axis offset of 3.7 px and tilt of 0.5 deg are found within 0.1 px and
   }
 }
 
-TEST_CASE("an even image has no axis") { CHECK_THROWS_AS((void)find_axis(Image(100, 50, 1.0F)), Error); }
+TEST_CASE("a uniform image has no axis") { CHECK_THROWS_AS((void)find_axis(Image(100, 50, 1.0F)), Error); }
 
-TEST_CASE("dark, flat and binning undo what the camera did") {
+TEST_CASE("dark, flat and binning invert the camera model") {
   Image truth(7, 5);
   for (std::size_t i = 0; i < truth.size(); ++i) truth.values[i] = static_cast<float>(i);
   CameraFields fields{Image(7, 5), Image(7, 5)};
@@ -72,7 +74,7 @@ TEST_CASE("dark, flat and binning undo what the camera did") {
   CHECK_THROWS_AS((void)corrected(Image(6, 5), fields, 1, "view"), Error);
 }
 
-TEST_CASE("dark and saturated frames are refused") {
+TEST_CASE("dark and saturated frames are errors") {
   Image image(100, 10);
   CHECK_THROWS_WITH_AS(require_exposed(image, "frame 3"), doctest::Contains("frame 3: dark"), Error);
   for (int x = 0; x < 100; ++x) image(x, 5) = static_cast<float>(x);
@@ -81,7 +83,7 @@ TEST_CASE("dark and saturated frames are refused") {
   CHECK_THROWS_WITH_AS(require_exposed(image, "frame 3"), doctest::Contains("saturated, 3.1 %"), Error);
 }
 
-TEST_CASE("even angles from uneven ones reproduce a sinusoid") {
+TEST_CASE("uniform angles from non-uniform ones reproduce a sinusoid") {
   std::vector<double> angles;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> jitter(-0.5, 0.5);
@@ -106,7 +108,7 @@ TEST_CASE("even angles from uneven ones reproduce a sinusoid") {
   }
 }
 
-TEST_CASE("an incomplete turn is refused with its gap") {
+TEST_CASE("an incomplete turn is an error that states the gap") {
   std::vector<double> angles;
   for (int i = 0; i < 150; ++i) angles.push_back(2.0 * i);
   CHECK_THROWS_WITH_AS(AngleGrid(angles, 0), doctest::Contains("62 deg"), Error);

@@ -26,7 +26,7 @@ void keep(const RgbImage& picture, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("ticks are round, inside the axis and about as many as wanted") {
+TEST_CASE("ticks are round numbers, inside the axis, about as many as requested") {
   CHECK(ticks({"", 0, 10, false}, 5) == std::vector<double>{0, 2, 4, 6, 8, 10});
   CHECK(ticks({"", -1, 1, false}, 4) == std::vector<double>{-1, -0.5, 0, 0.5, 1});
   CHECK(ticks({"", 10, 0, false}, 5).size() == 6);
@@ -42,7 +42,7 @@ TEST_CASE("ticks are round, inside the axis and about as many as wanted") {
   CHECK(round_step(23) == doctest::Approx(20));
 }
 
-TEST_CASE("a frame maps values to spots, y upwards, also on logarithmic axes") {
+TEST_CASE("a frame maps values to positions, y upwards, also on logarithmic axes") {
   const Frame frame{100, 50, 300, 250, {"", 0, 10, false}, {"", 1, 100, true}};
   CHECK(frame.spot_x(5) == 200);
   CHECK(frame.spot_y(1) == 250);
@@ -94,7 +94,7 @@ TEST_CASE("histograms count shares and draw bars") {
   CHECK(picture(540, 60) == paint::white);
 }
 
-TEST_CASE("text has the width it says, reads upwards when asked, and stays on the canvas") {
+TEST_CASE("text has the reported width, can be vertical, and stays on the canvas") {
   Canvas canvas(200, 200);
   canvas.text({10, 100}, "Hxg", 20);
   const double width = Canvas::text_width("Hxg", 20);

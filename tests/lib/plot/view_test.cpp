@@ -219,7 +219,7 @@ TEST_CASE("NRRD has the dense box behind a header that says where it is") {
   CHECK(value == label(3, 2, 17));
 }
 
-TEST_CASE("files are told by their content") {
+TEST_CASE("file types are determined by content") {
   const scratch::Folder folder;
   const auto written = [&](const std::string& bytes) {
     std::ofstream(folder / "f", std::ios::binary) << bytes;
