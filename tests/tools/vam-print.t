@@ -115,7 +115,7 @@ stage_down
 ok 'the design' vam-slice box.stl --voxel 0.5 $plain -o part.vdb
 for attempt in 1 2 3; do
   turntable
-  print --run-up 0.05 --missed 0.9 --turns 3 --views 10 --until 'missing<=100' --reference part.vdb --level 0.001 --run live \
+  print --run-up 0.05 --missed 0.9 --turns 3 --views 10 --until 'missing<=100' --reference part.vdb --isovalue 0.001 --run live \
     --set stage.speed_deg_s=120 --set camera.device="sim:?angles=$PWD/truth&lit_s=0.01" 2>errors
   printed=$?
   too_busy live || break
