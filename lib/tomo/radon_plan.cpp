@@ -40,7 +40,7 @@ Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, s
   const double reach = std::hypot(std::max(std::abs(geometry.axis_x), std::abs(geometry.nx - geometry.axis_x)),
                                   std::max(std::abs(geometry.axis_y), std::abs(geometry.ny - geometry.axis_y)));
   if (!(std::abs(geometry.alpha_per_px) * reach < largest_exponent)) {
-    throw Error{Fault::data, "attenuation of " + format_number(geometry.alpha_per_px) + " per pixel over " +
+    throw Error{Fault::data, "absorption of " + format_number(geometry.alpha_per_px) + " per pixel over " +
                                  format_number(reach) + " pixels overflows; it is given per mm, with voxels in mm"};
   }
   Plan plan;

@@ -86,7 +86,7 @@ Part picture_part(PictureStack stack, const std::string& subject, double voxel_m
   part.subject = subject;
   part.map = scaling({1, 1, stretch_z});
   part.extent = picture_extent(stack, voxel_mm, stretch_z);
-  if (part.extent.radius_mm == 0) throw Error{Fault::data, subject + ": all pictures are black"};
+  if (part.extent.radius_mm == 0) throw Error{Fault::data, subject + ": all images are black"};
   part.lattice = {stack.width % 2 != 0, 0.5 * (stack.count % 2)};
   part.fill = [stack = std::move(stack), stretch_z](const model::Grid& grid, const SliceSink& sink) {
     fill_pictures(stack, stretch_z, grid, sink);
