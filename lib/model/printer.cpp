@@ -17,10 +17,20 @@ double writable_radius_mm(const Printer& printer) {
   return std::min(resin_radius_mm(printer.vial), printer.vial.radius_mm * printer.bath.index / printer.resin.index);
 }
 
+double shortening_mm(const Printer& printer, double index_resin) {
+  const Vial& vial = printer.vial;
+  double sum = printer.bath.index == 1.0 ? 0 : printer.bath.window_mm * (1 - 1 / printer.bath.index);
+  double before = printer.bath.index;
+  if (vial.wall_mm > 0) {
+    sum += vial.radius_mm * (1 / before - 1 / vial.index_glass);
+    before = vial.index_glass;
+  }
+  return sum + resin_radius_mm(vial) * (1 / before - 1 / index_resin);
+}
+
 double vertical_magnification(const Printer& printer) {
   const auto distance_mm = lens_distance_mm(printer.projector);
-  if (!distance_mm) return 1.0;
-  return 1.0 - printer.vial.radius_mm * (1.0 - printer.bath.index / printer.resin.index) / *distance_mm;
+  return distance_mm ? 1.0 - shortening_mm(printer, printer.resin.index) / *distance_mm : 1.0;
 }
 
 }  // namespace vam::model

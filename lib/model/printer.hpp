@@ -96,7 +96,12 @@ struct Printer {
 /// the resin's own [RAY21 section 2; a glass wall refracts but does not stop the outermost ray].
 [[nodiscard]] double writable_radius_mm(const Printer& printer);
 
-/// Vertical magnification of the projected image, M_vp = 1 - R(1 - 1/n)/D [OST22 eq S5]; 1 when telecentric.
+/// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when telecentric.
 [[nodiscard]] double vertical_magnification(const Printer& printer);
+
+/// Sum over the interfaces from the outside in of distance to the axis * (1 / n_before - 1 / n_after): by how much
+/// window, bath, glass and resin shorten the way to the axis for rays near it [physics §2]. R (1 - 1/n) for a vial in
+/// air. The index of the resin is that at the wavelength in question.
+[[nodiscard]] double shortening_mm(const Printer& printer, double index_resin);
 
 }  // namespace vam::model

@@ -233,8 +233,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const View> views) const {
 }
 
 double image_magnification(const model::Printer& printer) {
-  const double lens = printer.vial.radius_mm * (1 - printer.bath.index / printer.camera.index_resin);
-  return 1 / (1 - lens / printer.camera.distance_mm);
+  return 1 / (1 - model::shortening_mm(printer, printer.camera.index_resin) / printer.camera.distance_mm);
 }
 
 Image mean_view(std::span<const View> views) {

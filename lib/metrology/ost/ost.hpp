@@ -43,7 +43,7 @@ class OstReconstructor {
   std::unique_ptr<State> state_;
 };
 
-/// M_vi = 1 / (1 - R (1 - 1/n) / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis.
+/// M_vi = 1 / (1 - shortening / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis.
 [[nodiscard]] double image_magnification(const model::Printer& printer);
 
 /// The mean over even angles of one turn: what find_axis wants.

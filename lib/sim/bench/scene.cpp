@@ -14,6 +14,15 @@ namespace vam::sim {
 
 namespace {
 
+/// Height at the axis of a ray that leaves the camera with a slope of 1: n times the slope is conserved from layer to
+/// layer [physics §2].
+double height_at_axis_mm(const model::Printer& printer) {
+  const double inner_mm = model::resin_radius_mm(printer.vial);
+  const double window_mm = printer.bath.index == 1 ? printer.vial.radius_mm : printer.bath.window_mm;
+  return printer.camera.distance_mm - window_mm + (window_mm - printer.vial.radius_mm) / printer.bath.index +
+         (printer.vial.radius_mm - inner_mm) / printer.vial.index_glass + inner_mm / printer.camera.index_resin;
+}
+
 constexpr int rays_a_column = 5;         // of the camera
 constexpr int most_blurs = 9;            // widths of the beam between its narrowest and its widest place
 constexpr double scatter_per_mm = 0.08;  // of full scale
@@ -182,8 +191,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
   const double seen_mm = aside_mm * std::cos(azimuth) + along_mm * std::sin(azimuth);
   // Heights in the vial look enlarged [OST22 eq S6].
-  const double enlarged = 1 / (1 - printer.vial.radius_mm * (1 - printer.bath.index / printer.camera.index_resin) /
-                                       printer.camera.distance_mm);
+  const double enlarged = printer.camera.distance_mm / height_at_axis_mm(printer);
   GlowingRow glowing(*this, moment.image, bench.centre_px + aside_mm / printer.projector.pixel_mm);
   for (int r = 0; r < rows; ++r) {
     const double z_mm = (0.5 * (rows - 1) - r) * pixel_mm / enlarged;

@@ -15,6 +15,11 @@ TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - 12.7 * (1 - 1 / 1.53) / 119.808));
   printer.projector.telecentric = true;
   CHECK(vertical_magnification(printer) == 1.0);
+  printer.projector.telecentric = false;  // an index bath behind a window: each layer shortens the way
+  printer.bath = {1.4, 20};
+  const double shortened = 20 * (1 - 1 / 1.4) + 12.7 * (1 / 1.4 - 1 / 1.53);
+  CHECK(vertical_magnification(printer) == doctest::Approx(1 - shortened / 119.808));
+  CHECK(1 / vertical_magnification(printer) == doctest::Approx(1.0572).epsilon(1e-4));
 }
 
 TEST_CASE("a glass wall does not narrow what is lit, until the resin itself ends") {
