@@ -56,19 +56,19 @@ void AttenuatedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab
 void AttenuatedOperator::apply(const tomo::Filter& filter, std::span<Slab> sinograms) const {
   scale_columns(sinograms, amplified_);
   for (Slab& slab : sinograms) filter.apply(slab);
-  scale_columns(sinograms, amplified_, 0.5 * dose_.angle_step_rad);
+  scale_columns(sinograms, amplified_, 0.5 * row_angle_rad());
 }
 
 void AttenuatedOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
 
 void AttenuatedOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
 
-/// g = e^{mu sqrt(R^2 - t^2)} * (ramp on |k| >= mu) * T_mu f [TM80; physics section 5]: weight e^{+mu u} on the way in.
+/// g = e^{mu sqrt(R^2 - t^2)} * (ramp on |k| >= mu) * T_mu f [TM80; physics §5]: weight e^{+mu u} on the way in.
 void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   if (correction_ == Correction::exact) {
     tomo::forward(with_alpha(dose_, -dose_.alpha_per_px), objects, sinograms);
     for (Slab& slab : sinograms) exponential_.apply(slab);
-    scale_columns(sinograms, amplified_, 0.5 * dose_.angle_step_rad);
+    scale_columns(sinograms, amplified_, 0.5 * row_angle_rad());
     return;
   }
   std::vector<Slab> corrected(objects.begin(), objects.end());
@@ -76,7 +76,7 @@ void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> s
   tomo::forward(with_alpha(dose_, 0), corrected, sinograms);
   for (Slab& slab : sinograms) {
     ramp_.apply(slab);
-    for (float& v : slab.values) v *= static_cast<float>(0.5 * dose_.angle_step_rad);
+    for (float& v : slab.values) v *= static_cast<float>(0.5 * row_angle_rad());
   }
 }
 
@@ -106,12 +106,12 @@ void AttenuatedOperator::divide_by_disc_dose(std::span<Slab> objects) const {
 
 void AttenuatedOperator::expand(const Slab& sinogram, Slab& image) const {
   image = sinogram;
-  for (float& v : image.values) v *= static_cast<float>(1.0 / dose_.angle_step_rad);
+  for (float& v : image.values) v *= static_cast<float>(1.0 / row_angle_rad());
 }
 
 void AttenuatedOperator::collapse(const Slab& image, Slab& sinogram) const {
   sinogram = image;
-  for (float& v : sinogram.values) v *= static_cast<float>(dose_.angle_step_rad);
+  for (float& v : sinogram.values) v *= static_cast<float>(row_angle_rad());
 }
 
 }  // namespace vam::light

@@ -1,6 +1,7 @@
 // Parallel light through resin that absorbs.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "light/operator.hpp"
@@ -15,7 +16,7 @@ namespace vam::light {
 enum class Correction { exact, disc };
 
 /// Light enters at the resin's radius R and has lost e^{-mu s}, s = sqrt(R^2 - t^2) + u, at the point (t, u) [CAL19 eq
-/// 1, physics section 4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an unknown.
+/// 1, physics §4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an unknown.
 class AttenuatedOperator final : public Operator {
  public:
   /// mu and R in 1/px and px. Throws Fault::data when e^{mu u} overflows.
@@ -25,7 +26,7 @@ class AttenuatedOperator final : public Operator {
   [[nodiscard]] Shape object() const override { return {dose_.nx, dose_.ny}; }
   [[nodiscard]] Shape sinogram() const override { return image(); }
   [[nodiscard]] Shape image() const override { return {dose_.columns, dose_.angles}; }
-  [[nodiscard]] double row_angle_rad() const override { return dose_.angle_step_rad; }
+  [[nodiscard]] double row_angle_rad() const override { return std::abs(dose_.angle_step_rad); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
   void filter(std::span<Slab> sinograms) const override;

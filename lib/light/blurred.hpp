@@ -5,7 +5,7 @@
 
 namespace vam::light {
 
-/// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics section 4;
+/// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4;
 /// optics::VolumeBlur], across the slices and from one to the next: the slices of a pass lie one above the other. What
 /// is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
 class BlurredOperator final : public Operator {

@@ -1,11 +1,10 @@
 #include "light/insert_shadow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <string>
 #include <utility>
 
-#include "base/error.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::light {
@@ -38,92 +37,102 @@ struct Axis {
 
 }  // namespace
 
-/// An insert and the box around it: voxels [x0, x1) x [y0, y1).
-struct InsertShadow::Opaque {
-  const Image& coverage;
-  int x0, x1, y0, y1;
+/// An insert and the box around it: voxels [low, high) along x, y and z.
+struct InsertShadow::Body {
+  std::span<const Slab> coverage;
+  std::array<int, 3> low{}, high{};
 
-  explicit Opaque(const Image& image) : coverage(image), x0(image.width), x1(0), y0(image.height), y1(0) {
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        if (!at(x, y)) continue;
-        x0 = std::min(x0, x);
-        x1 = std::max(x1, x + 1);
-        y0 = std::min(y0, y);
-        y1 = std::max(y1, y + 1);
+  explicit Body(std::span<const Slab> slabs) : coverage(slabs) {
+    const std::array<int, 3> size{slabs[0].width, slabs[0].height, static_cast<int>(slabs.size()) * lanes};
+    low = size;
+    for (int z = 0; z < size[2]; ++z) {
+      for (int y = 0; y < size[1]; ++y) {
+        for (int x = 0; x < size[0]; ++x) {
+          if (!at({x, y, z})) continue;
+          const std::array<int, 3> here{x, y, z};
+          for (std::size_t d = 0; d < 3; ++d) {
+            low[d] = std::min(low[d], here[d]);
+            high[d] = std::max(high[d], here[d] + 1);
+          }
+        }
       }
     }
   }
-  [[nodiscard]] bool at(int x, int y) const { return opaque(coverage(x, y)); }
-  [[nodiscard]] bool same(const Image& other) const {
-    return std::equal(coverage.values.begin(), coverage.values.end(), other.values.begin(),
-                      [](float a, float b) { return opaque(a) == opaque(b); });
+  [[nodiscard]] bool at(const std::array<int, 3>& v) const {
+    return opaque(coverage[static_cast<std::size_t>(v[2] / lanes)].at(v[0], v[1])[v[2] % lanes]);
   }
 };
 
-InsertShadow::InsertShadow(const model::Grid& grid, std::span<const double> angles_rad,
-                           std::span<const RayLine> columns)
-    : grid_(grid), lines_(columns.begin(), columns.end()) {
-  for (const double theta : angles_rad) rows_.push_back({std::cos(theta), std::sin(theta)});
-  for (const RayLine& line : lines_) columns_.push_back({std::cos(line.delta_rad), std::sin(line.delta_rad)});
-  ends_.assign(at(static_cast<int>(rows_.size()), 0), unhindered);
+InsertShadow::InsertShadow(const model::Grid& grid, std::span<const Slab> inserts,
+                           std::span<const double> part_angles_rad, int columns, int row_slabs,
+                           const std::function<PixelRay(int column, int row)>& ray)
+    : grid_(grid) {
+  for (const double theta : part_angles_rad) parts_.push_back({std::cos(theta), std::sin(theta)});
+  for (int c = 0; c < columns; ++c) {
+    const double delta = ray(c, row_slabs * lanes / 2).delta_rad;
+    columns_.push_back({std::cos(delta), std::sin(delta)});
+  }
+  const Body body(inserts);
+  const int angles = static_cast<int>(parts_.size());
+  ends_.assign(static_cast<std::size_t>(row_slabs), Slab(columns, angles));
+  parallel_for(row_slabs * columns, [&](int item) {
+    Slab& slab = ends_[static_cast<std::size_t>(item / columns)];
+    const int column = item % columns;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const PixelRay way = ray(column, item / columns * lanes + lane);
+      for (int a = 0; a < angles; ++a) slab.at(column, a)[lane] = follow(body, way, a);
+    }
+  });
+  note_hindered();
 }
 
-void InsertShadow::cast(std::span<const Image> inserts) {
-  std::fill(ends_.begin(), ends_.end(), unhindered);
-  for (std::size_t s = 0; s < inserts.size(); ++s) {
-    const Image& insert = inserts[s];
-    if (insert.width != grid_.nx || insert.height != grid_.ny) {
-      throw Error{Fault::data, "insert: a slice has " + std::to_string(insert.width) + " x " +
-                                   std::to_string(insert.height) + " voxels, the dose " + std::to_string(grid_.nx) +
-                                   " x " + std::to_string(grid_.ny)};
-    }
-    const Opaque body(insert);
-    const bool repeated = s > 0 && body.same(inserts[s - 1]);
-    parallel_for(static_cast<int>(rows_.size()), [&](int row) {
-      for (int c = 0; c < static_cast<int>(lines_.size()); ++c) {
-        float* end = ends_.data() + at(row, c) + s;
-        *end = repeated ? end[-1] : follow(body, row, c);
+void InsertShadow::note_hindered() {
+  const int columns = static_cast<int>(columns_.size());
+  const int angles = static_cast<int>(parts_.size());
+  hinders_.assign(columns_.size() * parts_.size(), 0);
+  parallel_for(columns, [&](int c) {
+    for (int a = 0; a < angles; ++a) {
+      for (const Slab& slab : ends_) {
+        const float* ends = slab.at(c, a);
+        if (std::any_of(ends, ends + lanes, [](float u) { return u < unhindered; })) {
+          hinders_[static_cast<std::size_t>(c) * parts_.size() + static_cast<std::size_t>(a)] = 1;
+        }
       }
-    });
-  }
+    }
+  });
 }
 
-/// Voxel by voxel [Amanatides & Woo 1987], u in voxels on the way.
-float InsertShadow::follow(const Opaque& insert, int row, int column) const {
-  const RayLine& line = lines_[static_cast<std::size_t>(column)];
-  if (!line.hits || insert.x1 == 0) return unhindered;
-  const Direction& part = rows_[static_cast<std::size_t>(row)];
-  const Direction& ray = columns_[static_cast<std::size_t>(column)];
-  const double c = part.cosine * ray.cosine - part.sine * ray.sine;
-  const double s = part.sine * ray.cosine + part.cosine * ray.sine;
-  const Axis along_x{(line.offset_mm * c - grid_.origin_mm[0]) / grid_.voxel_mm + 0.5, -s};
-  const Axis along_y{(line.offset_mm * s - grid_.origin_mm[1]) / grid_.voxel_mm + 0.5, c};
-  const auto [x_in, x_out] = along_x.between(insert.x0, insert.x1);
-  const auto [y_in, y_out] = along_y.between(insert.y0, insert.y1);
-  double u = std::max(x_in, y_in);
-  if (!(u < std::min(x_out, y_out))) return unhindered;
-  int x = along_x.voxel(u, insert.x0, insert.x1);
-  int y = along_y.voxel(u, insert.y0, insert.y1);
-  while (x >= insert.x0 && x < insert.x1 && y >= insert.y0 && y < insert.y1) {
-    if (insert.at(x, y)) return static_cast<float>(u * grid_.voxel_mm);
-    const double leaves_x = along_x.leaves(x);
-    const double leaves_y = along_y.leaves(y);
-    u = std::min(leaves_x, leaves_y);
-    if (leaves_x < leaves_y) {
-      x += along_x.step();
-    } else {
-      y += along_y.step();
-    }
+/// Voxel by voxel [Amanatides & Woo 1987].
+float InsertShadow::follow(const Body& body, const PixelRay& ray, int angle) const {
+  if (!ray.hits || body.high[0] == 0) return unhindered;
+  const Direction& part = parts_[static_cast<std::size_t>(angle)];
+  const double cosine = std::cos(ray.delta_rad);
+  const double sine = std::sin(ray.delta_rad);
+  const double c = part.cosine * cosine - part.sine * sine;
+  const double s = part.sine * cosine + part.cosine * sine;
+  const double voxel = grid_.voxel_mm;  // u in voxels on the way
+  const std::array<Axis, 3> axes{Axis{(ray.offset_mm * c - grid_.origin_mm[0]) / voxel + 0.5, -s},
+                                 Axis{(ray.offset_mm * s - grid_.origin_mm[1]) / voxel + 0.5, c},
+                                 Axis{ray.slice + 0.5, ray.climb_per_mm * voxel}};
+  double u = -never;
+  double out = never;
+  for (std::size_t d = 0; d < 3; ++d) {
+    const auto [first, last] = axes[d].between(body.low[d], body.high[d]);
+    u = std::max(u, first);
+    out = std::min(out, last);
   }
-  return unhindered;
-}
-
-void darken(std::span<const Image> inserts, std::span<Image> doses) {
-  for (std::size_t s = 0; s < doses.size(); ++s) {
-    for (std::size_t p = 0; p < doses[s].size(); ++p) {
-      if (opaque(inserts[s].values[p])) doses[s].values[p] = 0;
+  if (!(u < out)) return unhindered;
+  std::array<int, 3> at{};
+  for (std::size_t d = 0; d < 3; ++d) at[d] = axes[d].voxel(u, body.low[d], body.high[d]);
+  while (true) {
+    if (body.at(at)) return static_cast<float>(u * voxel);
+    std::size_t next = 0;
+    for (const std::size_t d : {1, 2}) {
+      if (axes[d].leaves(at[d]) < axes[next].leaves(at[next])) next = d;
     }
+    u = axes[next].leaves(at[next]);
+    at[next] += axes[next].step();
+    if (at[next] < body.low[next] || at[next] >= body.high[next]) return unhindered;
   }
 }
 

@@ -1,6 +1,7 @@
 #include "light/parallel.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
@@ -17,7 +18,9 @@ tomo::ParallelGeometry first_half(tomo::ParallelGeometry turn) {
   return turn;
 }
 
-double row_angle(const tomo::ParallelGeometry& turn) { return turn.angle_step_rad * (may_halve(turn) ? 2 : 1); }
+double row_angle(const tomo::ParallelGeometry& turn) {
+  return std::abs(turn.angle_step_rad) * (may_halve(turn) ? 2 : 1);
+}
 
 }  // namespace
 

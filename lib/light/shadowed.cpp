@@ -10,9 +10,6 @@ namespace vam::light {
 
 namespace {
 
-constexpr float opaque = 0.5F;    // coverage
-constexpr float far_away = 1e9F;  // no insert in the way
-
 /// Integral from -infinity to x of a voxel's shadow: the trapezoid box(|cos|) * box(|sin|) of area 1.
 double shadow_up_to(double x, double cosine, double sine) {
   const double wide = std::max(std::abs(cosine), std::abs(sine));
@@ -39,10 +36,13 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
     cosine_.push_back(std::cos(turn.angle_start_rad + a * turn.angle_step_rad));
     sine_.push_back(std::sin(turn.angle_start_rad + a * turn.angle_step_rad));
   }
-  for (const Slab& insert : inserts) {
-    reach_.emplace_back(turn.columns, turn.angles);
-    cast_shadows(insert, reach_.back());
-  }
+  std::vector<double> angles;
+  for (int a = 0; a < turn.angles; ++a) angles.push_back(turn.angle_start_rad + a * turn.angle_step_rad);
+  const model::Grid grid{turn.nx, turn.ny, 0, 1, {-turn.axis_x, -turn.axis_y, 0}};  // in voxels
+  const auto ray = [&](int column, int row) -> PixelRay {
+    return {true, column - 0.5 * (turn.columns - 1), 0, static_cast<double>(row), 0};
+  };
+  shadow_ = InsertShadow(grid, inserts, angles, turn.columns, static_cast<int>(inserts.size()), ray);
 }
 
 ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle) const {
@@ -68,29 +68,6 @@ float ShadowedOperator::left(int column, double u) const {
   return static_cast<float>(std::exp(-mu_ * (depth_[static_cast<std::size_t>(column)] + u)));
 }
 
-/// Every column that sees part of an opaque voxel ends at the voxel's near side.
-void ShadowedOperator::cast_shadows(const Slab& insert, Slab& reach) const {
-  std::fill(reach.values.begin(), reach.values.end(), far_away);
-  parallel_for(turn_.angles, [&](int a) {
-    const double half =
-        0.5 * (std::abs(cosine_[static_cast<std::size_t>(a)]) + std::abs(sine_[static_cast<std::size_t>(a)]));
-    for (int y = 0; y < turn_.ny; ++y) {
-      for (int x = 0; x < turn_.nx; ++x) {
-        const float* coverage = insert.at(x, y);
-        if (std::none_of(coverage, coverage + lanes, [](float v) { return v >= opaque; })) continue;
-        const Footprint print = footprint(x, y, a);
-        for (int i = 0; i < 4; ++i) {
-          if (print.weight[i] <= 0) continue;
-          float* ends = reach.at(print.first + i, a);
-          for (int lane = 0; lane < lanes; ++lane) {
-            if (coverage[lane] >= opaque) ends[lane] = std::min(ends[lane], static_cast<float>(print.u - half));
-          }
-        }
-      }
-    }
-  });
-}
-
 void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   parallel_for(static_cast<int>(objects.size()) * turn_.angles, [&](int item) {
     const auto s = static_cast<std::size_t>(item / turn_.angles);
@@ -104,7 +81,7 @@ void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> si
         for (int i = 0; i < 4; ++i) {
           if (print.weight[i] <= 0) continue;
           const float weight = print.weight[i] * left(print.first + i, print.u);
-          const float* ends = reach_[s].at(print.first + i, a);
+          const float* ends = shadow_.ends_mm(s, print.first + i, a);
           float* to = sinograms[s].at(print.first + i, a);
           for (int lane = 0; lane < lanes; ++lane) to[lane] += u < ends[lane] ? weight * from[lane] : 0.0F;
         }
@@ -125,7 +102,7 @@ void ShadowedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> 
         for (int i = 0; i < 4; ++i) {
           if (print.weight[i] <= 0) continue;
           const float weight = print.weight[i] * left(print.first + i, print.u);
-          const float* ends = reach_[s].at(print.first + i, a);
+          const float* ends = shadow_.ends_mm(s, print.first + i, a);
           const float* from = sinograms[s].at(print.first + i, a);
           for (int lane = 0; lane < lanes; ++lane) sum[lane] += u < ends[lane] ? weight * from[lane] : 0.0F;
         }
@@ -146,7 +123,7 @@ void ShadowedOperator::apply(const tomo::Filter& filter, std::span<Slab> sinogra
   };
   amplify(1);
   for (Slab& slab : sinograms) filter.apply(slab);
-  amplify(0.5 * turn_.angle_step_rad);
+  amplify(0.5 * row_angle_rad());
 }
 
 void ShadowedOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
@@ -155,12 +132,12 @@ void ShadowedOperator::precondition(std::span<Slab> sinograms) const { apply(pre
 
 void ShadowedOperator::expand(const Slab& sinogram, Slab& image) const {
   image = sinogram;
-  for (float& v : image.values) v *= static_cast<float>(1.0 / turn_.angle_step_rad);
+  for (float& v : image.values) v *= static_cast<float>(1.0 / row_angle_rad());
 }
 
 void ShadowedOperator::collapse(const Slab& image, Slab& sinogram) const {
   sinogram = image;
-  for (float& v : sinogram.values) v *= static_cast<float>(turn_.angle_step_rad);
+  for (float& v : sinogram.values) v *= static_cast<float>(row_angle_rad());
 }
 
 }  // namespace vam::light

@@ -1,8 +1,10 @@
 // Parallel light around an opaque insert (overprinting) [CAL19 fig 4].
 #pragma once
 
+#include <cmath>
 #include <vector>
 
+#include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
@@ -22,7 +24,7 @@ class ShadowedOperator final : public Operator {
   [[nodiscard]] Shape object() const override { return {turn_.nx, turn_.ny}; }
   [[nodiscard]] Shape sinogram() const override { return image(); }
   [[nodiscard]] Shape image() const override { return {turn_.columns, turn_.angles}; }
-  [[nodiscard]] double row_angle_rad() const override { return turn_.angle_step_rad; }
+  [[nodiscard]] double row_angle_rad() const override { return std::abs(turn_.angle_step_rad); }
   /// The spans are the pass's slabs from the first on.
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
@@ -39,7 +41,6 @@ class ShadowedOperator final : public Operator {
     float weight[4];
   };
   [[nodiscard]] Footprint footprint(int x, int y, int angle) const;
-  void cast_shadows(const Slab& insert, Slab& reach) const;
   void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
   [[nodiscard]] float left(int column, double u) const;  // e^{-mu s}
 
@@ -47,7 +48,7 @@ class ShadowedOperator final : public Operator {
   double mu_;
   std::vector<double> depth_;  // sqrt(R^2 - t^2) of each column
   std::vector<double> cosine_, sine_;
-  std::vector<Slab> reach_;  // the u up to which light gets, per column, angle and slice
+  InsertShadow shadow_;
   tomo::Filter ramp_, preconditioner_;
 };
 

@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <functional>
 #include <string>
-#include <variant>
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "base/per_slice.hpp"
 #include "base/text.hpp"
-#include "light/insert_shadow.hpp"
-#include "light/shadowed_turn.hpp"
-#include "light/trace.hpp"
-#include "tomo/radon.hpp"
+#include "light/attenuated.hpp"
+#include "light/parallel.hpp"
+#include "light/shadowed.hpp"
+#include "light/vial.hpp"
 
 namespace vam::light {
 
@@ -21,101 +21,33 @@ namespace {
 
 std::string mm(double value) { return format_number(value) + " mm"; }
 
-// Back-projection with absorption, 16 slices a slab.
-struct Parallel {
-  tomo::ParallelGeometry geometry;
-  std::vector<float> entry;          // per column: e^{-mu sqrt(R^2 - t^2)}, 0 beside the resin
-  std::vector<unsigned char> resin;  // per voxel: is it there
-  double step_rad = 0;
-  model::Grid grid;
-  double pixel_mm = 0;
-
-  void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const;
-  void back_project(std::span<const Slab> in, std::span<Slab> out, std::span<const Image> inserts) const;
-};
-
-Parallel make_parallel(const model::Printer& printer, const model::StackInfo& info, const model::Grid& grid) {
+void require_one_turn(const model::StackInfo& info) {
   const double covered_deg = info.height * std::abs(info.angle_step_deg);
-  if (!(std::abs(covered_deg - 360) < 0.01 * std::abs(info.angle_step_deg))) {
-    throw Error{Fault::data, "sinogram: its " + std::to_string(info.height) + " angles cover " +
-                                 format_number(covered_deg) + " deg; the dose needs exactly one turn"};
-  }
+  if (std::abs(covered_deg - 360) < 0.01 * std::abs(info.angle_step_deg)) return;
+  throw Error{Fault::data, "sinogram: its " + std::to_string(info.height) + " angles cover " +
+                               format_number(covered_deg) + " deg; the dose needs exactly one turn"};
+}
+
+tomo::ParallelGeometry parallel_turn(const model::StackInfo& info, const model::Grid& grid) {
+  require_one_turn(info);
   if (!(std::abs(grid.voxel_mm / info.pixel_mm - 1) < 1e-3)) {
     throw Error{Fault::data, "sinogram: its columns are " + mm(info.pixel_mm) + " wide, the voxels " +
                                  mm(grid.voxel_mm) + "; the parallel dose needs them alike"};
   }
-  const double radius = model::resin_radius_mm(printer.vial);
-  const double mu = printer.resin.absorption_per_mm;
-  Parallel result;
-  result.geometry = {grid.nx,
-                     grid.ny,
-                     info.width,
-                     info.height,
-                     -grid.origin_mm[0] / grid.voxel_mm,
-                     -grid.origin_mm[1] / grid.voxel_mm,
-                     info.angle_start_deg * rad_per_deg,
-                     info.angle_step_deg * rad_per_deg,
-                     -mu * grid.voxel_mm};
-  result.step_rad = std::abs(info.angle_step_deg) * rad_per_deg;
-  result.grid = grid;
-  result.pixel_mm = info.pixel_mm;
-  const optics::Detector detector = optics::centred_detector(info.width, info.pixel_mm);
-  for (int c = 0; c < info.width; ++c) {
-    const double square = radius * radius - detector.x_mm(c) * detector.x_mm(c);
-    result.entry.push_back(square > 0 ? static_cast<float>(std::exp(-mu * std::sqrt(square))) : 0.0F);
-  }
-  for (int j = 0; j < grid.ny; ++j) {
-    for (int i = 0; i < grid.nx; ++i) result.resin.push_back(std::hypot(grid.x_mm(i), grid.y_mm(j)) < radius ? 1 : 0);
-  }
-  return result;
+  return {grid.nx,
+          grid.ny,
+          info.width,
+          info.height,
+          -grid.origin_mm[0] / grid.voxel_mm,
+          -grid.origin_mm[1] / grid.voxel_mm,
+          info.angle_start_deg * rad_per_deg,
+          info.angle_step_deg * rad_per_deg,
+          0};
 }
 
-void Parallel::back_project(std::span<const Slab> in, std::span<Slab> out, std::span<const Image> inserts) const {
-  if (inserts.empty()) {
-    tomo::adjoint(geometry, in, out);
-    return;
-  }
-  ShadowedTurn turn(geometry, grid, pixel_mm);
-  for (std::size_t g = 0; g < in.size(); ++g) {
-    const std::size_t first = g * lanes;
-    turn.back_project(in[g], inserts.subspan(first, std::min<std::size_t>(lanes, inserts.size() - first)), out[g]);
-  }
-}
-
-void Parallel::dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const {
-  const int groups = (static_cast<int>(sinograms.size()) + lanes - 1) / lanes;
-  const auto slices_of = [&](int group) {
-    return std::min<std::size_t>(lanes, sinograms.size() - static_cast<std::size_t>(group * lanes));
-  };
-  std::vector<Slab> in(static_cast<std::size_t>(groups), Slab(geometry.columns, geometry.angles));
-  std::vector<Slab> out(static_cast<std::size_t>(groups), Slab(geometry.nx, geometry.ny));
-  parallel_for(groups, [&](int g) {
-    for (std::size_t s = 0; s < slices_of(g); ++s) {
-      const Image& image = sinograms[static_cast<std::size_t>(g * lanes) + s];
-      for (int a = 0; a < geometry.angles; ++a) {
-        for (int c = 0; c < geometry.columns; ++c) {
-          in[static_cast<std::size_t>(g)].at(c, a)[s] = image(c, a) * entry[static_cast<std::size_t>(c)];
-        }
-      }
-    }
-  });
-  back_project(in, out, inserts);
-  parallel_for(groups, [&](int g) {
-    for (std::size_t s = 0; s < slices_of(g); ++s) {
-      Image& image = doses[static_cast<std::size_t>(g * lanes) + s];
-      image = Image(geometry.nx, geometry.ny);
-      for (std::size_t p = 0; p < image.size(); ++p) {
-        const float value = out[static_cast<std::size_t>(g)].values[p * lanes + s];
-        image.values[p] = resin[p] != 0 ? static_cast<float>(step_rad) * value : 0.0F;
-      }
-    }
-  });
-  if (!inserts.empty()) light::darken(inserts, doses);
-}
-
-light::TraceSetup trace_setup(const model::Printer& printer, const optics::Alignment& alignment,
-                              const model::StackInfo& info, const model::Grid& grid) {
-  light::TraceSetup setup;
+VialSetup projector_turn(const model::Printer& printer, const optics::Alignment& alignment,
+                         const model::StackInfo& info, const model::Grid& grid) {
+  VialSetup setup;
   setup.view = optics::projector_view(printer);
   setup.projector = optics::projector_detector(printer, alignment);
   if (info.width != setup.projector.columns || !(std::abs(info.pixel_mm / setup.projector.pixel_mm - 1) < 1e-3)) {
@@ -123,35 +55,107 @@ light::TraceSetup trace_setup(const model::Printer& printer, const optics::Align
                                  ", the projector " + std::to_string(setup.projector.columns) + " of " +
                                  mm(setup.projector.pixel_mm) + "; use the printer it was resampled for"};
   }
+  if (info.row_mm > 0 && !(std::abs(info.row_mm / grid.voxel_mm - 1) < 1e-3)) {
+    throw Error{Fault::data, "sinogram: its slices are " + mm(info.row_mm) + " apart, the voxels " + mm(grid.voxel_mm) +
+                                 ": they are not slices of the volume; make both from the same target"};
+  }
   setup.turn = optics::turn_of(info);
   setup.direction = alignment.reverse ? -printer.stage.direction : printer.stage.direction;
   setup.angle_offset_rad = alignment.angle_offset_rad;
   setup.absorption_per_mm = printer.resin.absorption_per_mm;
   setup.grid = grid;
+  setup.z_scale = model::vertical_magnification(printer);
+  setup.rows = info.count;
+  setup.first_row_mm = info.z_start_mm;
   return setup;
+}
+
+std::vector<Slab> packed(std::span<const Image> images, Shape shape, const std::string& what) {
+  std::vector<Slab> all = slabs((images.size() + lanes - 1) / lanes, shape.width, shape.height);
+  for (const Image& image : images) {
+    if (image.width == shape.width && image.height == shape.height) continue;
+    throw Error{Fault::data, what + ": a slice has " + std::to_string(image.width) + " x " +
+                                 std::to_string(image.height) + " pixels, but " + std::to_string(shape.width) + " x " +
+                                 std::to_string(shape.height) + " are needed"};
+  }
+  parallel_for(static_cast<int>(images.size()), [&](int k) {
+    const auto i = static_cast<std::size_t>(k);
+    float* to = all[i / lanes].values.data() + i % lanes;
+    for (std::size_t p = 0; p < images[i].size(); ++p) to[p * lanes] = images[i].values[p];
+  });
+  return all;
 }
 
 }  // namespace
 
+/// How to make the light, and the light itself where no insert stands in its way.
 struct Simulation::State {
-  std::variant<Parallel, light::Tracer> engine;
+  model::Grid grid;
+  double resin_mm = 0;
+  std::function<std::unique_ptr<Operator>(std::span<const Slab> inserts)> make;
+  std::unique_ptr<Operator> clear;
+
+  /// Outside the resin there is nothing that takes a dose.
+  [[nodiscard]] bool resin_at(int i, int j) const { return std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm; }
 };
 
 Simulation::Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
-                       const model::Grid& grid) {
+                       const model::Grid& grid, Climb climb)
+    : state_(std::make_unique<State>()) {
+  state_->grid = grid;
+  state_->resin_mm = model::resin_radius_mm(printer.vial);
   if (info.space == model::Space::projector) {
-    state_ = std::make_unique<State>(State{light::Tracer(trace_setup(printer, alignment, info, grid))});
+    VialSetup setup = projector_turn(printer, alignment, info, grid);
+    if (climb == Climb::flat) setup.view.rows_lens_mm.reset();
+    state_->make = [setup](std::span<const Slab> inserts) { return std::make_unique<VialOperator>(setup, inserts); };
   } else if (info.space == model::Space::virtual_) {
-    state_ = std::make_unique<State>(State{make_parallel(printer, info, grid)});
+    const auto turn = parallel_turn(info, grid);
+    const double mu = printer.resin.absorption_per_mm * grid.voxel_mm;
+    const double radius = state_->resin_mm / grid.voxel_mm;
+    state_->make = [turn, mu, radius](std::span<const Slab> inserts) -> std::unique_ptr<Operator> {
+      if (!inserts.empty()) return std::make_unique<ShadowedOperator>(turn, mu, radius, inserts);
+      if (mu > 0) return std::make_unique<AttenuatedOperator>(turn, mu, radius);
+      return std::make_unique<ParallelOperator>(turn);
+    };
   } else {
     throw Error{Fault::data, "sinogram: a camera's leaves no dose; give a projector's or a virtual one"};
   }
+  state_->clear = state_->make({});
 }
 
 Simulation::~Simulation() = default;
 
+bool Simulation::climbs() const { return state_->clear->couples_slices(); }
+
 void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts) const {
-  std::visit([&](const auto& engine) { engine.dose(sinograms, doses, inserts); }, state_->engine);
+  const State& state = *state_;
+  std::vector<Slab> bodies;
+  std::unique_ptr<Operator> around;
+  if (!inserts.empty()) {
+    bodies = packed(inserts, state.clear->object(), "insert");
+    around = state.make(bodies);
+  }
+  const Operator& light = around ? *around : *state.clear;
+  std::vector<Slab> rows =
+      slabs((sinograms.size() + lanes - 1) / lanes, light.sinogram().width, light.sinogram().height);
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    const auto slices = sinograms.subspan(s * lanes, std::min<std::size_t>(lanes, sinograms.size() - s * lanes));
+    light.collapse(packed(slices, light.image(), "sinogram").front(), rows[s]);
+  }
+  std::vector<Slab> out = slabs((doses.size() + lanes - 1) / lanes, state.grid.nx, state.grid.ny);
+  light.adjoint(rows, out);
+  for (std::size_t s = 0; s < bodies.size(); ++s) darken(bodies[s], out[s]);
+  parallel_for(static_cast<int>(doses.size()), [&](int k) {
+    const auto slice = static_cast<std::size_t>(k);
+    const Slab& slab = out[slice / lanes];
+    Image& image = doses[slice];
+    image = Image(state.grid.nx, state.grid.ny);
+    for (int j = 0; j < state.grid.ny; ++j) {
+      for (int i = 0; i < state.grid.nx; ++i) {
+        if (state.resin_at(i, j)) image(i, j) = slab.at(i, j)[slice % lanes];
+      }
+    }
+  });
 }
 
 model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info, std::optional<double> size_mm) {

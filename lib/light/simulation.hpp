@@ -25,17 +25,24 @@ namespace vam::light {
 /// the stack are slices of the grid.
 [[nodiscard]] int first_slice(const model::Grid& grid, const model::StackInfo& info);
 
-/// The dose of slices, one turn, in units of the sinogram times radian [physics section 4]; zero outside the resin.
-/// Projector stacks: optics::Tracer. Virtual stacks: back-projection, light entering at the resin's wall:
-/// D(r) = |step| sum over theta of F(t, theta) e^{-mu (sqrt(R^2 - t^2) + u)}. Around an opaque insert (coverage nx x
-/// ny, one a slice, or none at all) light ends where its column's ray meets it [CAL19 fig 4]; the insert gets no dose.
+/// Whether the judge follows rays that climb, or lights each slice with its own row.
+enum class Climb { follow, flat };
+
+/// The dose of one turn, in units of the sinogram times radian [physics §4, §11]: what the operator of that light makes
+/// of the sinograms (A*, light/operator.hpp); zero outside the resin. A projector's stack: chief rays, which climb
+/// unless the projector is telecentric along the rows. A virtual stack: back-projection, light entering at the resin's
+/// wall. Around an opaque insert (coverage nx x ny, one a slice, or none at all) light ends where its ray meets it
+/// [CAL19 fig 4]; the insert gets no dose.
 class Simulation {
  public:
   /// Throws Fault::data: angles that are not one turn, a camera stack, columns that are not the printer's, or voxels
   /// that differ from the virtual columns.
   Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
-             const model::Grid& grid);
+             const model::Grid& grid, Climb climb = Climb::follow);
   ~Simulation();
+  /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
+  /// of the grid; otherwise any slices with their own sinograms.
+  [[nodiscard]] bool climbs() const;
   void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
 
  private:

@@ -1,75 +1,76 @@
-// Which columns of the projector light a voxel of the turning vial, and how strongly.
+// Which columns and rows of the projector light a voxel of the turning vial, and how strongly.
 #pragma once
 
 #include <vector>
 
-#include "light/lit_table.hpp"
-#include "light/vial_kernel.hpp"
-#include "model/grid.hpp"
-#include "model/printer.hpp"
-#include "optics/resample.hpp"
+#include "light/ray_kernel.hpp"
+#include "light/ray_table.hpp"
+#include "light/vial_setup.hpp"
 
 namespace vam::light {
 
-/// Who lights what. Row a of a sinogram is at stage angle turn.start + a * turn.step; the part stands at direction *
-/// stage angle + offset.
-struct VialSetup {
-  optics::View view;
-  optics::Detector projector;
-  optics::Turn turn;
-  int direction = 1;
-  double angle_offset_rad = 0;
-  double absorption_per_mm = 0;
-  model::Grid grid;      // only x and y matter
-  double radius_mm = 0;  // voxels farther from the axis get no light
-};
-
-/// The printer's projector and vial, `angles` rows from stage angle 0. The radius is at most radius_mm and what the
-/// projector's columns reach on either side.
-[[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles,
-                                   double radius_mm);
-
-/// Light of a column is linear between column centres and leaves dose T / |dx_v/dx_p - u d delta/dx_p| e^{-mu s} at the
-/// voxel on its ray [RAY21 eq 8, with the convergence of neighbouring rays; physics section 2]. The mean over the voxel
-/// is taken to second order, by a box of the variance of the voxel's shadow.
+/// A pixel is a box of even intensity; it leaves fluence T * density * e^{-mu path} [RAY21 eq 8, in three dimensions:
+/// physics §11] at the voxels on its ray. The mean over a voxel's shadow is exact across the columns, and linear
+/// between rows.
 class VialRays {
  public:
   /// Throws Fault::data unless the rows are one turn, or when no column of the projector lights the resin.
   explicit VialRays(const VialSetup& setup);
 
   [[nodiscard]] const VialSetup& setup() const { return setup_; }
+  [[nodiscard]] bool climbs() const { return table_.climbs(); }
   /// The columns that light voxels: columns() from first_column() of the projector on.
   [[nodiscard]] int first_column() const { return first_; }
-  [[nodiscard]] int columns() const { return static_cast<int>(shadows_.size()); }
+  [[nodiscard]] int columns() const { return static_cast<int>(transmitted_.size()); }
   /// T e^{-mu sqrt(R^2 - t^2)} of a column: what gets to the plane of the axis.
   [[nodiscard]] double transmitted(int column) const { return transmitted_[static_cast<std::size_t>(column)]; }
+  /// Slices that may share a voxel column's rays: 64 where these drift less than 0.06 columns from its middle to its
+  /// end.
+  [[nodiscard]] int chunk() const { return chunk_; }
 
-  /// A row of light for voxels: column c is the weighted sum of columns first...first + weights.size() - 1, then dark
-  /// ones to row_stride().
-  struct Shadow {
-    int first;
-    std::vector<float> weights;
-  };
-  [[nodiscard]] const Shadow& shadow(int column) const { return shadows_[static_cast<std::size_t>(column)]; }
-  static constexpr int padding = 2;  // dark columns on either side of a row of light
-  [[nodiscard]] int row_stride() const { return columns() + 2 * padding; }
+  /// Edge in voxels of a tile whose voxels see the rows under nearly the same zoom: rows shift by less than 0.4 from
+  /// one corner to the other, at the outermost slice. 16 where rays stay level.
+  [[nodiscard]] int tile() const { return tile_; }
 
-  /// A voxel as the table knows it; false where no light goes.
-  struct Voxel {
-    VialSource source;  // of row 0
-  };
-  [[nodiscard]] bool find(int i, int j, Voxel& voxel) const;
-  /// Where it takes light from at rows [row, row + rows), in a buffer that begins at `row`; rows <= vial_rows.
-  void taps(const Voxel& voxel, int row, int rows, VialTaps& taps) const;
+  /// A row of light has columns() and this many dark columns before and after.
+  [[nodiscard]] int padding() const { return taps_; }
+  [[nodiscard]] int taps() const { return taps_; }
+
+  /// A voxel column as the table knows it: up to four rays a stage angle (beyond the reach; one within it). Returns how
+  /// many.
+  static constexpr int most_rays = 4;
+  int find(int i, int j, TapSource* rays) const;
+
+  /// The table at the height of the middle of `slices` slices from `first` on.
+  void at_slices(int first, int slices, RayNodes& nodes) const;
+  /// Where rays take light from at stage angles [row, row + tap_angles), as far as there are that many; slices relative
+  /// to the middle of the chunk.
+  void taps(const RayNodes& nodes, const TapSource& ray, int row, Taps& taps) const;
+  /// Whether the outer end of a chunk is its last slice.
+  [[nodiscard]] bool rises(int first, int slices) const { return height_mm(first + 0.5 * (slices - 1)) >= 0; }
+
+  /// The rows that may be lit.
+  [[nodiscard]] int first_row() const { return first_row_; }
+  [[nodiscard]] int end_row() const { return end_row_; }
+  /// z_p of a row.
+  [[nodiscard]] double row_mm(double row) const { return setup_.first_row_mm + row * setup_.grid.voxel_mm; }
 
  private:
   [[nodiscard]] int sense() const { return (setup_.turn.step_rad < 0 ? 1 : -1) * setup_.direction; }
+  [[nodiscard]] double height_mm(double slice) const { return setup_.z_scale * setup_.grid.z_mm(slice); }
+  [[nodiscard]] double top_mm() const;
+  [[nodiscard]] RayTable::Setup table_setup() const;
+
   VialSetup setup_;
-  light::LitTable table_;
+  RayTable table_;
   int first_ = 0;
-  std::vector<Shadow> shadows_;
+  int first_row_ = 0;
+  int end_row_ = 0;
+  int taps_ = 0;
+  int chunk_ = 64;
+  int tile_ = 16;
   std::vector<double> transmitted_;
-  decltype(&baseline::vial_taps) make_taps_;
+  std::vector<float> cosines_, sines_;  // of the part's angles, tap_angles more
 };
 
 }  // namespace vam::light

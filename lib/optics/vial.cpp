@@ -84,7 +84,7 @@ void check(const View& view) {
 
 View make_view(const model::Printer& printer, std::optional<double> lens_mm, double index_resin) {
   View view;
-  view.lens_mm = lens_mm;
+  view.lens_mm = view.rows_lens_mm = lens_mm;
   view.bath_index = printer.bath.index;
   view.window_mm = printer.bath.window_mm;
   if (printer.vial.wall_mm > 0) view.shells.push_back({printer.vial.radius_mm, printer.vial.index_glass});

@@ -18,14 +18,15 @@ struct Shell {
 
 /// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
 struct View {
-  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis; empty = telecentric
+  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis as the columns see it; empty = telecentric
   double bath_index = 1;          // n_0, what the outermost shell stands in
   double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
   std::vector<Shell> shells;      // outermost first; the last is the resin
+  std::optional<double> rows_lens_mm = std::nullopt;  // lens to axis as the rows see it; empty = rays stay level
 };
 
 /// One chief ray. In the lab it runs along the line of offset x_v at angle delta, so at stage angle theta it lights
-/// the part's line L(x_v, theta + delta) = { x_v (cos, sin) + u (-sin, cos) } [physics section 2].
+/// the part's line L(x_v, theta + delta) = { x_v (cos, sin) + u (-sin, cos) } [physics §2].
 struct ChiefRay {
   bool hits = false;         // false: passes beside the resin or is totally reflected; the rest is 0 then
   double x_v_mm = 0;         // signed offset from the axis in the resin

@@ -13,8 +13,9 @@ done
 quiet "fbp without iterations" vam-optimize --method fbp --angles 90 --report fbp.json part.vdb -o fbp.exr
 quiet "dose-norm as usual" vam-optimize --method dose-norm --angles 90 --report dn.json part.vdb -o dn.exr
 holds "dose-norm widens the process window of fbp" "$(value dn.json pw) > $(value fbp.json pw)"
-is "a part of constant cross-section needs a few slices, its ends included" \
-  "$([ "$(value dn.json distinct_slices)" -le 5 ] && echo yes)" yes
+vam-optimize --method dose-norm --angles 90 --set projector.telecentric=true --report level.json part.vdb -o level.exr
+is "with level rays a part of constant cross-section needs a few slices, its ends included" \
+  "$([ "$(value level.json distinct_slices)" -le 5 ] && echo yes)" yes
 
 quiet "auto is apg until the part prints with a margin" vam-optimize --angles 180 --report auto.json part.vdb -o auto.exr
 is "auto reaches its goal" "$(value auto.json stopped_by)" goal
@@ -33,7 +34,7 @@ for how in vial resampled; do
   vam-dose $how.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 is "its print has no error" "$(value judged-vial.json ver)" 0.0
-holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.01"
+holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.03"
 holds "which is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*omit vam-resample' vam-resample vial.exr -o twice.exr
 fails 64 '--columns: does not apply to --geometry vial' vam-optimize --columns 100 part.vdb -o out.exr
@@ -117,7 +118,7 @@ printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --response falls.csv part.vdb -o out.exr
 fails 66 'none.csv' vam-optimize --method bclp --response none.csv part.vdb -o out.exr
 fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey --method osmo part.vdb -o out.exr
-fails 64 'no-blur' vam-optimize --method osmo --set resin.psf_mm=0.1 part.vdb -o out.exr
+fails 64 'no-blur' vam-optimize --method osmo --set projector.telecentric=true --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
 fails 65 "grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr
 vam-slice --shape handle --insert-shape cylinder:diameter=14,height=30 --voxel 0.4 -o overlap.vdb 2>/dev/null

@@ -33,7 +33,7 @@ fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'print-at' vam-score --grid target part.vdb --print-at -1
 fails 64 'is also the input' vam-score --grid target part.vdb --print part.vdb
 fails 65 "no grid 'dose'" vam-score part.vdb
-fails 65 'compute the dose on the grid' vam-score --grid target part.vdb --target other.vdb
+fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
 fails 65 'nothing prints' vam-score --grid target part.vdb --print none.ply --print-at 7
 fails 66 'absent.vdb' vam-score absent.vdb
 fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb

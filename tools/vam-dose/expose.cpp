@@ -1,6 +1,8 @@
 #include "vam-dose/expose.hpp"
 
+#include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/log.hpp"
@@ -14,7 +16,7 @@ namespace vam::dose_tool {
 
 namespace {
 
-constexpr int batch = 64;  // slices a pass; the fastest for the tracer
+constexpr int batch = 64;  // slices a pass
 
 void warn_about(const Options& options, const light::LightSeen& seen, bool projector) {
   if (!projector || seen.negative == 0) return;
@@ -24,10 +26,33 @@ void warn_about(const Options& options, const light::LightSeen& seen, bool proje
        (options.keep_negative ? "; kept, though no projector can show them" : "; set to 0"));
 }
 
-light::LightSeen shine_through(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
-                               double blur_px, int first, Insert& insert, Sink& sink) {
+/// Doses of slices, in ascending order, through what beam and resin smear.
+class Blurred {
+ public:
+  Blurred(double blur_px, Sink& sink)
+      : sharp_(blur_px <= 0), sink_(sink), blur_(blur_px, [this](Image dose) { sink_.add(dose); }) {}
+  void add(Image& dose) {
+    if (sharp_) {
+      sink_.add(dose);
+    } else {
+      blur_.push(dose);
+    }
+  }
+  void finish() {
+    if (!sharp_) blur_.finish();
+    sink_.flush();
+  }
+
+ private:
+  bool sharp_;
+  Sink& sink_;
+  light::VolumeBlur blur_;
+};
+
+/// Every slice by its own row, a batch at a time.
+light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
+                               int first, Insert& insert, Blurred& sink) {
   light::LightSeen seen;
-  light::VolumeBlur blur(blur_px, [&](Image dose) { sink.add(dose); });
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
@@ -37,17 +62,31 @@ light::LightSeen shine_through(io::StackReader& in, const light::Simulation& sim
     simulation.dose(slices, doses, inserts);
     insert.look_for_dark(simulation, first, inserts);
     first += static_cast<int>(slices.size());
-    for (Image& dose : doses) {
-      if (blur_px > 0) {
-        blur.push(dose);
-      } else {
-        sink.add(dose);
-      }
-    }
+    for (Image& dose : doses) sink.add(dose);
     progress.tick(static_cast<long>(slices.size()));
   }
-  blur.finish();
-  sink.flush();
+  sink.finish();
+  return seen;
+}
+
+/// Every slice by all rows whose rays come by.
+light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
+                               int slices, Insert& insert, Blurred& sink) {
+  light::LightSeen seen;
+  Progress progress("dose", in.info().count);
+  io::ReadAhead reader(in, batch);
+  std::vector<Image> rows;
+  for (std::vector<Image> some = reader.next(); !some.empty(); some = reader.next()) {
+    light::shine(light, some, seen);
+    progress.tick(static_cast<long>(some.size()));
+    std::move(some.begin(), some.end(), std::back_inserter(rows));
+  }
+  std::vector<Image> doses(static_cast<std::size_t>(slices));
+  const std::vector<Image> inserts = insert.slices(0, slices);
+  simulation.dose(rows, doses, inserts);
+  insert.look_for_dark(simulation, 0, inserts);
+  for (Image& dose : doses) sink.add(dose);
+  sink.finish();
   return seen;
 }
 
@@ -63,8 +102,9 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
                io::SparseVolume& volume) {
   const model::StackInfo& info = in.info();
   const bool projector = info.space == model::Space::projector;
-  const int first = light::first_slice(place.grid, info);
-  const light::Simulation simulation(printer, options.alignment, info, place.grid);
+  const auto climb = options.flat ? light::Climb::flat : light::Climb::follow;
+  const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
+  const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
   const light::Light light{projector && !options.keep_negative, options.full_scale,
                            printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
@@ -73,8 +113,10 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
   Sink sink(volume, place, insert, first, judged);
 
   Exposed exposed;
-  const double blur_px = blur_mm(options, printer) / place.grid.voxel_mm;
-  exposed.light = shine_through(in, simulation, light, blur_px, first, insert, sink);
+  Blurred blurred(blur_mm(options, printer) / place.grid.voxel_mm, sink);
+  exposed.climbs = simulation.climbs();
+  exposed.light = exposed.climbs ? expose_volume(in, simulation, light, place.grid.nz, insert, blurred)
+                                 : expose_slices(in, simulation, light, first, insert, blurred);
   exposed.doses = sink.range();
   exposed.metrics = sink.judged();
   if (insert.there() && place.target != nullptr) exposed.dark_part_voxels = insert.dark_part_voxels();

@@ -1,6 +1,7 @@
 #include "vam-dose/insert.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "light/insert_shadow.hpp"
@@ -28,6 +29,7 @@ Insert::Insert(const io::SparseVolume* insert, const io::SparseVolume* target, c
                 "same --voxel and size"};
   }
   even_ = Image(light.width, light.height, 1.0F);
+  rows_ = light.count;
 }
 
 std::vector<Image> Insert::slices(int first, int count) const {
@@ -51,7 +53,13 @@ void Insert::look_for_dark(const light::Simulation& simulation, int first, std::
     which.push_back(distinct.size() - 1);
   }
   std::vector<Image> lit(distinct.size());
-  simulation.dose(std::vector<Image>(distinct.size(), even_), lit, distinct);
+  if (simulation.climbs()) {
+    distinct.assign(inserts.begin(), inserts.end());
+    std::iota(which.begin(), which.end(), std::size_t{0});
+    lit.resize(distinct.size());
+  }
+  simulation.dose(std::vector<Image>(simulation.climbs() ? static_cast<std::size_t>(rows_) : distinct.size(), even_),
+                  lit, distinct);
   for (std::size_t s = 0; s < inserts.size(); ++s) {
     const Image part = read_slice(*target_, first + static_cast<int>(s), nx_, ny_);
     for (std::size_t p = 0; p < part.size(); ++p) {

@@ -32,7 +32,8 @@ class Insert {
   const io::SparseVolume* insert_;
   const io::SparseVolume* target_;
   int nx_, ny_;
-  Image even_;  // one slice of light
+  Image even_;    // one slice of light
+  int rows_ = 0;  // of light
   std::int64_t dark_ = 0;
 };
 

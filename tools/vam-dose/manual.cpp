@@ -8,9 +8,13 @@ cli::Manual manual() {
       "simulate the dose that a print leaves in the resin",
       {"Reads sinograms and writes the volume 'dose': the energy absorbed by every voxel during one turn of the vial. "
        "It predicts the print before resin is used: voxels of equal dose cure alike.",
-       "Projector sinograms (vam-optimize, vam-resample) are simulated with chief rays: for every voxel and stage "
-       "angle the column whose ray passes through the voxel, including refraction and Fresnel losses, the density of "
-       "the rays at that depth, and absorption along the path through the resin. Virtual sinograms (vam-sinogram, "
+       "Projector sinograms (vam-optimize, vam-resample) are simulated with chief rays in three dimensions: for every "
+       "voxel and stage angle the column and row whose ray passes through the voxel, including refraction and Fresnel "
+       "losses, the density of the rays there, and absorption along the path through the resin. The rays of a "
+       "projector that is not telecentric climb: a row exposes other slices than its own, by several voxels at the "
+       "ends of the part. --flat neglects that, for comparison. With --like the dose also covers the resin around "
+       "the part that its light reaches: up to the writable radius, and above and below as far as the rays climb. "
+       "Virtual sinograms (vam-sinogram, "
        "vam-optimize --geometry parallel) are back-projected along parallel rays, with absorption if the resin has "
        "any.",
        "A grid 'insert' in the volume of --like is an opaque object to print around (overprinting; vam-slice "
@@ -38,10 +42,10 @@ cli::Manual manual() {
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
         "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"}},
       {"Accuracy: chief-ray doses agree with a sum over individual rays to 1e-3. The dose of a voxel is the mean over "
-       "its volume, across the beam to second order; between columns the intensity is interpolated linearly. Outside "
-       "the radius that is lit from all sides, rays form caustics; doses there are accurate to some per cent. The "
-       "inclination of rays to the axis is neglected: a slice exposes its own voxels only.",
-       "Memory: the dose volume, the volume of --like, and three batches of 64 slices.",
+       "its volume, across the beam exactly for pixels of uniform intensity, along the axis linear between rows. "
+       "Outside the radius that is lit from all sides, rays form caustics; doses there are accurate to some per cent.",
+       "Memory: the dose volume, the volume of --like, and three batches of 64 slices; where rays climb, all "
+       "sinograms and the dose once more.",
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "8; Kelly et al., Volumetric additive manufacturing via tomographic reconstruction, Science 2019, eq 1."},
       {"vam-optimize", "vam-resample", "vam-score", "vam-view"}};

@@ -19,6 +19,7 @@ struct Options {
   std::optional<double> full_scale;
   std::optional<double> seconds;
   bool no_blur = false;
+  bool flat = false;
   bool keep_negative = false;
   bool exposure_plan = false;
   double angle_offset_deg = 0;

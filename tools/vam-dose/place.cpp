@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "io/settings/printer_file.hpp"
+#include "light/lit_grid.hpp"
 #include "light/simulation.hpp"
 
 namespace vam::dose_tool {
@@ -21,6 +22,13 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan requires the part"};
   }
   place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
+  if (info.space == model::Space::projector) {  // what prints around the part must be seen
+    const model::Grid inner = place.grid;
+    place.grid = light::extended(inner, light::lit_margin(printer, inner));
+    for (io::SparseVolume& volume : place.like) {
+      if (volume.grid() == inner) volume.extend_to(place.grid);
+    }
+  }
   return place;
 }
 

@@ -12,7 +12,7 @@ Sink::Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, i
 
 void Sink::add(Image& dose) {
   const std::vector<Image> inserts = insert_.slices(next_ + pending_, 1);
-  if (!inserts.empty()) light::darken(inserts, {&dose, 1});  // also of what blur has brought in
+  if (!inserts.empty()) light::darken(inserts.front(), dose);  // also of what blur has brought in
   Image part;
   if (target_ != nullptr) {
     part = Image(dose.width, dose.height);

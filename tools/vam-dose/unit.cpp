@@ -49,7 +49,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
              model::Space light) {
   const light::LightSeen& seen = exposed.light;
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
-  report["model"] = light == model::Space::projector ? "chief rays" : "parallel";
+  report["model"] = light != model::Space::projector ? "parallel" : exposed.climbs ? "chief rays" : "level chief rays";
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["light_efficiency"] = seen.efficiency.value();
   report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;

@@ -6,7 +6,7 @@
 #include "light/blur.hpp"
 #include "light/parallel.hpp"
 #include "light/shadowed.hpp"
-#include "light/vial_operator.hpp"
+#include "light/vial.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
 
@@ -30,9 +30,11 @@ light::VialSetup vial_setup(const Scene& scene, const Options& options) {
 }  // namespace
 
 Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options) {
-  Scene scene{grid, printer, model::writable_circle(grid, printer), {}};
-  const int columns = options.columns.value_or(optimize::columns_for(scene.circle, grid.nx));
-  scene.turn = tomo::full_turn(grid, options.angles, columns);
+  const light::Margin margin = options.geometry == "vial" ? light::lit_margin(printer, grid) : light::Margin{};
+  const model::Grid lit = light::extended(grid, margin);
+  Scene scene{lit, margin, printer, model::writable_circle(lit, printer), {}};
+  const int columns = options.columns.value_or(optimize::columns_for(scene.circle, lit.nx));
+  scene.turn = tomo::full_turn(lit, options.angles, columns);
   const double seen = options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
   scene.circle.radius = std::min(scene.circle.radius, seen);
   return scene;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "light/lit_grid.hpp"
 #include "light/operator.hpp"
 #include "model/circle.hpp"
 #include "model/grid.hpp"
@@ -15,7 +16,8 @@ namespace vam::optimize_tool {
 
 /// Geometry of projector, vial and target.
 struct Scene {
-  model::Grid grid;
+  model::Grid grid;  // all that the light reaches: the target's and a margin around it
+  light::Margin margin;
   model::Printer printer;
   model::Circle circle;         // what it reaches
   tomo::ParallelGeometry turn;  // with --geometry parallel

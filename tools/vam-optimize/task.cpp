@@ -1,5 +1,7 @@
 #include "vam-optimize/task.hpp"
 
+#include <algorithm>
+
 #include "base/text.hpp"
 
 namespace vam::optimize_tool {
@@ -28,20 +30,40 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
 
 namespace {
 
-optimize::VolumeSource make_source(const Inputs& in, const Options& options) {
-  const auto reader = [](const std::vector<io::SparseVolume>& volumes) -> optimize::VolumeSource::Read {
-    if (volumes.empty()) return {};
-    return [&volume = volumes.front()](int k, int count, float* to) { volume.read_slices(k, count, to); };
+/// Slices of the volume, `outside` in the margin around it.
+optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes, const Scene& scene, float outside) {
+  if (volumes.empty()) return {};
+  return [&volume = volumes.front(), &scene, outside](int k, int count, float* to) {
+    const model::Grid& inner = volume.grid();
+    const light::Margin& margin = scene.margin;
+    std::fill_n(to, scene.grid.slice_size() * static_cast<std::size_t>(count), outside);
+    std::vector<float> slice(inner.slice_size());
+    for (int n = 0; n < count; ++n, to += scene.grid.slice_size()) {
+      const int from = k + n - margin.below;
+      if (from < 0 || from >= inner.nz) continue;
+      volume.read_slices(from, 1, slice.data());
+      for (int j = 0; j < inner.ny; ++j) {
+        std::copy_n(slice.data() + static_cast<std::ptrdiff_t>(j) * inner.nx, inner.nx,
+                    to + static_cast<std::ptrdiff_t>(j + margin.side) * scene.grid.nx + margin.side);
+      }
+    }
   };
-  return {in.grid().nz,      reader(in.target),    reader(in.insert),
-          reader(in.weight), reader(in.tolerance), options.tolerance_mm / in.grid().voxel_mm};
+}
+
+optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const Options& options) {
+  return {scene.grid.nz,
+          padded(in.target, scene, 0),
+          padded(in.insert, scene, 0),
+          padded(in.weight, scene, 1),
+          padded(in.tolerance, scene, static_cast<float>(options.demands.band)),
+          options.tolerance_mm / in.grid().voxel_mm};
 }
 
 }  // namespace
 
 optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options) {
   optimize::VolumeTask task;
-  task.source = make_source(in, options);
+  task.source = make_source(scene, in, options);
   task.circle = scene.circle;
   task.demands = options.demands;
   task.limits = options.limits;

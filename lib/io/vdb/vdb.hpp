@@ -28,6 +28,9 @@ class SparseVolume {
   /// Copies slices in; background values are not stored. One thread at a time; whole multiples of 8 slices from a
   /// multiple of 8 are fastest.
   void write_slices(int k0, int count, const float* in);
+  /// Takes a larger grid of the same voxels, with the background around; nothing is copied. Throws Fault::data where
+  /// the grid does not hold this one or its voxels lie elsewhere.
+  void extend_to(const model::Grid& grid);
   /// Collapses constant blocks to tiles; done by write_volumes.
   void prune();
 

@@ -3,6 +3,7 @@
 
 #include "optimize/methods/method.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/methods/private/safeguard.hpp"
 
 namespace vam::optimize {
 
@@ -22,7 +23,7 @@ class DoseNorm final : public Method {
     for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) asked_[s].values[i] = goal(problem, s, i);
     });
-    goal_sums_ = sums(asked_, problem);
+    goal_sums_ = pooled(sums(asked_, problem), light);
     project(problem, light, iterate);
   }
 
@@ -36,7 +37,7 @@ class DoseNorm final : public Method {
   /// D scaled to the mean of I_0; N = D / I_0; I_{k+1} = I_k / N. One step is the paper's I_1 = I_0 / N_0; repeated,
   /// the correction accumulates, so that it settles where D is proportional to I_0.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
-    const PerSlice dose_sums = sums(iterate.dose, problem);
+    const PerSlice dose_sums = pooled(sums(iterate.dose, problem), light);
     for_values(asked_, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const float sum = dose_sums[s][i % lanes];

@@ -55,13 +55,10 @@ void Method::resume(const Problem& /*problem*/, const light::Operator& light, It
 }
 
 void start_at_threshold(const Problem& problem, const light::Operator& light, Iterate& iterate) {
-  const PerSlice factor = to_common_threshold(metrics(iterate.dose, problem), problem);
+  const PerSlice factor = light.couples_slices() ? to_shared_threshold(iterate.dose, problem)
+                                                 : to_common_threshold(metrics(iterate.dose, problem), problem);
   scale(iterate.g, factor);
-  if (light.couples_slices()) {
-    light.adjoint(iterate.g, iterate.dose);
-  } else {
-    scale(iterate.dose, factor);
-  }
+  scale(iterate.dose, factor);
 }
 
 void filtered_projections(const light::Operator& light, std::span<const Slab> object, std::vector<Slab>& g) {

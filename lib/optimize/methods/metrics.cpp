@@ -95,19 +95,57 @@ std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Proble
   return result;
 }
 
+namespace {
+
+/// 0 without part.
+float threshold_factor(const model::DoseMetrics& m, const Window& window) {
+  if (m.part == 0 || m.iou_threshold <= 0) return 0;
+  double f = window.threshold() / m.iou_threshold;
+  if (m.max_void < m.min_part) f = std::min(f, window.high / m.min_part);
+  return static_cast<float>(f);
+}
+
+PerSlice filled(std::size_t slabs, float value) {
+  PerSlice factor(slabs);
+  for (auto& lane : factor) lane.fill(value);
+  return factor;
+}
+
+}  // namespace
+
 PerSlice to_common_threshold(const std::vector<model::DoseMetrics>& slices, const Problem& problem) {
-  PerSlice factor(problem.target.size());
-  for (auto& lane : factor) lane.fill(problem.demands.grey ? 1.0F : 0.0F);
-  if (problem.demands.grey) return factor;
-  const Window& window = problem.demands.window;
+  if (problem.demands.grey) return filled(problem.target.size(), 1.0F);
+  PerSlice factor = filled(problem.target.size(), 0.0F);
   for (std::size_t s = 0; s < slices.size(); ++s) {
-    const auto& m = slices[s];
-    if (m.part == 0 || m.iou_threshold <= 0) continue;
-    double f = window.threshold() / m.iou_threshold;
-    if (m.max_void < m.min_part) f = std::min(f, window.high / m.min_part);
-    factor[s / lanes][s % lanes] = static_cast<float>(f);
+    factor[s / lanes][s % lanes] = threshold_factor(slices[s], problem.demands.window);
   }
   return factor;
+}
+
+PerSlice to_shared_threshold(std::span<const Slab> dose, const Problem& problem) {
+  if (problem.demands.grey) return filled(problem.target.size(), 1.0F);
+  return filled(problem.target.size(), threshold_factor(body_metrics(dose, problem), problem.demands.window));
+}
+
+model::DoseMetrics body_metrics(std::span<const Slab> dose, const Problem& problem) {
+  if (problem.demands.grey) {
+    model::DoseMetrics body;
+    for (const auto& slice : grey_metrics(dose, problem)) {
+      if (slice.part == 0) continue;
+      const double before = static_cast<double>(body.part) / static_cast<double>(body.part + slice.part);
+      const auto mean = [&](double a, double b) { return before * a + (1 - before) * b; };
+      body.pw = body.part == 0 ? slice.pw : std::min(body.pw, slice.pw);
+      body.ver = mean(body.ver, slice.ver);
+      body.iou = 1 - body.ver;
+      body.cv = std::sqrt(mean(body.cv * body.cv, slice.cv * slice.cv));
+      body.ipdr = std::max(body.ipdr, slice.ipdr);
+      body.part += slice.part;
+    }
+    return body;
+  }
+  model::DoseStatistics all;
+  for (const auto& slice : statistics(dose, problem)) all.merge(slice);
+  return all.metrics();
 }
 
 }  // namespace vam::optimize

@@ -28,5 +28,9 @@ namespace vam::optimize {
 /// that window is wider than needed, its least part dose on window.high; 0 for a slice without part. This is what makes
 /// one threshold dose print all slices. Grey targets are doses already: 1.
 [[nodiscard]] PerSlice to_common_threshold(const std::vector<model::DoseMetrics>& slices, const Problem& problem);
+/// The same for slices that share light: one factor, of all of them together.
+[[nodiscard]] PerSlice to_shared_threshold(std::span<const Slab> dose, const Problem& problem);
+/// Figures of all slices in use as one body.
+[[nodiscard]] model::DoseMetrics body_metrics(std::span<const Slab> dose, const Problem& problem);
 
 }  // namespace vam::optimize

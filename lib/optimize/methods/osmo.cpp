@@ -59,7 +59,7 @@ class Osmo final : public Method {
         if (problem.labels[s][i] == Label::outside) model_[s].values[i] = 0.0F;
       }
     });
-    scale(model_, reciprocal(maxima(model_, problem)));
+    scale(model_, reciprocal(largest_pooled(maxima(model_, problem), light)));
   }
 
   void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
@@ -67,7 +67,7 @@ class Osmo final : public Method {
     bound(iterate.g, largest_light(options_, light));
     if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
     light.adjoint(iterate.g, iterate.dose);
-    unit_ = reciprocal(maxima(iterate.dose, problem));
+    unit_ = reciprocal(largest_pooled(maxima(iterate.dose, problem), light));
     scale(iterate.g, unit_);
     scale(iterate.dose, unit_);
   }

@@ -1,5 +1,6 @@
 #include "optimize/methods/private/safeguard.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace vam::optimize {
@@ -31,6 +32,15 @@ PerSlice pooled(PerSlice values, const light::Operator& light) {
     for (const float v : lane) sum += static_cast<double>(v);
   }
   return constant(values.size(), static_cast<float>(sum));
+}
+
+PerSlice largest_pooled(PerSlice values, const light::Operator& light) {
+  if (!light.couples_slices()) return values;
+  float most = 0;
+  for (const auto& lane : values) {
+    for (const float v : lane) most = std::max(most, v);
+  }
+  return constant(values.size(), most);
 }
 
 PerSlice constant(std::size_t slabs, float value) {

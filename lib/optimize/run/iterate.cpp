@@ -38,12 +38,13 @@ bool lost_patience(Course& course, const Limits& limits, double reached) {
 }
 
 /// Why to stop at this iterate; empty = go on.
-std::string look(const Problem& problem, const Limits& limits, const Iterate& state, Course& course,
-                 const Watch& watch) {
+std::string look(const Problem& problem, const light::Operator& light, const Limits& limits, const Iterate& state,
+                 Course& course, const Watch& watch) {
   const bool last = course.iteration == limits.iterations;
   if (watch || !last) {  // looking costs little, but a plain fbp need not be looked at
-    const auto slices = metrics(state.dose, problem);
+    auto slices = metrics(state.dose, problem);
     if (watch) watch(course.iteration, slices);
+    if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
     if (course.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
     if (!last && lost_patience(course, limits, mean_merit(slices))) return "no progress";
   }
@@ -60,7 +61,7 @@ Outcome iterate(Method& method, const Problem& problem, const light::Operator& l
     course.iteration = 0;
   }
   for (;; ++course.iteration) {
-    const std::string reason = looked ? "" : look(problem, limits, state, course, watch);
+    const std::string reason = looked ? "" : look(problem, light, limits, state, course, watch);
     if (!reason.empty()) return {course.iteration, reason};
     if (pause && pause()) return {course.iteration, "interrupted"};
     method.step(problem, light, state);

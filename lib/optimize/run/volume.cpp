@@ -32,9 +32,9 @@ struct Work {
   }
 };
 
-Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, light::Shape image, int halo) {
-  // Slices that share dose with their neighbours are not alike because they look alike.
-  if (halo > 0) return make_schedule(digests, -1);
+Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, light::Shape image, bool alone) {
+  // Slices that share light or dose with their neighbours are not alike because they look alike.
+  if (!alone) return make_schedule(digests, -1);
   const std::size_t bytes =
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * sizeof(float);
   return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
@@ -47,13 +47,14 @@ class Run {
       : task_(task),
         light_(light),
         reader_(task.source, light.object()),
-        halo_(task.blur_px > 0 ? light::halo_slices(task.blur_px) : 0) {
+        whole_(light.couples_slices()),
+        halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
     for (const Digest& slice : digests) {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
-    schedule_ = scheduled(task, digests, light.image(), halo_);
+    schedule_ = scheduled(task, digests, light.image(), halo_ == 0 && !whole_);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (const int job : schedule_.job_of_slice) ++times_[static_cast<std::size_t>(job)];
   }
@@ -83,6 +84,7 @@ class Run {
   }
 
   [[nodiscard]] Pass next_pass() const {
+    if (whole_) return {0, jobs(), 0, jobs()};
     const int first = finished_.jobs();
     const int last = std::min(jobs(), first + slices_per_pass - 2 * halo_);
     return {first, last, std::max(0, first - halo_), std::min(jobs(), last + halo_)};
@@ -98,7 +100,7 @@ class Run {
     const light::Operator& sharp =
         *light;  // whose rows are the iterate's: fewer than the image's where half a turn is enough
     std::unique_ptr<light::Operator> blurred;
-    if (halo_ > 0)
+    if (task_.blur_px > 0)
       light = (blurred = std::make_unique<light::BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
     if (!work.method) {
       work.method = task_.make();
@@ -142,12 +144,15 @@ class Run {
     ledger_.note(iteration, figures);
   }
 
-  /// Brings the slices to the common threshold, but never beyond the largest light.
+  /// Brings the slices to the common threshold, but never beyond the largest light; all by one factor where they share
+  /// light.
   void bring_to_threshold(const Problem& problem, Iterate& state, const light::Operator& light) const {
     if (halo_ > 0) return;  // slices that share dose are to scale already
-    PerSlice factor = to_common_threshold(metrics(state.dose, problem), problem);
+    PerSlice factor =
+        whole_ ? to_shared_threshold(state.dose, problem) : to_common_threshold(metrics(state.dose, problem), problem);
     if (task_.max_intensity > 0) {
-      const PerSlice brightest = largest(state.g);
+      PerSlice brightest = largest(state.g);
+      if (whole_) brightest = together(brightest);
       const auto most = static_cast<float>(task_.max_intensity * light.row_angle_rad());
       for (std::size_t s = 0; s < factor.size(); ++s) {
         for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -173,6 +178,16 @@ class Run {
     finished_.take(std::move(images));
   }
 
+  /// The largest of all, for each.
+  static PerSlice together(PerSlice values) {
+    float most = 0;
+    for (const auto& lane : values) {
+      for (const float v : lane) most = std::max(most, v);
+    }
+    for (auto& lane : values) lane.fill(most);
+    return values;
+  }
+
   void keep(Archive& to, Work& work) {
     begin_open(to);
     ledger_.exchange(to);
@@ -196,6 +211,7 @@ class Run {
   const VolumeTask& task_;
   const light::Operator& light_;
   SliceReader reader_;
+  bool whole_;  // rows light other slices than their own: all of them are one pass
   int halo_;
   RunMark mark_;
   Schedule schedule_;
@@ -207,7 +223,7 @@ class Run {
 }  // namespace
 
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
-  if (task.blur_px > 0 && !task.make()->keeps_scale()) {
+  if (task.blur_px > 0 && !light.couples_slices() && !task.make()->keeps_scale()) {
     const auto able = method_names([](const MethodEntry& entry) { return entry.make({})->keeps_scale(); });
     throw Error{Fault::usage,
                 "this method scales each slice separately and cannot compensate a blur between slices; use " +

@@ -81,7 +81,7 @@ Image image_of(const std::vector<float>& values) {
 }
 
 Image dose_around(const model::Printer& bench, const model::StackInfo& info, const std::vector<float>& insert) {
-  const Simulation simulation(bench, {}, info, model::centred_grid(size, size, 1, voxel));
+  const Simulation simulation(bench, {}, info, model::centred_grid(size, size, 1, voxel), Climb::flat);
   const std::vector<Image> light(1, Image(info.width, info.height, 1.0F));
   const std::vector<Image> inserts(1, image_of(insert));
   std::vector<Image> dose(1);
@@ -159,7 +159,7 @@ TEST_CASE("no light comes into a closed ring, all of it past an insert of nothin
     CHECK(dose(35, 42) == 0);
     CHECK(dose(60, 70) > 1);
     const Image past = dose_around(printer(0), info, std::vector<float>(closed.size(), 0.49F));
-    const Simulation simulation(printer(0), {}, info, model::centred_grid(size, size, 1, voxel));
+    const Simulation simulation(printer(0), {}, info, model::centred_grid(size, size, 1, voxel), Climb::flat);
     const std::vector<Image> light(1, Image(info.width, info.height, 1.0F));
     std::vector<Image> plain(1);
     simulation.dose(light, plain);
@@ -174,7 +174,7 @@ TEST_CASE("no light comes into a closed ring, all of it past an insert of nothin
 TEST_CASE("every slice has the shadow of its own insert, an insert of other voxels is refused") {
   const model::StackInfo info = stack(model::Space::projector, 400, 0.065);
   const model::Grid grid = model::centred_grid(size, size, 1, voxel);
-  const Simulation simulation(printer(0), {}, info, grid);
+  const Simulation simulation(printer(0), {}, info, grid, Climb::flat);
   std::vector<Image> inserts;
   for (int s = 0; s < 20; ++s) {  // more than are followed together, some alike
     inserts.push_back(image_of(::oracle::draw(size, [s](double x, double y) {
@@ -187,7 +187,9 @@ TEST_CASE("every slice has the shadow of its own insert, an insert of other voxe
   for (const std::size_t s : {0U, 1U, 7U, 15U, 16U, 19U}) {
     std::vector<Image> alone(1);
     simulation.dose({&light[s], 1}, alone, {&inserts[s], 1});
-    CHECK(alone[0].values == together[s].values);
+    for (std::size_t p = 0; p < alone[0].size(); ++p) {  // sums of the same terms in another order
+      CHECK(alone[0].values[p] == doctest::Approx(together[s].values[p]).epsilon(1e-4));
+    }
   }
   inserts[3] = Image(size, size - 1);
   CHECK(fault_of([&] { simulation.dose(light, together, inserts); }) == Fault::data);

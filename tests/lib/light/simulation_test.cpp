@@ -71,10 +71,12 @@ TEST_CASE("a projector's stack is traced, with the printer's own columns") {
   const std::vector<Image> in(1, Image(200, 180, 1.0F));
   std::vector<Image> out(1);
   Simulation(printer, {}, info, grid).dose(in, out);
-  // On the axis: 2 pi T / J.
+  // On the axis: 2 pi T / J, and the rows' convergence.
   const optics::ChiefRay ray = optics::chief_ray(optics::projector_view(printer), 0);
   const int middle = grid.nx / 2;
-  CHECK(out[0](middle, middle) == doctest::Approx(turn_rad * ray.transmittance / ray.jacobian).epsilon(1e-3));
+  CHECK(out[0](middle, middle) ==
+        doctest::Approx(turn_rad * ray.transmittance / ray.jacobian / model::vertical_magnification(printer))
+            .epsilon(1e-3));
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::projector, 199, 0.15), grid), Error);
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::projector, 200, 0.16), grid), Error);
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::camera, 200, 0.15), grid), Error);

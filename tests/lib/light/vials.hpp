@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "light/vial_operator.hpp"
+#include "light/vial.hpp"
 
 namespace parts {
 

@@ -48,7 +48,7 @@ View random_view(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("chief rays have the values of the table in physics section 2") {
+TEST_CASE("chief rays have the check values") {
   struct Row {
     double x_p, x_v, delta_deg, transmittance, jacobian;
   };
@@ -102,7 +102,7 @@ TEST_CASE("chief rays agree with a vector ray tracer for random lenses, baths an
 
 TEST_CASE("the tracer and the closed form agree on which rays miss") {
   const View view = ray21();
-  const double edge = 213.794;  // the tangent column of physics section 2, slip 1
+  const double edge = 213.794;  // the tangent column [physics §2]
   CHECK(chief_ray(view, edge - 0.01).hits);
   CHECK(vam::oracle::trace(bench_of(view), edge - 0.01).has_value());
   CHECK_FALSE(chief_ray(view, edge + 0.01).hits);
@@ -122,7 +122,7 @@ TEST_CASE("column_of inverts chief_ray") {
 }
 
 TEST_CASE("the tangent column gives the radius of the vial") {
-  CHECK(std::abs(impact_mm(ray21(), 213.794) - 212.37) < 5e-4);  // digits of physics section 2, slip 1
+  CHECK(std::abs(impact_mm(ray21(), 213.794) - 212.37) < 5e-4);  // digits [physics §2]
 }
 
 TEST_CASE("matched glass, resin and bath leave a telecentric beam alone") {

@@ -8,7 +8,7 @@
 
 #include "light/parallel.hpp"
 #include "light/simulation.hpp"
-#include "light/vial_operator.hpp"
+#include "light/vial.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
 #include "optimize/methods/automatic.hpp"

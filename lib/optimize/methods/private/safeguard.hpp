@@ -12,6 +12,7 @@ namespace vam::optimize {
 PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now);
 
 /// The sum over all slices for each of them where light couples slices, so that they decide together; else unchanged.
+[[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);
 [[nodiscard]] PerSlice pooled(PerSlice values, const light::Operator& light);
 
 /// The same number for every slice of so many slabs.

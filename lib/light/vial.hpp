@@ -1,18 +1,20 @@
-// Light of the real projector: chief rays that diverge, are refracted by bath, glass and resin, and converge in the
-// vial. What is optimised with it needs no resampling.
+// Light of the real projector: chief rays that diverge, climb, are refracted by bath, glass and resin, and converge in
+// the vial. What is optimised with it needs no resampling.
 #pragma once
 
+#include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
+#include "light/tile_light.hpp"
 #include "light/vial_rays.hpp"
-#include "light/vial_shadows.hpp"
 #include "tomo/filter.hpp"
 
 namespace vam::light {
 
 /// A sinogram has the columns of the projector that light the circle, and all stage angles: opposite rays run through
-/// the vial on different lines. Slices light their own voxels (the rays' tilt along the axis is left to the target's
-/// stretch, 1 / M_vp of physics section 2). A* is the chief-ray dose of [RAY21 eq 8]; A, its transpose, takes the same
-/// weights.
+/// the vial on different lines. A* is the chief-ray dose [RAY21 eq 8; physics §11]; A, its transpose, takes the same
+/// weights. A projector whose rays climb lights slices with the rows of others: slices and rows of a pass are then the
+/// whole grid's, and rows beyond setup.rows, slices beyond grid.nz are dark. A projector whose rays stay level lights
+/// each slice with its own row, and any slices may share a pass.
 class VialOperator final : public Operator {
  public:
   /// `inserts`: opaque objects in the light's way, a slab of coverage for every slab of the pass, or none; the spans
@@ -23,6 +25,7 @@ class VialOperator final : public Operator {
   [[nodiscard]] Shape sinogram() const override { return {rays_.columns(), rays_.setup().turn.rows}; }
   [[nodiscard]] Shape image() const override { return {rays_.setup().projector.columns, rays_.setup().turn.rows}; }
   [[nodiscard]] double row_angle_rad() const override;
+  [[nodiscard]] bool couples_slices() const override { return rays_.climbs(); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
   void filter(std::span<Slab> sinograms) const override;
@@ -31,18 +34,12 @@ class VialOperator final : public Operator {
   void collapse(const Slab& image, Slab& sinogram) const override;
 
  private:
-  struct Kernels;
-  struct Group;
-  [[nodiscard]] std::vector<Group> groups(std::size_t slabs) const;
   void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
-  void light_up(const Group& group, int row, std::span<const Slab> sinograms, float* light) const;
-  void take_back(const Group& group, int row, const float* light, std::span<Slab> sinograms) const;
-  void give_tile(const Group& group, int tile, std::span<const Slab> objects, int row, int rows, float* light) const;
-  void take_tile(const Group& group, int tile, const float* light, std::span<Slab> objects) const;
 
   VialRays rays_;
-  VialShadows shadows_;
-  const Kernels& kernels_;
+  std::vector<std::vector<TileLight::Entry>> tiles_;
+  InsertShadow shadow_;
+  RayNodes level_;  // of every chunk, where rays do not climb
   tomo::Filter ramp_, preconditioner_;
 };
 

@@ -1,0 +1,22 @@
+// All resin that the light of a part reaches: what must be asked and judged around it.
+#pragma once
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+
+namespace vam::light {
+
+/// Voxels around a grid.
+struct Margin {
+  int side = 0;   // on each of the four sides
+  int below = 0;  // slices
+  int above = 0;
+};
+
+/// Up to the writable radius on the sides; below and above as far as the light of the grid's own rows climbs. Nothing
+/// below and above where rays stay level. Throws Fault::data as projector_view does.
+[[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid);
+
+[[nodiscard]] model::Grid extended(const model::Grid& grid, const Margin& margin);
+
+}  // namespace vam::light

@@ -1,0 +1,166 @@
+#include "light/vial.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.hpp"
+#include "base/per_slice.hpp"
+#include "light/preconditioner.hpp"
+#include "light/tile_light.hpp"
+#include "optics/skew_ray.hpp"
+
+namespace vam::light {
+
+namespace {
+
+constexpr double faint = 0.1;  // of the best column's: grazing rays are not amplified beyond
+
+/// The preconditioner of parallel light that has as many columns and rows.
+tomo::FilterSpec spec_of(const VialRays& rays) {
+  tomo::ParallelGeometry rows;
+  rows.columns = rays.columns();
+  rows.angle_step_rad = std::abs(rays.setup().turn.step_rad);
+  return preconditioner_spec(rows);
+}
+
+/// Slabs in groups of as many as may share rays: 4, 2 or 1.
+std::vector<Chunk> chunks(std::size_t slabs, int widest) {
+  std::vector<Chunk> all;
+  const std::size_t most = static_cast<std::size_t>(widest / lanes);
+  for (std::size_t first = 0; first < slabs; first += all.back().slabs) {
+    std::size_t count = most;
+    while (count > slabs - first) count /= 2;
+    all.push_back({first, count});
+  }
+  return all;
+}
+
+/// Stage angles that one piece of work covers.
+std::vector<std::pair<int, int>> angle_blocks(int angles) {
+  std::vector<std::pair<int, int>> blocks;
+  for (int first = 0; first < angles; first += tap_angles)
+    blocks.emplace_back(first, std::min(tap_angles, angles - first));
+  return blocks;
+}
+
+InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
+  if (inserts.empty()) return {};
+  const VialSetup& setup = rays.setup();
+  std::vector<double> angles;
+  for (int a = 0; a < setup.turn.rows; ++a) {
+    angles.push_back(setup.direction * (setup.turn.start_rad + a * setup.turn.step_rad) + setup.angle_offset_rad);
+  }
+  const double slice_mm = setup.z_scale * setup.grid.voxel_mm;
+  const auto ray = [&](int column, int row) -> PixelRay {
+    const double x_p = setup.projector.x_mm(rays.first_column() + column);
+    const double z_p = rays.climbs() ? rays.row_mm(row) : 0;
+    const optics::SkewRay way = optics::skew_ray(setup.view, x_p, z_p);
+    if (!rays.climbs()) return {way.hits, way.offset_mm, way.delta_rad, static_cast<double>(row), 0};
+    return {way.hits, way.offset_mm, way.delta_rad,
+            way.height_mm / slice_mm - setup.grid.origin_mm[2] / setup.grid.voxel_mm, way.climb / slice_mm};
+  };
+  const int row_slabs = rays.climbs() ? (setup.rows + lanes - 1) / lanes : static_cast<int>(inserts.size());
+  return {setup.grid, inserts, angles, rays.columns(), row_slabs, ray};
+}
+
+}  // namespace
+
+VialOperator::VialOperator(const VialSetup& setup, std::span<const Slab> inserts)
+    : rays_(setup),
+      tiles_(TileLight::tiles(rays_)),
+      shadow_(cast(rays_, inserts)),
+      ramp_(rays_.columns(), {}),
+      preconditioner_(rays_.columns(), spec_of(rays_)) {
+  if (!rays_.climbs()) rays_.at_slices(0, 1, level_);
+}
+
+double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.step_rad); }
+
+/// Angles are shared among the threads: each writes its own rows.
+void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
+  for (Slab& slab : sinograms) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
+  const auto blocks = angle_blocks(sinogram().height);
+  RayNodes buffer;
+  for (const Chunk& chunk : chunks(objects.size(), rays_.chunk())) {
+    if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
+    const RayNodes& nodes = rays_.climbs() ? buffer : level_;
+    parallel_for(static_cast<int>(blocks.size()), [&](int b) {
+      TileLight light(rays_, shadow_);
+      const auto [angle, count] = blocks[static_cast<std::size_t>(b)];
+      for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
+        if (tiles_[tile].empty()) continue;
+        light.enter(static_cast<int>(tile), tiles_[tile], chunk);
+        light.load_voxels(objects);
+        light.give(nodes, angle, count, sinograms);
+      }
+    });
+  }
+}
+
+/// Tiles are shared among the threads.
+void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
+  const auto blocks = angle_blocks(sinogram().height);
+  RayNodes buffer;
+  for (const Chunk& chunk : chunks(objects.size(), rays_.chunk())) {
+    if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
+    const RayNodes& nodes = rays_.climbs() ? buffer : level_;
+    parallel_for(static_cast<int>(tiles_.size()), [&](int tile) {
+      TileLight light(rays_, shadow_);
+      const auto& entries = tiles_[static_cast<std::size_t>(tile)];
+      light.enter(tile, entries, chunk);
+      light.clear_voxels();
+      if (!entries.empty()) {
+        for (const auto& [angle, count] : blocks) light.take(nodes, angle, count, sinograms);
+      }
+      light.store_voxels(objects);
+    });
+  }
+}
+
+/// A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels and w = T e^{-mu depth}; filtered
+/// back-projection over a full turn is f = (1/2) integral of ramp P f over theta [KS88 eq 36], and a ramp across
+/// columns is voxel / (J pitch) times one across voxels, which cancels the J of J / T [physics §3]: (A A*)^-1 is
+/// about (1/2) step (voxel / pitch)^2 w^-1 ramp w^-1.
+void VialOperator::apply(const tomo::Filter& filter, std::span<Slab> sinograms) const {
+  double most = 0;
+  for (int c = 0; c < rays_.columns(); ++c) most = std::max(most, rays_.transmitted(c));
+  std::vector<float> amplified;
+  for (int c = 0; c < rays_.columns(); ++c) {
+    amplified.push_back(static_cast<float>(1 / std::max(rays_.transmitted(c), faint * most)));
+  }
+  const double pitches = rays_.setup().grid.voxel_mm / rays_.setup().projector.pixel_mm;
+  const auto amplify = [&](double gain) {
+    for_values(sinograms, [&](std::size_t s, std::size_t first, std::size_t last) {
+      float* row = sinograms[s].values.data() + first;
+      for (std::size_t i = 0; i < last - first; ++i) row[i] *= amplified[i / lanes] * static_cast<float>(gain);
+    });
+  };
+  amplify(1);
+  for (Slab& slab : sinograms) filter.apply(slab);
+  amplify(0.5 * row_angle_rad() * pitches * pitches);
+}
+
+void VialOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
+
+void VialOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
+
+void VialOperator::expand(const Slab& sinogram, Slab& image) const {
+  std::fill(image.values.begin(), image.values.end(), 0.0F);
+  const auto fluence = static_cast<float>(1.0 / row_angle_rad());
+  const auto count = static_cast<std::ptrdiff_t>(rays_.columns()) * lanes;
+  parallel_for(image.height, [&](int a) {
+    const float* from = sinogram.at(0, a);
+    std::transform(from, from + count, image.at(rays_.first_column(), a), [&](float v) { return v * fluence; });
+  });
+}
+
+void VialOperator::collapse(const Slab& image, Slab& sinogram) const {
+  const auto dose = static_cast<float>(row_angle_rad());
+  const auto count = static_cast<std::ptrdiff_t>(rays_.columns()) * lanes;
+  parallel_for(image.height, [&](int a) {
+    const float* from = image.at(rays_.first_column(), a);
+    std::transform(from, from + count, sinogram.at(0, a), [&](float v) { return v * dose; });
+  });
+}
+
+}  // namespace vam::light

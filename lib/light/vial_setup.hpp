@@ -1,0 +1,34 @@
+// The projector's light in the turning vial: who lights what.
+#pragma once
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "optics/resample.hpp"
+
+namespace vam::light {
+
+/// Row a of a sinogram is at stage angle turn.start + a * turn.step; the part stands at direction * stage angle +
+/// offset. Slice k of the grid is at height z_scale * grid.z_mm(k): the grid is that of the target, stretched so that
+/// on the axis slice and row coincide (1 / M_vp, physics §2).
+struct VialSetup {
+  optics::View view;
+  optics::Detector projector;
+  optics::Turn turn;
+  int direction = 1;
+  double angle_offset_rad = 0;
+  double absorption_per_mm = 0;
+  model::Grid grid;
+  double radius_mm = 0;     // voxels farther from the axis get no light; 0: the resin's radius
+  double z_scale = 1;       // M_vp
+  int rows = 0;             // rows of light; 0: one a slice, as many as slabs hold
+  double first_row_mm = 0;  // z_p of row 0, from the lens's axis up; rows follow in voxel_mm
+  double lowest_mm = -1e9;  // z_p of the projector's rows: what lies beyond stays dark where rays climb
+  double highest_mm = 1e9;
+};
+
+/// The printer's projector and vial, `angles` rows from stage angle 0, a row of light for every slice. The radius is at
+/// most radius_mm and what the projector's columns reach on either side.
+[[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles,
+                                   double radius_mm);
+
+}  // namespace vam::light

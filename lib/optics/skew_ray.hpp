@@ -1,0 +1,43 @@
+// Chief rays that climb: from a point of the image plane to a straight line in the resin, exactly, in three dimensions.
+// Source: Bouguer's invariant for skew rays. Through interfaces whose normals are horizontal n sin(elevation) = s is
+// conserved, so that a ray's plan view is that of a level ray with every index n replaced by sqrt(n^2 - s^2)
+// [physics §2, §11].
+#pragma once
+
+#include "optics/vial.hpp"
+
+namespace vam::optics {
+
+/// A chief ray in the resin. In plan it runs along the line of offset offset_mm at angle delta_rad (optics::ChiefRay),
+/// u along the light; its height above the lens's axis is height_mm + climb * u, both in real millimetres.
+struct SkewRay {
+  bool hits = false;         // false: passes beside the resin or is totally reflected; the rest is 0 then
+  double offset_mm = 0;      // signed, from the rotation axis
+  double delta_rad = 0;      // angle of the plan view
+  double height_mm = 0;      // at u = 0
+  double climb = 0;          // dz / du, the tangent of the elevation in the resin
+  double transmittance = 0;  // T, unpolarised, with the true angles of incidence [0, 1]
+
+  [[nodiscard]] double z_mm(double u_mm) const { return height_mm + climb * u_mm; }
+  /// Path length per length of plan view.
+  [[nodiscard]] double steepness() const;
+};
+
+/// The ray of the image-plane point (x_p_mm, z_p_mm) in the plane of the rotation axis, z_p measured from the lens's
+/// axis. A view that is telecentric along a direction has rays that do not diverge in it.
+[[nodiscard]] SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm);
+
+/// The ray through a point of the lab, found by Newton's method, and how dense rays are there.
+struct RayAt {
+  SkewRay ray;
+  double x_p_mm = 0;
+  double z_p_mm = 0;
+  double spacing = 0;  // d x_p / d r, r across the ray in plan: how fast the column changes
+  double density = 0;  // d x_p d z_p / (area across the ray): T * density is fluence per image-plane intensity
+};
+
+/// The ray through lab point (x, y, z) near the guess (x_p, z_p); `hits` is false where there is none.
+[[nodiscard]] RayAt ray_through(const View& view, double x_mm, double y_mm, double z_mm, double x_p_guess_mm,
+                                double z_p_guess_mm);
+
+}  // namespace vam::optics

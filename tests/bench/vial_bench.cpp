@@ -1,0 +1,61 @@
+// The vial's pair: voxels x angles x slices per second, N = 256, 360 angles, rays that stay level and rays that climb.
+#include <benchmark/benchmark.h>
+
+#include <numbers>
+#include <vector>
+
+#include "base/parallel.hpp"
+#include "base/per_slice.hpp"
+#include "light/vial.hpp"
+
+namespace {
+
+using namespace vam;
+
+light::VialSetup setup_of(bool climbs, int slices) {
+  const model::Printer printer;
+  const double voxel_mm = 0.065;
+  light::VialSetup setup =
+      light::vial_setup(printer, model::centred_grid(256, 256, slices, voxel_mm, -0.5 * slices * voxel_mm), 360,
+                        model::writable_radius_mm(printer));
+  if (!climbs) setup.view.rows_lens_mm.reset();
+  return setup;
+}
+
+void count(benchmark::State& state, int slices) {
+  state.counters["updates"] =
+      benchmark::Counter(256.0 * 256 * std::numbers::pi / 4 * 360 * slices * static_cast<double>(state.iterations()),
+                         benchmark::Counter::kIsRate);
+}
+
+void adjoint(benchmark::State& state) {
+  const int slices = static_cast<int>(state.range(1));
+  const light::VialOperator light(setup_of(state.range(0) != 0, slices));
+  const auto slabs_used = static_cast<std::size_t>(slices / lanes);
+  std::vector<Slab> rows = slabs(slabs_used, light.sinogram().width, light.sinogram().height);
+  std::vector<Slab> doses = slabs(slabs_used, 256, 256);
+  for (auto _ : state) light.adjoint(rows, doses);
+  count(state, slices);
+}
+
+void forward(benchmark::State& state) {
+  const int slices = static_cast<int>(state.range(1));
+  const light::VialOperator light(setup_of(state.range(0) != 0, slices));
+  const auto slabs_used = static_cast<std::size_t>(slices / lanes);
+  std::vector<Slab> rows = slabs(slabs_used, light.sinogram().width, light.sinogram().height);
+  std::vector<Slab> doses = slabs(slabs_used, 256, 256);
+  for (auto _ : state) light.forward(doses, rows);
+  count(state, slices);
+}
+
+void table(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(light::VialRays(setup_of(state.range(0) != 0, 160)));
+}
+
+// {0: level, 1: climbing} x slices.
+BENCHMARK(adjoint)->ArgsProduct({{0, 1}, {64, 160}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(forward)->ArgsProduct({{0, 1}, {64, 160}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(table)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+BENCHMARK_MAIN();
