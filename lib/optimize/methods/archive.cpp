@@ -30,8 +30,7 @@ std::size_t Archive::count(std::size_t size) {
   constexpr std::uint64_t most = std::uint64_t{1} << 31U;
   std::uint64_t n = size;
   (*this)(n);
-  if (n > most)
-    throw Error{Fault::data, name_ + ": damaged (a list of " + std::to_string(n) + " values); start again"};
+  if (n > most) throw Error{Fault::data, name_ + ": damaged (a list of " + std::to_string(n) + " values); start again"};
   return static_cast<std::size_t>(n);
 }
 

@@ -323,7 +323,8 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
     return run(slices, again);
   };
   CHECK(resume(state, "job").outcome.reason != "interrupted");
-  CHECK_THROWS_WITH_AS(resume(state, "other"), doctest::Contains("x.state: is a checkpoint of another job"), vam::Error);
+  CHECK_THROWS_WITH_AS(resume(state, "other"), doctest::Contains("x.state: is a checkpoint of another job"),
+                       vam::Error);
   std::string bad = state;
   const float nan = std::nanf("");
   std::memcpy(bad.data() + bad.size() / 2 / 4 * 4, &nan, sizeof nan);  // in the middle of the doses

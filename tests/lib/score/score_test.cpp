@@ -71,5 +71,6 @@ TEST_CASE("nothing to judge and doses that are no numbers are errors") {
   Score broken(options(), 3, 3);
   auto bad = dose;
   bad[4] = std::nanf("");
-  CHECK_THROWS_WITH_AS(broken.add(bad.data(), target.data(), 1), doctest::Contains("not finite everywhere"), vam::Error);
+  CHECK_THROWS_WITH_AS(broken.add(bad.data(), target.data(), 1), doctest::Contains("not finite everywhere"),
+                       vam::Error);
 }
