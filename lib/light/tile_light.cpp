@@ -33,6 +33,9 @@ struct Kernels {
   }
 };
 
+/// Elements of a times b: sizes are multiplied as sizes.
+std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
+
 constexpr int overrun = 32;  // floats that the row kernels may read and write beyond the last row: two vectors
 
 int across(const model::Grid& grid, int edge) { return (grid.nx + edge - 1) / edge; }
@@ -52,7 +55,7 @@ std::vector<std::vector<TileLight::Entry>> TileLight::tiles(const VialRays& rays
     for (int j = row; j < std::min(row + edge, grid.ny); ++j) {
       for (int i = 0; i < grid.nx; ++i) {
         const int count = rays.find(i, j, found);
-        auto& tile = all[static_cast<std::size_t>(row / edge * across(grid, edge) + i / edge)];
+        auto& tile = all[product(row / edge, across(grid, edge)) + static_cast<std::size_t>(i / edge)];
         for (int ray = 0; ray < count; ++ray) tile.push_back({found[ray], (j - row) * edge + i % edge});
       }
     }
@@ -80,7 +83,7 @@ void TileLight::enter(int tile, std::span<const Entry> entries, const Chunk& chu
     taps_[e].weight = weights_.data() + 3 * e * block;
     for (const std::size_t p : {0U, 1U}) split_[e].weight[p] = taps_[e].weight + (p + 1) * block;
   }
-  voxels_.resize(static_cast<std::size_t>(edge_ * edge_ * chunk.width()));
+  voxels_.resize(product(edge_ * edge_, chunk.width()));
 }
 
 /// Slices from grid.nz on are no part of a volume whose rays climb.
@@ -91,7 +94,7 @@ void TileLight::each_voxel(const Row& visit) const {
     for (int i = i0_; i < i1_; ++i) {
       for (std::size_t s = 0; s < chunk_.slabs; ++s) {
         const int used = std::clamp(slices - static_cast<int>(s) * lanes, 0, lanes);
-        const auto at = static_cast<std::size_t>(((j - j0_) * edge_ + i - i0_) * chunk_.width()) + s * lanes;
+        const auto at = product((j - j0_) * edge_ + i - i0_, chunk_.width()) + s * lanes;
         visit(i, j, chunk_.first + s, at, used);
       }
     }
@@ -146,6 +149,10 @@ namespace {
 /// Rows that a plane of a chunk reads: [first, last), from a slab's first row on.
 struct Window {
   int first, last;
+  /// What a line of them needs, with what the row kernels touch beyond.
+  [[nodiscard]] std::size_t floats() const {
+    return static_cast<std::size_t>(last) - static_cast<std::size_t>(first) + lanes + overrun;
+  }
 };
 
 template <class Planes>
@@ -164,9 +171,9 @@ Window window_of(const Planes& planes, int width) {
 void TileLight::fetch(const Planes& planes, int angle, std::span<const Slab> sinograms) {
   const int width = chunk_.width();
   const int padding = rays_.padding();
-  light_.resize(static_cast<std::size_t>(planes.columns * planes_ * width));
+  light_.resize(product(planes.columns * planes_, width));
   const Window rows = window_of(planes, width);
-  line_.assign(static_cast<std::size_t>(rows.last - rows.first + lanes + overrun), 0.0F);
+  line_.assign(rows.floats(), 0.0F);
   const Rows lit = lit_rows(sinograms.size());
   for (int c = 0; c < planes.columns; ++c) {
     float* to = light_.data() + static_cast<std::ptrdiff_t>(c) * planes_ * width;
@@ -189,7 +196,7 @@ void TileLight::fetch(const Planes& planes, int angle, std::span<const Slab> sin
     }
     for (const int p : {0, 1}) {
       Kernels::best().take_rows(line_.data(), planes.row[p] - static_cast<float>(rows.first), planes.zoom[p], width,
-                                to + p * width);
+                                to + product(p, width));
     }
   }
 }
@@ -210,10 +217,10 @@ void TileLight::put_back(const Planes& planes, int angle, std::span<Slab> sinogr
       }
       continue;
     }
-    line_.assign(static_cast<std::size_t>(rows.last - rows.first + lanes + overrun), 0.0F);
+    line_.assign(rows.floats(), 0.0F);
     for (const int p : {0, 1}) {
-      Kernels::best().give_rows(from + p * width, planes.row[p] - static_cast<float>(rows.first), planes.zoom[p], width,
-                                line_.data());
+      Kernels::best().give_rows(from + product(p, width), planes.row[p] - static_cast<float>(rows.first),
+                                planes.zoom[p], width, line_.data());
     }
     for (int slab = std::max(rows.first, 0); slab < std::min(rows.last, lit.end); slab += lanes) {
       float* to = sinograms[static_cast<std::size_t>(slab / lanes)].at(column, angle) - slab;
@@ -246,7 +253,7 @@ void TileLight::give(const RayNodes& nodes, int angle, int count, std::span<Slab
       continue;
     }
     const Planes& planes = at_[static_cast<std::size_t>(a)];
-    light_.assign(static_cast<std::size_t>(planes.columns * planes_ * chunk_.width()), 0.0F);
+    light_.assign(product(planes.columns * planes_, chunk_.width()), 0.0F);
     Kernels::best().scatter(voxels_.data(), chunk_.width(), planes_, split_.data(), voxel_of_.data(),
                             static_cast<int>(entries_.size()), a, light_.data());
     put_back(planes, angle + a, sinograms);
@@ -264,7 +271,8 @@ void TileLight::each_shadowed(int angle, int index, std::size_t slabs, const Vis
   for (std::size_t e = 0; e < entries_.size(); ++e) {
     const int voxel = entries_[e].voxel;
     const double x = grid.x_mm(i0_ + voxel % edge_);
-    const double y = grid.y_mm(j0_ + voxel / edge_);
+    const int j = j0_ + voxel / edge_;
+    const double y = grid.y_mm(j);
     const Taps& taps = taps_[e];
     for (int k = 0; k < taps.taps; ++k) {
       const int column = taps.cell[index] + k - rays_.padding();
@@ -281,7 +289,7 @@ void TileLight::each_shadowed(int angle, int index, std::size_t slabs, const Vis
           if (row < lit.first || row >= lit.end || weight == 0) continue;
           const auto slab = static_cast<std::size_t>(row / lanes);
           if (u < shadow_.ends_mm(slab, column, angle + index)[row % lanes]) {
-            visit(voxels_[static_cast<std::size_t>(voxel * width + l)], slab, column, row % lanes, weight);
+            visit(voxels_[product(voxel, width) + static_cast<std::size_t>(l)], slab, column, row % lanes, weight);
           }
         }
       }

@@ -51,12 +51,14 @@ optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes
 }
 
 optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const Options& options) {
-  return {scene.grid.nz,
-          padded(in.target, scene, 0),
-          padded(in.insert, scene, 0),
-          padded(in.weight, scene, 1),
-          padded(in.tolerance, scene, static_cast<float>(options.demands.band)),
-          options.tolerance_mm / in.grid().voxel_mm};
+  optimize::VolumeSource source;
+  source.slices = scene.grid.nz;
+  source.target = padded(in.target, scene, 0);
+  source.insert = padded(in.insert, scene, 0);
+  source.weight = padded(in.weight, scene, 1);
+  source.tolerance = padded(in.tolerance, scene, static_cast<float>(options.demands.band));
+  source.band_px = options.tolerance_mm / in.grid().voxel_mm;
+  return source;
 }
 
 }  // namespace
