@@ -52,10 +52,8 @@ class InsertShadow {
     return hinders_[static_cast<std::size_t>(column) * parts_.size() + static_cast<std::size_t>(angle)] != 0;
   }
 
-  /// u in mm at which the rays of 16 rows meet the insert, or `unhindered`.
-  [[nodiscard]] const float* ends_mm(std::size_t slab, int column, int angle) const {
-    return ends_[slab].at(column, angle);
-  }
+  /// u in mm at which rays meet the insert, or `unhindered`: a slab of columns x angles for 16 rows each.
+  [[nodiscard]] std::span<const Slab> ends() const { return ends_; }
 
  private:
   struct Direction {

@@ -9,6 +9,7 @@ using namespace vam::VAM_SIMD;
 namespace {
 
 using Ints = int __attribute__((vector_size(vector_floats * 4), may_alias, aligned(4)));
+using Node = float __attribute__((vector_size(32), may_alias, aligned(32)));
 
 inline float positive(float x) { return x > 0.0F ? x : 0.0F; }
 inline float size(float x) { return x > 0.0F ? x : -x; }
@@ -27,128 +28,167 @@ inline Vector lane_numbers() {
 
 inline Ints whole(Vector x) { return __builtin_convertvector(x, Ints); }
 inline Vector floats(Ints x) { return __builtin_convertvector(x, Vector); }
+inline Vector positive(Vector x) { return x > 0.0F ? x : Vector{}; }
+inline Vector size(Vector x) { return x > 0.0F ? x : -x; }
 
 /// Element index of (low, high) side by side; indices are taken modulo twice the vector's length.
 inline Vector pick(Vector low, Vector high, Ints index) { return __builtin_shuffle(low, high, index); }
 
-}  // namespace
+/// The node between four of them.
+inline void find_node(const RayNode* nodes, const RaySource& source, const RayFrame& frame, Node& to) {
+  int direction = source.direction + frame.shift;
+  direction = direction < frame.directions ? direction : direction - frame.directions;
+  const Node* low = reinterpret_cast<const Node*>(nodes + source.low_row + direction);
+  const Node* high = reinterpret_cast<const Node*>(nodes + source.high_row + direction);
+  __builtin_prefetch(low + frame.step);  // the next stage angle's
+  __builtin_prefetch(high + frame.step);
+  const Node a = low[0] + source.direction_part * (low[1] - low[0]);
+  const Node b = high[0] + source.direction_part * (high[1] - high[0]);
+  to = a + source.radius_part * (b - a);
+}
 
-void ray_taps(const TapNodes& nodes, const TapSource& source, const TapFrame& frame, Taps& __restrict taps) {
-  float* __restrict weights = taps.weight;
-  const float both = source.radius_part * source.direction_part;
-  const float w0 = 1.0F - source.radius_part - source.direction_part + both;
-  const float w1 = source.direction_part - both;
-  const float w2 = source.radius_part - both;
-  const auto mean = [&](const float* values, int i) {
-    return w0 * values[source.corner[0] + i] + w1 * values[source.corner[1] + i] + w2 * values[source.corner[2] + i] +
-           both * values[source.corner[3] + i];
-  };
-  alignas(64) float up_to[tap_angles];
-  alignas(64) float inner[tap_angles];
-  alignas(64) float outer[tap_angles];
-  alignas(64) float gain[tap_angles];
-  alignas(64) float left[tap_angles];  // of the shadow's middle: the edge before the first column
-  if (nodes.z_p_mm != nullptr) {
-    for (int i = 0; i < tap_angles; ++i) {
-      taps.row[i] = frame.rows_per_mm * mean(nodes.z_p_mm, i) + frame.row_origin;
-      taps.zoom[i] = frame.slice_rows * mean(nodes.zoom, i);
-    }
-  } else {
-    for (int i = 0; i < tap_angles; ++i) {
-      taps.row[i] = 0.0F;
-      taps.zoom[i] = 1.0F;
-    }
-  }
-  for (int i = 0; i < tap_angles; ++i) {
-    const float strength = mean(nodes.strength, i);
-    const float cosine = nodes.cosine[source.corner[0] + i];
-    const float sine = nodes.sine[source.corner[0] + i];
-    const float a = size(frame.cosine[i] * cosine - frame.sine[i] * sine);
-    const float b = size(frame.sine[i] * cosine + frame.cosine[i] * sine);
-    const float edge = frame.voxel_columns * nodes.spacing[source.corner[0] + i];
+/// Weights of the columns under the shadows of one block of voxels.
+struct Shadows {
+  alignas(64) float left[ray_block];   // of the shadow's middle: the edge before the first column
+  alignas(64) float inner[ray_block];  // half the width of the trapezoid's top, and of its foot
+  alignas(64) float outer[ray_block];
+  alignas(64) float gain[ray_block];
+};
+
+inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& taps, Shadows& shadows) {
+  for (int i = 0; i < ray_block; ++i) {
+    const float cosine = at[i][5];
+    const float sine = at[i][6];
+    const float a = size(frame.cosine * cosine - frame.sine * sine);
+    const float b = size(frame.sine * cosine + frame.cosine * sine);
+    const float edge = at[i][4];
     const float wide = edge * (a > b ? a : b);
     const float thin = edge * (a > b ? b : a);
     const float narrow = thin > 0.02F * wide ? thin : 0.02F * wide;  // no quotient of nothing
-    inner[i] = 0.5F * (wide - narrow);
-    outer[i] = 0.5F * (wide + narrow);
-    gain[i] = strength / (2.0F * wide * narrow);
-    float column = frame.columns_per_mm * mean(nodes.x_p_mm, i) + frame.column_origin;
+    shadows.inner[i] = 0.5F * (wide - narrow);
+    shadows.outer[i] = 0.5F * (wide + narrow);
+    shadows.gain[i] = at[i][3] / (2.0F * wide * narrow);
+    float column = at[i][0];
     column = column < 0.0F ? 0.0F : column;
     column = column > frame.last_column ? frame.last_column : column;
-    const float start = column - outer[i] + 0.5F;
-    const int first = static_cast<int>(positive(start));  // never negative: what lies before is dark
-    taps.cell[i] = first;
-    left[i] = static_cast<float>(first) - 0.5F - column;
-    up_to[i] = 0.0F;
+    const int first = static_cast<int>(positive(column - shadows.outer[i] + 0.5F));  // what lies before 0 is dark
+    taps.cell[e + i] = first;
+    shadows.left[i] = static_cast<float>(first) - 0.5F - column;
+    taps.zoom[e + i] = at[i][2];
+    taps.start[e + i] = at[i][1] - frame.half * at[i][2];
   }
-  float widest = 0.0F;
-  for (int i = 0; i < tap_angles; ++i) widest = outer[i] > widest ? outer[i] : widest;
-  const int needed = static_cast<int>(2.0F * widest) + 2;
-  taps.taps = needed < frame.taps ? needed : frame.taps;
+}
+
+inline void weigh(const Shadows& shadows, int e, const RayTaps& taps) {
+  alignas(64) float up_to[ray_block] = {};
   for (int k = 0; k < taps.taps; ++k) {
-    for (int i = 0; i < tap_angles; ++i) {
-      const float edge = left[i] + static_cast<float>(k + 1);
-      const float t = edge < outer[i] ? edge : outer[i];
-      const float sum = ramp(t + outer[i]) - ramp(t + inner[i]) - ramp(t - inner[i]) + ramp(t - outer[i]);
-      weights[k * tap_angles + i] = gain[i] * (sum - up_to[i]);
+    float* __restrict weights = taps.weight + static_cast<long>(k) * taps.pitch + e;
+    for (int i = 0; i < ray_block; ++i) {
+      const float edge = shadows.left[i] + static_cast<float>(k + 1);
+      const float inner = shadows.inner[i];
+      const float outer = shadows.outer[i];
+      const float t = edge < outer ? edge : outer;
+      const float sum = ramp(t + outer) - ramp(t + inner) - ramp(t - inner) + ramp(t - outer);
+      weights[i] = shadows.gain[i] * (sum - up_to[i]);
       up_to[i] = sum;
     }
   }
 }
 
-void range_of(const Taps* taps, int count, float outer, TapRange& __restrict range) {
-  alignas(64) float low[tap_angles];
-  alignas(64) float high[tap_angles];
-  for (int i = 0; i < tap_angles; ++i) {
-    range.first[i] = range.last[i] = taps[0].cell[i];
-    range.low_row[i] = range.high_row[i] = taps[0].row[i];
-    range.low_zoom[i] = range.high_zoom[i] = taps[0].zoom[i];
-    low[i] = high[i] = taps[0].row[i] + taps[0].zoom[i] * outer;
-  }
-  for (int e = 1; e < count; ++e) {
-    for (int i = 0; i < tap_angles; ++i) {
-      const int cell = taps[e].cell[i];
-      const float row = taps[e].row[i];
-      const float zoom = taps[e].zoom[i];
-      const float place = row + zoom * outer;
-      range.first[i] = cell < range.first[i] ? cell : range.first[i];
-      range.last[i] = cell > range.last[i] ? cell : range.last[i];
-      range.low_row[i] = place < low[i] ? row : range.low_row[i];
-      range.low_zoom[i] = place < low[i] ? zoom : range.low_zoom[i];
-      low[i] = place < low[i] ? place : low[i];
-      range.high_row[i] = place > high[i] ? row : range.high_row[i];
-      range.high_zoom[i] = place > high[i] ? zoom : range.high_zoom[i];
-      high[i] = place > high[i] ? place : high[i];
+/// What the rays of a tile have in common, ray by ray of a block.
+struct Bounds {
+  alignas(64) int first_cell[ray_block], last_cell[ray_block];
+  alignas(64) float first_row[ray_block], last_row[ray_block], outer[ray_block];
+
+  void begin(const RayTaps& taps) {
+    for (int i = 0; i < ray_block; ++i) {
+      first_cell[i] = last_cell[i] = taps.cell[i];
+      first_row[i] = last_row[i] = taps.start[i];
+      outer[i] = 0.0F;
     }
+  }
+  void add(const RayTaps& taps, const Shadows& shadows, float slices, int e) {
+    for (int i = 0; i < ray_block; ++i) {
+      const int cell = taps.cell[e + i];
+      const float start = taps.start[e + i];
+      const float end = start + slices * taps.zoom[e + i];
+      first_cell[i] = cell < first_cell[i] ? cell : first_cell[i];
+      last_cell[i] = cell > last_cell[i] ? cell : last_cell[i];
+      first_row[i] = start < first_row[i] ? start : first_row[i];
+      last_row[i] = end > last_row[i] ? end : last_row[i];
+      outer[i] = shadows.outer[i] > outer[i] ? shadows.outer[i] : outer[i];
+    }
+  }
+  void tell(int most_taps, RayTaps& taps) const {
+    taps.first_cell = first_cell[0];
+    taps.last_cell = last_cell[0];
+    taps.first_row = first_row[0];
+    taps.last_row = last_row[0];
+    float widest = outer[0];
+    for (int i = 1; i < ray_block; ++i) {
+      taps.first_cell = first_cell[i] < taps.first_cell ? first_cell[i] : taps.first_cell;
+      taps.last_cell = last_cell[i] > taps.last_cell ? last_cell[i] : taps.last_cell;
+      taps.first_row = first_row[i] < taps.first_row ? first_row[i] : taps.first_row;
+      taps.last_row = last_row[i] > taps.last_row ? last_row[i] : taps.last_row;
+      widest = outer[i] > widest ? outer[i] : widest;
+    }
+    const int needed = static_cast<int>(2.0F * widest) + 2;
+    taps.taps = needed < most_taps ? needed : most_taps;
+  }
+};
+
+}  // namespace
+
+void aim_rays(const RayNode* nodes, const RaySource* sources, int count, const RayFrame& frame, RayTaps& taps) {
+  alignas(64) Node at[ray_block];
+  Shadows shadows[most_blocks];
+  Bounds bounds;
+  for (int e = 0; e < count; e += ray_block) {
+    Shadows& block = shadows[e / ray_block];
+    for (int i = 0; i < ray_block; ++i) find_node(nodes, sources[e + i], frame, at[i]);
+    cast_shadows(at, frame, e, taps, block);
+    if (e == 0) bounds.begin(taps);
+    bounds.add(taps, block, 2.0F * frame.half, e);
+  }
+  bounds.tell(frame.taps, taps);
+  for (int e = 0; e < count; e += ray_block) weigh(shadows[e / ray_block], e, taps);
+}
+
+void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to) {
+  constexpr int slab = 16;
+  if (count == slab) {
+    for (int c = 0; c < columns; ++c, from += slab, to += pitch) {
+      __builtin_prefetch(from + next);
+      for (int v = 0; v < slab; v += vector_floats) store(to + v, load(from + v));
+    }
+    return;
+  }
+  for (int c = 0; c < columns; ++c, from += slab, to += pitch) {
+    for (int i = 0; i < count; ++i) to[i] = from[i];
   }
 }
 
-void split_taps(const Taps& taps, int columns, int planes, float outer, const TapRange& range,
-                PlaneTaps& __restrict split) {
-  alignas(64) float part[tap_angles];
-  for (int i = 0; i < tap_angles; ++i) {
-    const float low = range.low_row[i] + range.low_zoom[i] * outer;
-    const float length = range.high_row[i] + range.high_zoom[i] * outer - low;
-    const float here = taps.row[i] + taps.zoom[i] * outer - low;
-    part[i] = length > 0.0F ? here / length : 0.0F;
-    split.cell[i] = taps.cell[i] - range.first[i];
-  }
-  split.taps = columns;
-  float* __restrict first = split.weight[0];
-  float* __restrict second = split.weight[1];
-  const float* from = taps.weight;
-  for (int k = 0; k < columns; ++k) {
-    for (int i = 0; i < tap_angles; ++i) {
-      const float weight = from[k * tap_angles + i];
-      const float above = planes == 2 ? part[i] * weight : 0.0F;
-      first[k * tap_angles + i] = weight - above;
-      second[k * tap_angles + i] = above;
+void add_columns(const float* from, int columns, int count, int pitch, long next, float* to) {
+  constexpr int slab = 16;
+  if (count == slab) {
+    for (int c = 0; c < columns; ++c, from += pitch, to += slab) {
+      __builtin_prefetch(to + next, 1);
+      for (int v = 0; v < slab; v += vector_floats) store(to + v, load(to + v) + load(from + v));
     }
+    return;
+  }
+  for (int c = 0; c < columns; ++c, from += pitch, to += slab) {
+    for (int i = 0; i < count; ++i) to[i] += from[i];
   }
 }
 
-void take_rows(const float* line, float row, float zoom, int width, float* to) {
+namespace {
+
+/// to[l] += line at row + zoom * l, linear between rows, l < width.
+template <int width>
+inline void take_rows(const float* line, float row, float zoom, float* to) {
   const Vector number = lane_numbers();
+#pragma GCC unroll 4
   for (int first = 0; first < width; first += vector_floats) {
     const float start = row + zoom * static_cast<float>(first);
     const int base = static_cast<int>(start);
@@ -158,132 +198,133 @@ void take_rows(const float* line, float row, float zoom, int width, float* to) {
     const Vector low = load(line + base);
     const Vector high = load(line + base + vector_floats);
     const Vector a = pick(low, high, below);
-    store(to + first, a + part * (pick(low, high, below + 1) - a));
+    store(to + first, load(to + first) + a + part * (pick(low, high, below + 1) - a));
   }
 }
 
-void give_rows(const float* from, float row, float zoom, int width, float* line) {
+/// Its transpose, to rows [0, rows): of the slices less than a row away the first one, and the next one or two.
+/// voxel_gap zeros lie before and after `from`.
+inline void give_rows(const float* from, float row, float zoom, int rows, float* line) {
   const Vector number = lane_numbers();
   const float per_row = 1.0F / zoom;
-  const Vector nothing{};
-  const int hats = zoom > 1.0F ? 2 : 3;
-  const int first = static_cast<int>(row);
-  const int last = static_cast<int>(row + zoom * static_cast<float>(width - 1)) + 1;
-  for (int base = first; base <= last; base += vector_floats) {
-    const Vector here = number + static_cast<float>(base);
-    // The slices whose hat of one row on either side covers a row: after the last one that ends before it, 2 where
-    // slices are farther apart than rows, else 3.
-    const Vector before = (here - 1.0F - row) * per_row;
-    Ints slice = whole(before + 2.0F) - 1;  // floor + 1; before is never below -2
-    const int low_slice = slice[0];
-    const int start = low_slice < 0 ? 0 : low_slice > width - 1 ? width - 1 : low_slice;
-    const int most = width - 2 * vector_floats;
-    const int at = start < most ? start : most > 0 ? most : 0;
+  for (int base = 0; base < rows; base += vector_floats) {
+    const float first = static_cast<float>(base) - 1.0F - row;      // where the first slice's row begins
+    const int at = static_cast<int>(first * per_row + 64.0F) - 63;  // floor + 1
+    const Vector before = number + first;
+    const Ints slice = whole(before * per_row + 64.0F) - 63;
+    const Vector away = zoom * floats(slice) - before - 1.0F;  // of the first slice, -1 to zoom - 1
     const Vector low = load(from + at);
-    const Vector high = width >= 2 * vector_floats ? load(from + at + vector_floats) : nothing;
-    Vector sum{};
-    for (int k = 0; k < hats; ++k, ++slice) {
-      const Vector away = row + zoom * floats(slice) - here;
-      Vector hat = 1.0F - (away > 0.0F ? away : -away);
-      const Ints inside = (slice >= 0) & (slice < width);
-      hat = hat > 0.0F ? hat : nothing;
-      hat = inside ? hat : nothing;
-      sum += hat * pick(low, high, slice - at);
+    const Vector high = load(from + at + vector_floats);
+    const Ints index = slice - at;
+    Vector sum = (1.0F - size(away)) * pick(low, high, index);
+    if (zoom > 1.0F) {
+      sum += positive(1.0F - zoom - away) * pick(low, high, index + 1);
+    } else {
+      sum += (1.0F - size(away + zoom)) * pick(low, high, index + 1);
+      sum += positive(1.0F - 2.0F * zoom - away) * pick(low, high, index + 2);
     }
-    float* to = line + base;
-    store(to, load(to) + sum);
+    store(line + base, sum);
   }
 }
 
-namespace {
-
-template <int width, int planes>
-inline void gather(const float* light, const PlaneTaps& at, int angle, float* voxel) {
-  const int taps = at.taps;
-  constexpr int vectors = width / vector_floats;
-  constexpr int together = vectors < 8 ? vectors : 8;  // sums that fit into half the registers
-  const float* begin = light + static_cast<long>(at.cell[angle]) * planes * width;
-  for (int first = 0; first < width; first += together * vector_floats) {
-    Vector sum[together];
-#pragma GCC unroll 8
-    for (int v = 0; v < together; ++v) sum[v] = load(voxel + first + v * vector_floats);
-    const float* column = begin + first;
-    for (int k = 0; k < taps; ++k) {
-#pragma GCC unroll 2
-      for (int p = 0; p < planes; ++p, column += width) {
-        const float weight = at.weight[p][k * tap_angles + angle];
-#pragma GCC unroll 8
-        for (int v = 0; v < together; ++v) sum[v] += weight * load(column + v * vector_floats);
-      }
-    }
-#pragma GCC unroll 8
-    for (int v = 0; v < together; ++v) store(voxel + first + v * vector_floats, sum[v]);
+/// taps: 3 or 4, the usual numbers, or 0 for any.
+template <int width, bool climbs, bool shadowed, int taps>
+void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, int count, float* voxels) {
+  alignas(64) float line[most_tile_rows + 32];
+  const int rows = climbs ? columns.rows : width;
+  const int ends = taps > 0 ? taps : ray.taps;
+  if (climbs) {
+    for (int v = 0; v < 32; v += vector_floats) store(line + rows + v, Vector{});
   }
-}
-
-template <int width, int planes>
-inline void scatter(const float* voxel, const PlaneTaps& at, int angle, float* light) {
-  const int taps = at.taps;
-  constexpr int vectors = width / vector_floats;
-  constexpr int together = vectors < 8 ? vectors : 8;
-  float* begin = light + static_cast<long>(at.cell[angle]) * planes * width;
-  for (int first = 0; first < width; first += together * vector_floats) {
-    Vector value[together];
-#pragma GCC unroll 8
-    for (int v = 0; v < together; ++v) value[v] = load(voxel + first + v * vector_floats);
-    float* column = begin + first;
-    for (int k = 0; k < taps; ++k) {
-#pragma GCC unroll 2
-      for (int p = 0; p < planes; ++p, column += width) {
-        const float weight = at.weight[p][k * tap_angles + angle];
-#pragma GCC unroll 8
-        for (int v = 0; v < together; ++v) {
-          float* to = column + v * vector_floats;
-          store(to, load(to) + weight * value[v]);
+  for (int e = 0; e < count; ++e) {
+    const float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
+    const float* weight = ray.weight + e;
+    float* to = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
+    float* sums = climbs ? line : to;
+    for (int v = 0; v < rows; v += vector_floats) {
+      Vector sum = climbs ? Vector{} : load(to + v);
+#pragma GCC unroll 4
+      for (int k = 0; k < ends; ++k) {
+        const long at = static_cast<long>(k) * rows + v;
+        const long tap = static_cast<long>(k) * ray.pitch;
+        const Vector here = load(light + at);
+        if (shadowed) {
+          const Vector ends_mm = load(columns.ends_mm + (light - columns.light) + at);
+          sum += weight[tap] * (ends_mm > columns.depth_mm[tap + e] ? here : Vector{});
+        } else {
+          sum += weight[tap] * here;
         }
       }
+      store(sums + v, sum);
+    }
+    if (climbs) take_rows<width>(line, ray.start[e] - ray.first_row, ray.zoom[e], to);
+  }
+}
+
+template <int width, bool climbs, bool shadowed, int taps>
+void scatter(const float* voxels, const RayTaps& ray, const int* voxel, int count, const TileColumns& columns) {
+  alignas(64) float line[most_tile_rows + 32];
+  const int rows = climbs ? columns.rows : width;
+  const int ends = taps > 0 ? taps : ray.taps;
+  for (int e = 0; e < count; ++e) {
+    float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
+    const float* weight = ray.weight + e;
+    const float* from = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
+    if (climbs) give_rows(from, ray.start[e] - ray.first_row, ray.zoom[e], rows, line);
+    const float* given = climbs ? line : from;
+    for (int v = 0; v < rows; v += vector_floats) {
+      const Vector value = load(given + v);
+#pragma GCC unroll 4
+      for (int k = 0; k < ends; ++k) {
+        const long at = static_cast<long>(k) * rows + v;
+        const long tap = static_cast<long>(k) * ray.pitch;
+        Vector share = weight[tap] * value;
+        if (shadowed) {
+          const Vector ends_mm = load(columns.ends_mm + (light - columns.light) + at);
+          share = ends_mm > columns.depth_mm[tap + e] ? share : Vector{};
+        }
+        store(light + at, load(light + at) + share);
+      }
     }
   }
 }
 
-}  // namespace
-
-namespace {
-
-template <int width, int planes>
-void gather_all(const float* light, const PlaneTaps* at, const int* voxel, int count, int angle, float* voxels) {
-  for (int e = 0; e < count; ++e) gather<width, planes>(light, at[e], angle, voxels + voxel[e] * width);
+template <int width, bool climbs>
+void gather_chunk(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, float* voxels) {
+  if (columns.ends_mm != nullptr) return gather<width, climbs, true, 0>(columns, taps, voxel, count, voxels);
+  if (taps.taps == 3) return gather<width, climbs, false, 3>(columns, taps, voxel, count, voxels);
+  if (taps.taps == 4) return gather<width, climbs, false, 4>(columns, taps, voxel, count, voxels);
+  gather<width, climbs, false, 0>(columns, taps, voxel, count, voxels);
 }
 
-template <int width, int planes>
-void scatter_all(const float* voxels, const PlaneTaps* at, const int* voxel, int count, int angle, float* light) {
-  for (int e = 0; e < count; ++e) scatter<width, planes>(voxels + voxel[e] * width, at[e], angle, light);
+template <int width, bool climbs>
+void scatter_chunk(const float* voxels, const RayTaps& taps, const int* voxel, int count, const TileColumns& columns) {
+  if (columns.ends_mm != nullptr) return scatter<width, climbs, true, 0>(voxels, taps, voxel, count, columns);
+  if (taps.taps == 3) return scatter<width, climbs, false, 3>(voxels, taps, voxel, count, columns);
+  if (taps.taps == 4) return scatter<width, climbs, false, 4>(voxels, taps, voxel, count, columns);
+  scatter<width, climbs, false, 0>(voxels, taps, voxel, count, columns);
 }
 
 }  // namespace
 
-void gather_rays(const float* light, int width, int planes, const PlaneTaps* at, const int* voxel, int count, int angle,
+void gather_rays(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,
                  float* voxels) {
-  if (planes == 2) {
-    if (width == 64) return gather_all<64, 2>(light, at, voxel, count, angle, voxels);
-    if (width == 32) return gather_all<32, 2>(light, at, voxel, count, angle, voxels);
-    return gather_all<16, 2>(light, at, voxel, count, angle, voxels);
-  }
-  if (width == 64) return gather_all<64, 1>(light, at, voxel, count, angle, voxels);
-  if (width == 32) return gather_all<32, 1>(light, at, voxel, count, angle, voxels);
-  gather_all<16, 1>(light, at, voxel, count, angle, voxels);
+  if (width == 64 && climbs) return gather_chunk<64, true>(columns, taps, voxel, count, voxels);
+  if (width == 64) return gather_chunk<64, false>(columns, taps, voxel, count, voxels);
+  if (width == 32 && climbs) return gather_chunk<32, true>(columns, taps, voxel, count, voxels);
+  if (width == 32) return gather_chunk<32, false>(columns, taps, voxel, count, voxels);
+  if (climbs) return gather_chunk<16, true>(columns, taps, voxel, count, voxels);
+  gather_chunk<16, false>(columns, taps, voxel, count, voxels);
 }
 
-void scatter_rays(const float* voxels, int width, int planes, const PlaneTaps* at, const int* voxel, int count,
-                  int angle, float* light) {
-  if (planes == 2) {
-    if (width == 64) return scatter_all<64, 2>(voxels, at, voxel, count, angle, light);
-    if (width == 32) return scatter_all<32, 2>(voxels, at, voxel, count, angle, light);
-    return scatter_all<16, 2>(voxels, at, voxel, count, angle, light);
-  }
-  if (width == 64) return scatter_all<64, 1>(voxels, at, voxel, count, angle, light);
-  if (width == 32) return scatter_all<32, 1>(voxels, at, voxel, count, angle, light);
-  scatter_all<16, 1>(voxels, at, voxel, count, angle, light);
+void scatter_rays(const float* voxels, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,
+                  const TileColumns& columns) {
+  if (width == 64 && climbs) return scatter_chunk<64, true>(voxels, taps, voxel, count, columns);
+  if (width == 64) return scatter_chunk<64, false>(voxels, taps, voxel, count, columns);
+  if (width == 32 && climbs) return scatter_chunk<32, true>(voxels, taps, voxel, count, columns);
+  if (width == 32) return scatter_chunk<32, false>(voxels, taps, voxel, count, columns);
+  if (climbs) return scatter_chunk<16, true>(voxels, taps, voxel, count, columns);
+  scatter_chunk<16, false>(voxels, taps, voxel, count, columns);
 }
 
 }  // namespace vam::light::VAM_SIMD

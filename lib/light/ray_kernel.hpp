@@ -4,86 +4,82 @@
 
 namespace vam::light {
 
-inline constexpr int tap_angles = 16;  // stage angles a call
+inline constexpr int ray_block = 16;  // rays are looked up in blocks: arrays of them are as long as whole blocks
+inline constexpr int most_blocks = 16;
 
-/// The arrays of RayNodes.
-struct TapNodes {
-  const float* x_p_mm;
-  const float* z_p_mm;  // null where rays stay level
-  const float* zoom;
-  const float* strength;
-  const float* spacing;
-  const float* cosine;
-  const float* sine;
+/// What the table holds of a point, at one height.
+struct alignas(32) RayNode {
+  float column;    // in columns
+  float row;       // in rows
+  float zoom;      // rows per slice
+  float strength;  // fluence per image-plane intensity
+  float edge;      // of a voxel's edge across the ray, in columns
+  float cosine;    // of the ray's angle in plan
+  float sine;
+  float unused;
 };
 
-/// Four series around the voxel (two radii x two directions) and the weights of the second of each pair.
-struct TapSource {
-  long corner[4];
+/// A point between four nodes of the table at stage angle 0: two radii, and two directions one after the other.
+struct RaySource {
+  int low_row, high_row;  // of direction 0
+  int direction;
   float radius_part;
   float direction_part;
 };
 
-/// From image-plane millimetres to columns and rows; how the part stands.
-struct TapFrame {
-  float columns_per_mm;
-  float column_origin;
+/// How the part stands, and what the rays of a chunk have in common.
+struct RayFrame {
+  int shift;       // of all directions, from stage angle 0
+  int step;        // of all directions, from one stage angle to the next
+  int directions;  // of a turn; the table repeats the first one after them
+  float cosine;    // of the part's angle
+  float sine;
   float last_column;  // columns are held within [0, last]
-  float rows_per_mm;
-  float row_origin;
-  float slice_rows;     // rows per slice where d z_p / d z is 1
-  float voxel_columns;  // a voxel's edge in columns where d x_p / d r is 1
-  int taps;
-  const float* cosine;  // of the part's angle
-  const float* sine;
+  float half;         // slices from the chunk's first one to its middle
+  bool climbs;
+  int taps;  // at most
 };
 
-/// Where a voxel takes light from at tap_angles stage angles: columns cell, cell + 1, ... with these weights, and rows
-/// row + zoom * (slice - middle of the chunk).
-struct Taps {
-  alignas(64) int cell[tap_angles];
-  alignas(64) float row[tap_angles];
-  alignas(64) float zoom[tap_angles];
-  float* weight;  // [tap][angle]
-  int taps;       // that are not all 0
+/// Where the voxels of a tile take light from at one stage angle: columns cell, cell + 1, ... with these weights, and
+/// rows start + zoom * (slice of the chunk).
+struct RayTaps {
+  int* cell;
+  float* start;
+  float* zoom;
+  float* weight;  // [tap][ray], `pitch` rays
+  int pitch;
+  int taps;  // that are not all 0
+  int first_cell, last_cell;
+  float first_row, last_row;  // of any voxel's slices
 };
 
-/// The same weights, split between two planes of light.
-struct PlaneTaps {
-  alignas(64) int cell[tap_angles];
-  float* weight[2];  // [tap][angle]
-  int taps;
+/// The light on a tile: columns of `rows` floats each.
+struct TileColumns {
+  float* light;
+  const float* ends_mm;   // where a pixel's ray meets an insert, as `light`; null: none of them does
+  const float* depth_mm;  // [tap][ray] of the voxel on the ray of that tap's column
+  int rows;               // whole slabs of them, most_tile_rows at most
 };
 
-/// What the rays of a tile have in common at each stage angle: columns [first, last] begin a voxel's taps, and rows
-/// between the planes of low and high zoom.
-struct TapRange {
-  alignas(64) int first[tap_angles];
-  alignas(64) int last[tap_angles];
-  alignas(64) float low_row[tap_angles];  // of the chunk's middle
-  alignas(64) float low_zoom[tap_angles];
-  alignas(64) float high_row[tap_angles];
-  alignas(64) float high_zoom[tap_angles];
-};
+inline constexpr int most_tile_rows = 192;
 
-#define VAM_RAY_KERNELS                                                                                             \
-  /* The exact mean of box pixels over a square voxel: its shadow is a trapezoid. */                                \
-  void ray_taps(const TapNodes& nodes, const TapSource& source, const TapFrame& frame, Taps& taps);                 \
-  /* Taps of `count` rays; outer: the chunk's outermost slice, from its middle. */                                  \
-  void range_of(const Taps* taps, int count, float outer, TapRange& range);                                         \
-  /* Columns from range.first on, weights shared between the planes by where the outermost slice falls. */          \
-  void split_taps(const Taps& taps, int columns, int planes, float outer, const TapRange& range, PlaneTaps& split); \
-  /* to[l] = line at row + zoom * l, linear between rows, l < width; the line is read up to 2 vectors further. */   \
-  void take_rows(const float* line, float row, float zoom, int width, float* to);                                   \
-  /* Its transpose: line += . */                                                                                    \
-  void give_rows(const float* from, float row, float zoom, int width, float* line);                                 \
-  /* voxels[voxel[e]] += sum over planes p and columns k of at[e].weight[p][k, angle] * light[(cell + k) * planes + \
-     p], width floats each, for e < count */                                                                        \
-  void gather_rays(const float* light, int width, int planes, const PlaneTaps* at, const int* voxel, int count,     \
-                   int angle, float* voxels);                                                                       \
-  /* Its transpose. */                                                                                              \
-  void scatter_rays(const float* voxels, int width, int planes, const PlaneTaps* at, const int* voxel, int count,   \
-                    int angle, float* light);
+/// Zeros between the voxels of a tile, which are `width` floats each: slices that nothing lights.
+inline constexpr int voxel_gap = 48;
+
+#define VAM_RAY_KERNELS                                                                                              \
+  /* The exact mean of box pixels over a square voxel: its shadow is a trapezoid. */                                 \
+  void aim_rays(const RayNode* nodes, const RaySource* sources, int count, const RayFrame& frame, RayTaps& taps);    \
+  /* to[c][i] = from[c][i], i < count <= 16, of columns that are 16 floats and `pitch` floats long; soon the columns \
+     `next` floats further on will be wanted */                                                                      \
+  void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to);                     \
+  /* to[c][i] += from[c][i], the other way */                                                                        \
+  void add_columns(const float* from, int columns, int count, int pitch, long next, float* to);                      \
+  /* voxel[e] += sum over columns k of weight[k][e] * light[cell[e] + k], between rows linearly where rays climb */  \
+  void gather_rays(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, int width,          \
+                   bool climbs, float* voxels);                                                                      \
+  /* Its transpose. */                                                                                               \
+  void scatter_rays(const float* voxels, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,   \
+                    const TileColumns& columns);
 
 namespace baseline {
 VAM_RAY_KERNELS

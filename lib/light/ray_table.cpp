@@ -80,16 +80,14 @@ struct RayTable::Light {
 };
 
 RayTable::RayTable(const Setup& setup)
-    : angles(setup.angles),
-      phases((least_directions + setup.angles - 1) / setup.angles),
-      length(2 * setup.angles + 1),
+    : phases((least_directions + setup.angles - 1) / setup.angles),
+      directions(setup.angles * phases),
       reach_mm(optics::reach_mm(setup.view)),
       edge_mm(optics::resin_radius_mm(setup.view)),
       setup_(setup),
       climbs_(setup.view.rows_lens_mm.has_value()) {
   setup_.height_mm = std::max(setup.height_mm, 1e-3);
   const Light light{setup_, edge_mm, reach_mm};
-  const auto per_row = static_cast<std::size_t>(angles) * static_cast<std::size_t>(phases);
   const double inside = std::min(reach_mm * (climbs_ ? 0.9995 : rim), std::max(setup.r_max_mm, setup.pitch_mm));
   inner.rows = std::max(2, static_cast<int>(std::ceil(inside / setup.pitch_mm)) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
@@ -99,9 +97,10 @@ RayTable::RayTable(const Setup& setup)
     outer.rows = static_cast<int>(std::ceil(2 * beyond / setup.pitch_mm));  // nearest row: half the pitch
     outer.pitch_mm = beyond / outer.rows;
     outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
-    outer.offset = series(inner, inner.rows, 0, 0);
+    outer.first_row = inner.rows;
   }
-  nodes_.resize((static_cast<std::size_t>(inner.rows) + static_cast<std::size_t>(outer.rows * outer.sheets)) * per_row);
+  nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) *
+                static_cast<std::size_t>(directions));
   parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });
   parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
 }
@@ -109,8 +108,8 @@ RayTable::RayTable(const Setup& setup)
 void RayTable::fill_inner_row(const Light& light, int row) {
   const double r = row * inner.pitch_mm;
   double b = 0;
-  for (int index = 0; index < angles * phases; ++index) {
-    const double alpha = setup_.sense * index * turn_rad / (angles * phases);
+  for (int index = 0; index < directions; ++index) {
+    const double alpha = setup_.sense * index * turn_rad / directions;
     // alpha(b) is monotone here: a few steps. Halving guards the rim, where delta is steepest.
     Light::Point point = light.at(r, b);
     for (int step = 0; step < 60 && std::abs(alpha - point.alpha) > 1e-12; ++step) {
@@ -118,7 +117,7 @@ void RayTable::fill_inner_row(const Light& light, int row) {
       b += std::clamp((alpha - point.alpha) / point.alpha_rate, -limit, limit);
       point = light.at(r, b);
     }
-    Node& to = nodes_[node(inner, row, 0, index)];
+    Node& to = row_of(inner, row, 0)[index];
     const double strength = point.strength / point.alpha_rate;
     const double spacing = light.spacing(1 / (point.ray.jacobian * point.alpha_rate));
     to.cosine = static_cast<float>(std::cos(point.ray.delta_rad));
@@ -155,7 +154,6 @@ void RayTable::fill_inner_row(const Light& light, int row) {
 }
 
 void RayTable::fill_outer_row(const Light& light, int row) {
-  const int directions = angles * phases;
   const double r = outer.first_mm + row * outer.pitch_mm;
   const double open = std::acos(std::min(1.0, rim * reach_mm / r));  // rays reach b in (open, pi - open) and opposite
   struct Cell {
@@ -206,7 +204,7 @@ void RayTable::fill_outer_row(const Light& light, int row) {
       for (const int neighbour : {-1, 1}) {
         if (source.strength == 0) source = cell(index + neighbour);
       }
-      Node& to = nodes_[node(outer, row, sheet, index)];
+      Node& to = row_of(outer, row, sheet)[index];
       if (!(source.strength > 0)) continue;
       const auto mean = [&](double sum) { return static_cast<float>(sum / source.strength); };
       to.x_p = {mean(source.x_p), 0, 0};
@@ -219,44 +217,45 @@ void RayTable::fill_outer_row(const Light& light, int row) {
   }
 }
 
-void RayTable::at_height(double z_mm, RayNodes& nodes) const {
-  const int series_count = (inner.rows + outer.rows * outer.sheets) * phases;
-  const std::size_t size = static_cast<std::size_t>(series_count) * static_cast<std::size_t>(length);
-  for (auto* values :
-       {&nodes.x_p_mm, &nodes.z_p_mm, &nodes.zoom, &nodes.strength, &nodes.spacing, &nodes.cosine, &nodes.sine}) {
-    values->resize(size);
-  }
-  const auto z = static_cast<float>(z_mm);
+void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const {
+  const int rows = inner.rows + outer.rows * outer.sheets;
+  nodes.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(directions + 1));
   const auto z2 = static_cast<float>((z_mm / setup_.height_mm) * (z_mm / setup_.height_mm));
-  parallel_for(series_count, [&](int s) {
-    const Node* row = nodes_.data() + static_cast<std::ptrdiff_t>(s / phases) * angles * phases;
-    const std::size_t to = static_cast<std::size_t>(s) * static_cast<std::size_t>(length);
-    for (int i = 0; i < angles; ++i) {
-      const Node& from = row[i * phases + s % phases];
-      const float g = value(from.row, z2);
-      const float g_rate = 2 * z2 * (from.row[1] + 2 * z2 * from.row[2]);  // z dg/dz
-      for (int copy = i; copy < length; copy += angles) {
-        const std::size_t at = to + static_cast<std::size_t>(copy);
-        nodes.x_p_mm[at] = value(from.x_p, z2);
-        nodes.z_p_mm[at] = z * g;
-        nodes.zoom[at] = g + g_rate;
-        nodes.strength[at] = std::max(0.0F, value(from.strength, z2));
-        nodes.spacing[at] = value(from.spacing, z2);
-        nodes.cosine[at] = from.cosine;
-        nodes.sine[at] = from.sine;
-      }
+  const auto columns_per_mm = static_cast<float>(scale.columns_per_mm);
+  const auto column_origin = static_cast<float>(scale.column_origin);
+  const auto row_rate = static_cast<float>(scale.rows_per_mm * z_mm);
+  const auto row_origin = static_cast<float>(scale.row_origin);
+  const auto rows_per_slice = static_cast<float>(scale.rows_per_slice);
+  const auto columns_per_voxel = static_cast<float>(scale.columns_per_voxel);
+  parallel_for(rows, [&](int row) {
+    const Node* from = nodes_.data() + static_cast<std::ptrdiff_t>(row) * directions;
+    RayNode* to = nodes.data() + static_cast<std::ptrdiff_t>(row) * (directions + 1);
+    for (int i = 0; i < directions; ++i) {
+      const Node& node = from[i];
+      const float g = value(node.row, z2);
+      const float g_rate = 2 * z2 * (node.row[1] + 2 * z2 * node.row[2]);  // z dg/dz
+      to[i] = {columns_per_mm * value(node.x_p, z2) + column_origin,
+               row_rate * g + row_origin,
+               rows_per_slice * (g + g_rate),
+               std::max(0.0F, value(node.strength, z2)),
+               columns_per_voxel * value(node.spacing, z2),
+               node.cosine,
+               node.sine,
+               0};
     }
+    to[directions] = to[0];
   });
 }
 
-double RayTable::drift_mm(double from_mm, double to_mm) const {
+double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {
   const auto square = [&](double z) { return static_cast<float>((z / setup_.height_mm) * (z / setup_.height_mm)); };
-  constexpr double counts = 0.9;  // of the reach: at the rim rays drift without bounds, and carry next to nothing
-  const int rows = std::min(inner.rows, static_cast<int>(counts * reach_mm / inner.pitch_mm) + 1);
-  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(angles * phases);
+  constexpr double counts = 0.95;  // of the reach: at the rim rays drift without bounds, and carry next to nothing
+  const int row =
+      std::min(inner.rows - 1, static_cast<int>(std::ceil(std::min(r_mm, counts * reach_mm) / inner.pitch_mm)));
+  const Node* nodes = nodes_.data() + static_cast<std::ptrdiff_t>(row) * directions;
   float most = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const Even& x_p = nodes_[n].x_p;
+  for (int i = 0; i < directions; ++i) {
+    const Even& x_p = nodes[i].x_p;
     most = std::max(most, std::abs(value(x_p, square(to_mm)) - value(x_p, square(from_mm))));
   }
   return static_cast<double>(most);

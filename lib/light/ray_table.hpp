@@ -7,20 +7,23 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/slab.hpp"
+#include "light/ray_kernel.hpp"
 #include "optics/vial.hpp"
 
 namespace vam::light {
 
-/// What the table holds of a node, at one height above the lens's axis.
-struct RayNodes {
-  std::vector<float> x_p_mm;    // column of the ray, in the image plane
-  std::vector<float> z_p_mm;    // row of the ray, in the image plane
-  std::vector<float> zoom;      // d z_p / d z
-  std::vector<float> strength;  // fluence per image-plane intensity, e^{-mu path} included; 0 = no ray
-  std::vector<float> spacing;   // d x_p / d r across the ray
-  std::vector<float> cosine;    // of the ray's angle in plan
-  std::vector<float> sine;
+/// From millimetres of the image plane to columns, rows and voxels.
+struct RayScale {
+  double columns_per_mm = 1;
+  double column_origin = 0;
+  double rows_per_mm = 1;
+  double row_origin = 0;
+  double rows_per_slice = 1;     // where d z_p / d z is 1
+  double columns_per_voxel = 1;  // where d x_p / d r is 1
 };
+
+using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 
 /// Points at lab polar coordinates (r, alpha) of the rays' plan views { t (cos d, sin d) + u (-sin d, cos d) }.
 ///
@@ -35,8 +38,8 @@ class RayTable {
     double first_mm = 0;  // radius of row 0
     double pitch_mm = 0;
     int rows = 0;
-    int sheets = 1;  // branches of the map
-    std::size_t offset = 0;
+    int sheets = 1;     // branches of the map
+    int first_row = 0;  // of the table
   };
 
   struct Setup {
@@ -50,22 +53,19 @@ class RayTable {
   };
   explicit RayTable(const Setup& setup);
 
-  /// The nodes at that height. Levels: the rays do not climb, and every height has the same columns.
-  void at_height(double z_mm, RayNodes& nodes) const;
-  [[nodiscard]] bool climbs() const { return climbs_; }
-  /// Largest change of x_p, in mm of the image plane, from one height to another.
-  [[nodiscard]] double drift_mm(double from_mm, double to_mm) const;
-
-  /// alpha = sense * (i * phases + phase) * 2 pi / (angles * phases) is element i from series(zone, row, sheet, phase)
-  /// on. The turn is stored twice, so that any `angles` consecutive elements can be read.
-  [[nodiscard]] std::size_t series(const Zone& zone, int row, int sheet, int phase) const {
-    return zone.offset +
-           static_cast<std::size_t>((row * zone.sheets + sheet) * phases + phase) * static_cast<std::size_t>(length);
+  /// The nodes at that height: element row_begin(zone, row, sheet) + i is direction alpha = sense * i * 2 pi /
+  /// directions, i = 0 to directions.
+  void at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const;
+  [[nodiscard]] std::size_t row_begin(const Zone& zone, int row, int sheet) const {
+    return static_cast<std::size_t>(zone.first_row + row * zone.sheets + sheet) *
+           static_cast<std::size_t>(directions + 1);
   }
+  [[nodiscard]] bool climbs() const { return climbs_; }
+  /// Largest change of x_p, in mm of the image plane, from one height to another, at that radius.
+  [[nodiscard]] double drift_mm(double from_mm, double to_mm, double r_mm) const;
 
-  int angles = 0;
-  int phases = 0;
-  int length = 0;  // of a series: 2 * angles + 1
+  int phases = 0;      // directions a stage angle
+  int directions = 0;  // of a turn
   double reach_mm = 0;
   double edge_mm = 0;  // radius of the resin
   Zone inner;          // to be interpolated between rows
@@ -81,16 +81,13 @@ class RayTable {
   };
   void fill_inner_row(const Light& light, int row);
   void fill_outer_row(const Light& light, int row);
-  [[nodiscard]] std::size_t node(const Zone& zone, int row, int sheet, int index) const {
-    const std::size_t before = zone.offset / static_cast<std::size_t>(length);
-    return (before + static_cast<std::size_t>((row * zone.sheets + sheet) * phases)) *
-               static_cast<std::size_t>(angles) +
-           static_cast<std::size_t>(index);
+  [[nodiscard]] Node* row_of(const Zone& zone, int row, int sheet) {
+    return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
 
   Setup setup_;
   bool climbs_ = false;
-  std::vector<Node> nodes_;  // [zone, row, sheet][index of alpha]
+  std::vector<Node> nodes_;  // [zone, row, sheet][direction]
 };
 
 }  // namespace vam::light

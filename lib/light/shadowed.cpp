@@ -81,7 +81,7 @@ void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> si
         for (int i = 0; i < 4; ++i) {
           if (print.weight[i] <= 0) continue;
           const float weight = print.weight[i] * left(print.first + i, print.u);
-          const float* ends = shadow_.ends_mm(s, print.first + i, a);
+          const float* ends = shadow_.ends()[s].at(print.first + i, a);
           float* to = sinograms[s].at(print.first + i, a);
           for (int lane = 0; lane < lanes; ++lane) to[lane] += u < ends[lane] ? weight * from[lane] : 0.0F;
         }
@@ -102,7 +102,7 @@ void ShadowedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> 
         for (int i = 0; i < 4; ++i) {
           if (print.weight[i] <= 0) continue;
           const float weight = print.weight[i] * left(print.first + i, print.u);
-          const float* ends = shadow_.ends_mm(s, print.first + i, a);
+          const float* ends = shadow_.ends()[s].at(print.first + i, a);
           const float* from = sinograms[s].at(print.first + i, a);
           for (int lane = 0; lane < lanes; ++lane) sum[lane] += u < ends[lane] ? weight * from[lane] : 0.0F;
         }

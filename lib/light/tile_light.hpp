@@ -18,69 +18,60 @@ struct Chunk {
   [[nodiscard]] int width() const { return static_cast<int>(slabs) * lanes; }
 };
 
-/// A tile is small, so at one stage angle its light comes from a few columns, and where rays climb its voxels see the
-/// rows under nearly the same zoom. The rows are taken to the tile's slices once, under the least and the largest zoom
-/// (two planes), and each voxel interpolates between the planes. Between two rows all of this is linear, so the voxel's
-/// value is the rows' at its own place, blurred at most by a quarter of the planes' distance.
+/// The rays of a tile's voxels, in whole blocks; those that fill up the last block are nobody's.
+struct Tile {
+  int chunk = 0;  // slices that may share the rays
+  std::vector<RaySource> rays;
+  std::vector<int> voxels;  // whose ray it is, within the tile
+};
+
+/// A tile is so small that at one stage angle its light comes from a few columns: these are brought together, and all
+/// stays in the first cache. A voxel's taps are summed row by row, and the sum is taken to its slices.
 class TileLight {
  public:
-  /// A ray of one of a tile's voxels.
-  struct Entry {
-    TapSource ray;
-    int voxel;  // within the tile
-  };
-  /// The rays of every tile's voxels, at any stage angle.
-  static std::vector<std::vector<Entry>> tiles(const VialRays& rays);
+  static constexpr int edge = 8;  // voxels
+  static_assert(edge * edge * VialRays::most_rays <= ray_block * most_blocks);
+  /// The rays of all tiles, at any stage angle.
+  static std::vector<Tile> tiles(const VialRays& rays);
 
   TileLight(const VialRays& rays, const InsertShadow& shadow);
 
-  void enter(int tile, std::span<const Entry> entries, const Chunk& chunk);
-  /// What the voxels take and give from now on, width() floats a voxel of the tile.
+  void enter(int tile, const Tile& rays, const Chunk& chunk);
+  /// What the voxels take and give from now on.
   void clear_voxels() { std::fill(voxels_.begin(), voxels_.end(), 0.0F); }
   void load_voxels(std::span<const Slab> objects);
   void store_voxels(std::span<Slab> objects) const;
 
-  /// Voxels += light of stage angles [angle, angle + count), count <= tap_angles.
-  void take(const RayNodes& nodes, int angle, int count, std::span<const Slab> sinograms);
+  /// Voxels += light of a stage angle.
+  void take(const RayNodes& nodes, int angle, std::span<const Slab> sinograms);
   /// Its transpose: light += voxels.
-  void give(const RayNodes& nodes, int angle, int count, std::span<Slab> sinograms);
+  void give(const RayNodes& nodes, int angle, std::span<Slab> sinograms);
 
  private:
-  /// The columns and planes of the tile at one stage angle.
-  struct Planes {
-    int column = 0, columns = 0;
-    float row[2] = {0, 0};  // of slice 0
-    float zoom[2] = {1, 1};
-  };
-  template <class Row>
-  void each_voxel(const Row& visit) const;
-  void aim(const RayNodes& nodes, int angle, int count);
-  void split(int angle, Planes& planes);
-  void fetch(const Planes& planes, int angle, std::span<const Slab> sinograms);
-  void put_back(const Planes& planes, int angle, std::span<Slab> sinograms);
-  [[nodiscard]] bool shadowed(int angle, int index) const;
-  void take_shadowed(int angle, int index, std::span<const Slab> sinograms);
-  void give_shadowed(int angle, int index, std::span<Slab> sinograms);
   template <class Visit>
-  void each_shadowed(int angle, int index, std::size_t slabs, const Visit& visit);
-  struct Rows {
-    int first, end;
-  };
-  [[nodiscard]] Rows lit_rows(std::size_t slabs) const;
+  void each_voxel(const Visit& visit) const;
+  void aim(const RayNodes& nodes, int angle, std::size_t slabs);
+  template <class SlabType, class Visit>
+  void each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const;
+  void fetch(int angle, std::span<const Slab> sinograms);
+  void put_back(int angle, std::span<Slab> sinograms) const;
+  void cast_shadow(int angle);
+  [[nodiscard]] bool shadowed(int angle) const;
+  [[nodiscard]] TileColumns columns();
+  [[nodiscard]] int count() const { return static_cast<int>(tile_->voxels.size()); }
 
   const VialRays& rays_;
   const InsertShadow& shadow_;
   Chunk chunk_{};
   int i0_ = 0, i1_ = 0, j0_ = 0, j1_ = 0;
-  int planes_;
-  int edge_;
-  std::span<const Entry> entries_;
-  std::vector<int> voxel_of_;                        // an entry each
-  std::vector<Taps> taps_;                           // an entry each
-  std::vector<PlaneTaps> split_;                     // an entry each
-  std::vector<Planes> at_;                           // a stage angle each
-  std::vector<float, CacheAligned<float>> weights_;  // of taps_, and of both planes of split_
-  std::vector<float, CacheAligned<float>> voxels_, light_, line_;
+  const Tile* tile_ = nullptr;
+  RayTaps taps_{};
+  int row_ = 0;      // of the light that the tile's columns begin with
+  int rows_ = 0;     // floats of a column
+  int columns_ = 0;  // of the tile
+  int lit_first_ = 0, lit_end_ = 0;
+  std::vector<int> cells_;
+  std::vector<float, CacheAligned<float>> floats_, voxels_, light_, ends_, depth_;
 };
 
 }  // namespace vam::light

@@ -35,11 +35,13 @@ std::vector<Chunk> chunks(std::size_t slabs, int widest) {
   return all;
 }
 
-/// Stage angles that one piece of work covers.
+/// Stage angles [first, end) that one piece of work covers.
 std::vector<std::pair<int, int>> angle_blocks(int angles) {
+  constexpr int block = 16;
   std::vector<std::pair<int, int>> blocks;
-  for (int first = 0; first < angles; first += tap_angles)
-    blocks.emplace_back(first, std::min(tap_angles, angles - first));
+  for (int first = 0; first < angles; first += block) {
+    blocks.emplace_back(first, std::min(first + block, angles));
+  }
   return blocks;
 }
 
@@ -74,47 +76,58 @@ VialOperator::VialOperator(const VialSetup& setup, std::span<const Slab> inserts
   if (!rays_.climbs()) rays_.at_slices(0, 1, level_);
 }
 
+/// visit(nodes, chunk, tiles) for every tile and slab once.
+template <class Visit>
+void VialOperator::each_chunk(std::size_t slabs, const Visit& visit) const {
+  RayNodes buffer;
+  for (const int slices : {lanes, 2 * lanes, 4 * lanes}) {
+    std::vector<int> tiles;
+    for (std::size_t t = 0; t < tiles_.size(); ++t) {
+      if (tiles_[t].chunk == slices) tiles.push_back(static_cast<int>(t));
+    }
+    if (tiles.empty()) continue;
+    for (const Chunk& chunk : chunks(slabs, slices)) {
+      if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
+      visit(rays_.climbs() ? buffer : level_, chunk, tiles);
+    }
+  }
+}
+
 double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.step_rad); }
 
 /// Angles are shared among the threads: each writes its own rows.
 void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   for (Slab& slab : sinograms) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
   const auto blocks = angle_blocks(sinogram().height);
-  RayNodes buffer;
-  for (const Chunk& chunk : chunks(objects.size(), rays_.chunk())) {
-    if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
-    const RayNodes& nodes = rays_.climbs() ? buffer : level_;
+  each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
     parallel_for(static_cast<int>(blocks.size()), [&](int b) {
       TileLight light(rays_, shadow_);
-      const auto [angle, count] = blocks[static_cast<std::size_t>(b)];
-      for (std::size_t tile = 0; tile < tiles_.size(); ++tile) {
-        if (tiles_[tile].empty()) continue;
-        light.enter(static_cast<int>(tile), tiles_[tile], chunk);
+      const auto [first, end] = blocks[static_cast<std::size_t>(b)];
+      for (const int t : tiles) {
+        const Tile& tile = tiles_[static_cast<std::size_t>(t)];
+        if (tile.rays.empty()) continue;
+        light.enter(t, tile, chunk);
         light.load_voxels(objects);
-        light.give(nodes, angle, count, sinograms);
+        for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
       }
     });
-  }
+  });
 }
 
 /// Tiles are shared among the threads.
 void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
-  const auto blocks = angle_blocks(sinogram().height);
-  RayNodes buffer;
-  for (const Chunk& chunk : chunks(objects.size(), rays_.chunk())) {
-    if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
-    const RayNodes& nodes = rays_.climbs() ? buffer : level_;
-    parallel_for(static_cast<int>(tiles_.size()), [&](int tile) {
+  const int angles = sinogram().height;
+  each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
+    parallel_for(static_cast<int>(tiles.size()), [&](int item) {
       TileLight light(rays_, shadow_);
-      const auto& entries = tiles_[static_cast<std::size_t>(tile)];
-      light.enter(tile, entries, chunk);
+      const int t = tiles[static_cast<std::size_t>(item)];
+      const Tile& tile = tiles_[static_cast<std::size_t>(t)];
+      light.enter(t, tile, chunk);
       light.clear_voxels();
-      if (!entries.empty()) {
-        for (const auto& [angle, count] : blocks) light.take(nodes, angle, count, sinograms);
-      }
+      for (int angle = 0; angle < angles && !tile.rays.empty(); ++angle) light.take(nodes, angle, sinograms);
       light.store_voxels(objects);
     });
-  }
+  });
 }
 
 /// A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels and w = T e^{-mu depth}; filtered

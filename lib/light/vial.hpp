@@ -34,10 +34,12 @@ class VialOperator final : public Operator {
   void collapse(const Slab& image, Slab& sinogram) const override;
 
  private:
+  template <class Visit>
+  void each_chunk(std::size_t slabs, const Visit& visit) const;
   void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
 
   VialRays rays_;
-  std::vector<std::vector<TileLight::Entry>> tiles_;
+  std::vector<Tile> tiles_;
   InsertShadow shadow_;
   RayNodes level_;  // of every chunk, where rays do not climb
   tomo::Filter ramp_, preconditioner_;

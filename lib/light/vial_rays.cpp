@@ -41,12 +41,12 @@ double farthest_mm(const VialSetup& setup) {
   return std::min(setup.radius_mm, std::hypot(x, y));
 }
 
-auto pick_taps() {
+auto pick_aim() {
 #if defined(__x86_64__)
-  if (simd_level() == Simd::avx512) return &avx512::ray_taps;
-  if (simd_level() == Simd::avx2) return &avx2::ray_taps;
+  if (simd_level() == Simd::avx512) return &avx512::aim_rays;
+  if (simd_level() == Simd::avx2) return &avx2::aim_rays;
 #endif
-  return &baseline::ray_taps;
+  return &baseline::aim_rays;
 }
 
 }  // namespace
@@ -109,20 +109,11 @@ VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(tabl
   first_row_ = std::max(0, static_cast<int>(std::ceil(row_at(setup_.lowest_mm) - 0.01)));
   end_row_ = std::min(setup_.rows, static_cast<int>(std::floor(row_at(setup_.highest_mm) + 0.01)) + 1);
   RayNodes level;
-  table_.at_height(0, level);
-  const float densest = *std::max_element(level.spacing.begin(), level.spacing.end());
-  const double widest =
-      std::numbers::sqrt2 * setup_.grid.voxel_mm * static_cast<double>(densest) / setup_.projector.pixel_mm;
-  taps_ = static_cast<int>(std::ceil(widest)) + 1;
-  const double top = top_mm();
-  while (chunk_ > lanes) {
-    const double half = 0.5 * chunk_ * setup_.z_scale * setup_.grid.voxel_mm;
-    if (!climbs() || table_.drift_mm(std::max(0.0, top - half), top) < 0.06 * setup_.projector.pixel_mm) break;
-    chunk_ /= 2;
-  }
-  const double climb = climbs() ? std::abs(optics::skew_ray(setup_.view, 0, top).climb) : 0;
-  while (tile_ > 2 && std::numbers::sqrt2 * tile_ * climb > 0.4) tile_ /= 2;
-  for (int a = 0; a < setup_.turn.rows + tap_angles; ++a) {
+  table_.at_height(0, scale(), level);
+  const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
+  const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
+  taps_ = static_cast<int>(std::ceil(std::numbers::sqrt2 * static_cast<double>(widest))) + 1;
+  for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta =
         setup_.direction * (setup_.turn.start_rad + a * setup_.turn.step_rad) + setup_.angle_offset_rad;
     cosines_.push_back(static_cast<float>(std::cos(theta)));
@@ -130,7 +121,21 @@ VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(tabl
   }
 }
 
-int VialRays::find(int i, int j, TapSource* rays) const {
+int VialRays::chunk(double r_mm) const {
+  constexpr int widest = 4 * lanes;
+  constexpr double columns = 0.12;
+  if (!climbs()) return widest;
+  const double top = top_mm();
+  int slices = widest;
+  while (slices > lanes) {
+    const double middle = std::max(0.0, top - 0.5 * slices * setup_.z_scale * setup_.grid.voxel_mm);
+    if (table_.drift_mm(middle, top, r_mm) < columns * setup_.projector.pixel_mm) break;
+    slices /= 2;
+  }
+  return slices;
+}
+
+int VialRays::find(int i, int j, RaySource* rays) const {
   const double x = setup_.grid.x_mm(i);
   const double y = setup_.grid.y_mm(j);
   const double r = std::hypot(x, y);
@@ -144,52 +149,43 @@ int VialRays::find(int i, int j, TapSource* rays) const {
                           : std::min(static_cast<int>(place), zone.rows - 2);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup_.direction * setup_.turn.start_rad + setup_.angle_offset_rad;
-  const int directions = table_.angles * table_.phases;
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;
-  alpha = (alpha - std::floor(alpha)) * directions;
-  const int index = std::min(static_cast<int>(alpha), directions - 1);
+  alpha = (alpha - std::floor(alpha)) * table_.directions;
+  const int index = std::min(static_cast<int>(alpha), table_.directions - 1);
   for (int sheet = 0; sheet < zone.sheets; ++sheet) {
-    TapSource& ray = rays[sheet];
-    ray.radius_part = outside ? 0.0F : static_cast<float>(std::min(place - low, 1.0));
-    ray.direction_part = static_cast<float>(alpha - index);
-    for (const int corner : {0, 1, 2, 3}) {
-      const int at = index + corner % 2;
-      ray.corner[corner] =
-          static_cast<long>(table_.series(zone, low + (outside ? 0 : corner / 2), sheet, at % table_.phases) +
-                            static_cast<std::size_t>(at / table_.phases));
-    }
+    rays[sheet] = {static_cast<int>(table_.row_begin(zone, low, sheet)),
+                   static_cast<int>(table_.row_begin(zone, low + (outside ? 0 : 1), sheet)), index,
+                   outside ? 0.0F : static_cast<float>(std::min(place - low, 1.0)), static_cast<float>(alpha - index)};
   }
   return zone.sheets;
 }
 
-void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
-  table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, nodes);
-  constexpr std::size_t beyond = tap_angles;  // the last block of stage angles reads as far
-  for (auto* values :
-       {&nodes.x_p_mm, &nodes.z_p_mm, &nodes.zoom, &nodes.strength, &nodes.spacing, &nodes.cosine, &nodes.sine}) {
-    values->resize(values->size() + beyond, 0.0F);
-  }
+RayScale VialRays::scale() const {
+  const double pixel = setup_.projector.pixel_mm;
+  const double voxel = setup_.grid.voxel_mm;
+  return {1 / pixel,      setup_.projector.axis_column - first_ + padding(),
+          1 / voxel,      -setup_.first_row_mm / voxel,
+          setup_.z_scale, voxel / pixel};
 }
 
-void VialRays::taps(const RayNodes& nodes, const TapSource& ray, int row, Taps& taps) const {
-  static const auto kernel = pick_taps();
-  const TapNodes arrays{nodes.x_p_mm.data() + row,  climbs() ? nodes.z_p_mm.data() + row : nullptr,
-                        nodes.zoom.data() + row,    nodes.strength.data() + row,
-                        nodes.spacing.data() + row, nodes.cosine.data() + row,
-                        nodes.sine.data() + row};
-  const auto pixel = setup_.projector.pixel_mm;
-  const auto voxel = setup_.grid.voxel_mm;
-  const TapFrame frame{static_cast<float>(1 / pixel),
-                       static_cast<float>(setup_.projector.axis_column - first_ + padding()),
+void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
+  table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), nodes);
+}
+
+void VialRays::aim(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
+                   RayTaps& taps) const {
+  static const auto kernel = pick_aim();
+  const auto a = static_cast<std::size_t>(angle);
+  const RayFrame frame{angle * table_.phases,
+                       table_.phases,
+                       table_.directions,
+                       cosines_[a],
+                       sines_[a],
                        static_cast<float>(columns() + 2 * padding() - 1),
-                       static_cast<float>(1 / voxel),
-                       static_cast<float>(-setup_.first_row_mm / voxel),
-                       static_cast<float>(setup_.z_scale),
-                       static_cast<float>(voxel / pixel),
-                       taps_,
-                       cosines_.data() + row,
-                       sines_.data() + row};
-  kernel(arrays, ray, frame, taps);
+                       climbs() ? 0.5F * static_cast<float>(slices - 1) : 0.0F,
+                       climbs(),
+                       taps_};
+  kernel(nodes.data(), rays, count, frame, taps);
 }
 
 }  // namespace vam::light

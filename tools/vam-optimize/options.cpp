@@ -127,7 +127,7 @@ void declare(cli::App& app, Options& options) {
              std::string("Optimisation method. auto is ") + optimize::automatic_method +
                  ", the best of tests/bench/printability, for at least " +
                  std::to_string(optimize::automatic_iterations) +
-                 " iterations and until the part prints with a process window of 0.05.");
+                 " iterations and until " + optimize::automatic_until + ".");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");

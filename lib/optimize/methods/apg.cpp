@@ -15,6 +15,8 @@ namespace vam::optimize {
 
 namespace {
 
+constexpr float momentum = 5;  // at the start: it is near the end, and saves two iterations of ten
+
 constexpr float shorter = 0.7F;  // measured on a 512 x 512 resolution target; 0.5 and 0.9 do a little worse
 
 constexpr float close_enough = 0.2F;  // of the half width of a slice's window
@@ -100,7 +102,7 @@ class Apg final : public Method {
     before_ = iterate;
     const Window& window = problem.demands.window;
     length_ = constant(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
-    momentum_ = constant(iterate.g.size(), 1.0F);
+    momentum_ = constant(iterate.g.size(), momentum);
     half_width_ = constant(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
     loss_ = losses(problem, light, iterate);
     while (widen(problem)) loss_ = losses(problem, light, iterate);
