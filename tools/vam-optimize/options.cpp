@@ -126,8 +126,8 @@ void declare(cli::App& app, Options& options) {
   app.choice("--method", options.method, methods,
              std::string("Optimisation method. auto is ") + optimize::automatic_method +
                  ", the best of tests/bench/printability, for at least " +
-                 std::to_string(optimize::automatic_iterations) +
-                 " iterations and until " + optimize::automatic_until + ".");
+                 std::to_string(optimize::automatic_iterations) + " iterations and until " + optimize::automatic_until +
+                 ".");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");
