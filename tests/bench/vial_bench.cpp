@@ -22,30 +22,25 @@ light::VialSetup setup_of(bool climbs, int slices) {
   return setup;
 }
 
-void count(benchmark::State& state, int slices) {
+template <class Apply>
+void measure(benchmark::State& state, Apply apply) {
+  const int slices = static_cast<int>(state.range(1));
+  const light::VialOperator light(setup_of(state.range(0) != 0, slices));
+  const auto slabs_used = static_cast<std::size_t>(slices / lanes);
+  std::vector<Slab> rows = slabs(slabs_used, light.sinogram().width, light.sinogram().height);
+  std::vector<Slab> doses = slabs(slabs_used, 256, 256);
+  for (auto _ : state) apply(light, rows, doses);
   state.counters["updates"] =
       benchmark::Counter(256.0 * 256 * std::numbers::pi / 4 * 360 * slices * static_cast<double>(state.iterations()),
                          benchmark::Counter::kIsRate);
 }
 
 void adjoint(benchmark::State& state) {
-  const int slices = static_cast<int>(state.range(1));
-  const light::VialOperator light(setup_of(state.range(0) != 0, slices));
-  const auto slabs_used = static_cast<std::size_t>(slices / lanes);
-  std::vector<Slab> rows = slabs(slabs_used, light.sinogram().width, light.sinogram().height);
-  std::vector<Slab> doses = slabs(slabs_used, 256, 256);
-  for (auto _ : state) light.adjoint(rows, doses);
-  count(state, slices);
+  measure(state, [](const light::Operator& light, auto& rows, auto& doses) { light.adjoint(rows, doses); });
 }
 
 void forward(benchmark::State& state) {
-  const int slices = static_cast<int>(state.range(1));
-  const light::VialOperator light(setup_of(state.range(0) != 0, slices));
-  const auto slabs_used = static_cast<std::size_t>(slices / lanes);
-  std::vector<Slab> rows = slabs(slabs_used, light.sinogram().width, light.sinogram().height);
-  std::vector<Slab> doses = slabs(slabs_used, 256, 256);
-  for (auto _ : state) light.forward(doses, rows);
-  count(state, slices);
+  measure(state, [](const light::Operator& light, auto& rows, auto& doses) { light.forward(doses, rows); });
 }
 
 void table(benchmark::State& state) {

@@ -40,8 +40,7 @@ TEST_CASE("unclipped inverse light gives the disc in spite of absorption; the ch
   const int size = 128;
   const double radius = 64;
   const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x - 20, y + 5) < 20; });
-  Slab f(size, size);
-  pack(disc.data(), 1, f);
+  const Slab f = parts::packed(disc, size);
   const auto ratio = [&](Correction correction, double mu) {  // dose at the disc's inner over its outer side
     const AttenuatedOperator light(parts::turn(size, 360), mu, radius, correction);
     Slab g(light.sinogram().width, light.sinogram().height);

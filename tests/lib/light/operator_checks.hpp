@@ -14,6 +14,13 @@
 
 namespace parts {
 
+/// One slice in the first lane of a slab, the other lanes empty.
+inline vam::Slab packed(const std::vector<float>& image, int size) {
+  vam::Slab slab(size, size);
+  pack(image.data(), 1, slab);
+  return slab;
+}
+
 inline vam::Slab noise(vam::light::Shape shape, unsigned seed) {
   vam::Slab slab(shape.width, shape.height);
   std::mt19937 random(seed);
@@ -61,8 +68,7 @@ inline void check_disc_comes_back(const vam::light::Operator& light, double erro
   const double place = 0.1 * size;
   const auto disc =
       vam::oracle::draw(size, [&](double x, double y) { return std::hypot(x - place, y + 0.5 * place) < 0.25 * size; });
-  vam::Slab f(size, size);
-  pack(disc.data(), 1, f);
+  const vam::Slab f = packed(disc, size);
   std::vector<vam::Slab> g;
   vam::optimize::filtered_projections(light, {&f, 1}, g);
   const vam::Slab dose = dose_of(light, g[0]);

@@ -15,14 +15,9 @@ using namespace vam;
 using namespace vam::optimize;
 using namespace vam::light;
 using parts::dot;
+using parts::packed;
 
 namespace {
-
-Slab packed(const std::vector<float>& image, int size) {
-  Slab slab(size, size);
-  pack(image.data(), 1, slab);
-  return slab;
-}
 
 /// A cross: concave, so that light may pass one arm and meet the next.
 std::vector<float> cross(int size) {

@@ -12,17 +12,8 @@
 using namespace vam;
 using namespace vam::optimize;
 using namespace vam::light;
+using parts::packed;
 using parts::vial_setup;
-
-namespace {
-
-Slab packed(const std::vector<float>& image, int size) {
-  Slab slab(size, size);
-  pack(image.data(), 1, slab);
-  return slab;
-}
-
-}  // namespace
 
 TEST_CASE("around an insert in the vial A and A* are adjoint, also round a concave one in a resin that absorbs") {
   VialSetup setup = vial_setup(64, 72);
