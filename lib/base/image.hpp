@@ -1,4 +1,4 @@
-// A dense picture of floats and views of flat memory: the only array types that cross module borders.
+// A dense image of floats and views of flat memory: the only array types that cross module borders.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace vam {
 
-/// Row-major picture: pixel (x, y) is values[y * width + x]; x runs along the detector, y along angles or rows.
+/// Row-major image: pixel (x, y) is values[y * width + x]; x runs along the detector, y along angles or rows.
 struct Image {
   int width = 0;
   int height = 0;

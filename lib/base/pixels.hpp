@@ -1,4 +1,4 @@
-// Pictures of whole numbers, as files, screens and projectors have them.
+// Images of whole numbers, as files, screens and projectors have them.
 #pragma once
 
 #include <array>

@@ -64,7 +64,7 @@ struct Camera {
   double fps = 10;
   double index_resin = 1.53;          // at the camera's wavelength
   std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent
-  std::optional<double> tilt_deg;     // of the axis in the picture, its lower end towards higher columns
+  std::optional<double> tilt_deg;     // of the axis in the image, its lower end towards higher columns
   std::string flat;                   // flat field (EXR); empty = none
 };
 

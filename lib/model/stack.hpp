@@ -40,7 +40,7 @@ struct ImageInfo {
   bool has_time = false;
   bool has_number = false;  // camera frames
   int number = 0;           // since the camera started; a gap is frames that were lost
-  bool incomplete = false;  // parts of the picture did not arrive
+  bool incomplete = false;  // parts of the image did not arrive
 };
 
 }  // namespace vam::model

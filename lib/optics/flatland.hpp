@@ -13,7 +13,7 @@
 
 namespace vam::optics {
 
-/// The picture plane: the part's x to the right, y up, the axis at (axis_column, axis_row) from the top left.
+/// The image plane: the part's x to the right, y up, the axis at (axis_column, axis_row) from the top left.
 struct Canvas {
   int columns = 0;
   int rows = 0;
@@ -22,7 +22,7 @@ struct Canvas {
   double axis_row = 0;
 };
 
-/// The projector's picture with the axis of the part in the middle, moved by the offsets in pixels to the right and
+/// The projector's image with the axis of the part in the middle, moved by the offsets in pixels to the right and
 /// down.
 [[nodiscard]] Canvas flatland_canvas(const model::Projector& projector, double column_offset, double row_offset);
 

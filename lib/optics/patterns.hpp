@@ -1,4 +1,4 @@
-// Pictures to adjust and measure a projector with, in its own grey levels: no response table stands between.
+// Images to adjust and measure a projector with, in its own grey levels: no response table stands between.
 #pragma once
 
 #include <string>

@@ -48,12 +48,12 @@ const Image& SlicePlace::place(const Image& slice, float dark, Image& buffer) co
 
 GreyImage SlicePlace::place(const GreyImage& slice) const {
   if (as_it_is(slice.width, slice.height)) return slice;
-  GreyImage picture(columns_, rows_, slice.bits);
+  GreyImage image(columns_, rows_, slice.bits);
   for (int y = 0; y < slice.height; ++y) {
     std::copy_n(slice.values.begin() + static_cast<std::ptrdiff_t>(slice.index(0, y)), slice.width,
-                picture.values.begin() + static_cast<std::ptrdiff_t>(picture.index(left_, top_ + y)));
+                image.values.begin() + static_cast<std::ptrdiff_t>(image.index(left_, top_ + y)));
   }
-  return picture;
+  return image;
 }
 
 }  // namespace vam::optics

@@ -1,4 +1,4 @@
-// Where a slice of a part lies in the projector's picture.
+// Where a slice of a part lies in the projector's image.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace vam::optics {
 
-/// Puts slices into the projector's picture, their middle at (axis_column, axis_row); those that have the picture's
+/// Puts slices into the projector's image, their middle at (axis_column, axis_row); those that have the image's
 /// size already stay where they are. Or, without a projector, leaves slices as they are.
 class SlicePlace {
  public:
   /// As they are.
   explicit SlicePlace(const model::StackInfo& slice);
   /// `subject` begins messages; the offsets move right and down, by whole pixels. A pixel_mm of 0 is not known. Throws
-  /// Fault::data when the slices' pixels are not the projector's, or lie beyond the picture.
+  /// Fault::data when the slices' pixels are not the projector's, or lie beyond the image.
   SlicePlace(const std::string& subject, const model::Projector& projector, const model::StackInfo& slice,
              double column_offset = 0, double row_offset = 0);
 
-  /// Size and place of the pictures into the stack's facts.
+  /// Size and place of the images into the stack's facts.
   void apply(model::StackInfo& info) const;
   /// Returns the slice or, if it has to be placed, `buffer` with the slice in it and `dark` around it.
   [[nodiscard]] const Image& place(const Image& slice, float dark, Image& buffer) const;

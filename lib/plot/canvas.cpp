@@ -112,9 +112,9 @@ void Canvas::disc(Spot centre, double radius, Rgb colour) {
              cv::FILLED, cv::LINE_AA, shift);
 }
 
-void Canvas::paste(const RgbImage& picture, int x0, int y0) {
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) state_->blend(x0 + x, y0 + y, picture(x, y), 1);
+void Canvas::paste(const RgbImage& image, int x0, int y0) {
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) state_->blend(x0 + x, y0 + y, image(x, y), 1);
   }
 }
 
@@ -146,15 +146,15 @@ double Canvas::text_width(const std::string& words, double size) {
          supersample;
 }
 
-RgbImage Canvas::picture() const {
-  RgbImage picture(width(), height());
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
+RgbImage Canvas::image() const {
+  RgbImage image(width(), height());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
       const auto& pixel = state_->pixels.at<cv::Vec3b>(y, x);
-      picture(x, y) = {pixel[0], pixel[1], pixel[2]};
+      image(x, y) = {pixel[0], pixel[1], pixel[2]};
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace vam::plot

@@ -43,8 +43,8 @@ class Canvas {
   void fill(Spot corner, Spot opposite, Rgb colour, double opacity = 1);
   void outline(Spot corner, Spot opposite, Rgb colour, double thickness = 1);
   void disc(Spot centre, double radius, Rgb colour);
-  /// Copies a picture with its top left pixel at (x, y); what does not fit is left out.
-  void paste(const RgbImage& picture, int x, int y);
+  /// Copies an image with its top left pixel at (x, y); what does not fit is left out.
+  void paste(const RgbImage& image, int x, int y);
 
   /// ASCII text of `size` pixels a line. `at` is where `horizontal` and `vertical` say: its beginning, middle or end;
   /// the beginning is left and top. upwards turns it by 90 degrees anticlockwise, and the alignments with it.
@@ -52,7 +52,7 @@ class Canvas {
             Align vertical = Align::middle, bool upwards = false);
   [[nodiscard]] static double text_width(const std::string& words, double size);
 
-  [[nodiscard]] RgbImage picture() const;
+  [[nodiscard]] RgbImage image() const;
 
  private:
   struct State;

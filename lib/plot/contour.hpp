@@ -1,4 +1,4 @@
-// Lines of equal value in a picture.
+// Lines of equal value in an image.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ struct ContourPiece {
   Spot to;
 };
 
-/// Where the bilinear picture crosses `level`, by marching squares; at a saddle the mean of the four pixels decides.
+/// Where the bilinear image crosses `level`, by marching squares; at a saddle the mean of the four pixels decides.
 [[nodiscard]] std::vector<ContourPiece> contour(const Image& image, float level);
 
 }  // namespace vam::plot

@@ -8,7 +8,7 @@ namespace vam::plot {
 
 namespace {
 
-constexpr double bar_gap = 22;  // picture to colour bar
+constexpr double bar_gap = 22;  // image to colour bar
 constexpr double bar_width = 20;
 constexpr int bar_ticks = 7;
 
@@ -28,10 +28,10 @@ Scale scale_for(const ImageFigure& figure, double room_x, double room_y) {
 }
 
 // Enlarged by repetition, since a voxel is a box; reduced by averaging.
-RgbImage scaled(const RgbImage& picture, Scale scale) {
-  const cv::Mat in(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.values.data()));
-  const int width = std::max(1, static_cast<int>(std::lround(picture.width * scale.x)));
-  const int height = std::max(1, static_cast<int>(std::lround(picture.height * scale.y)));
+RgbImage scaled(const RgbImage& image, Scale scale) {
+  const cv::Mat in(image.height, image.width, CV_8UC3, const_cast<Rgb*>(image.values.data()));
+  const int width = std::max(1, static_cast<int>(std::lround(image.width * scale.x)));
+  const int height = std::max(1, static_cast<int>(std::lround(image.height * scale.y)));
   cv::Mat stretched;
   cv::resize(in, stretched, {width, in.rows}, 0, 0, scale.x >= 1 ? cv::INTER_NEAREST : cv::INTER_AREA);
   RgbImage out(width, height);
@@ -90,8 +90,8 @@ double colour_bar_room(const ImageFigure& figure) {
 }
 
 void draw_panel(Canvas& canvas, const ImageFigure& figure, const Panel& panel, Spot corner, Scale scale) {
-  const RgbImage picture = scaled(coloured(panel.values, figure.colours, figure.low, figure.high), scale);
-  canvas.paste(picture, static_cast<int>(corner.x), static_cast<int>(corner.y));
+  const RgbImage image = scaled(coloured(panel.values, figure.colours, figure.low, figure.high), scale);
+  canvas.paste(image, static_cast<int>(corner.x), static_cast<int>(corner.y));
   draw_outline(canvas, panel, corner, scale);
 }
 
@@ -117,7 +117,7 @@ RgbImage draw_single(const ImageFigure& figure) {
     canvas.text({left + 0.5 * width, top + height + 68}, "line: " + figure.outline_name, label_size, paint::black,
                 Align::middle);
   }
-  return canvas.picture();
+  return canvas.image();
 }
 
 // The number of columns that makes the sheet about 4 : 3.
@@ -140,7 +140,7 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   const double height = std::round(figure.panels.front().values.height * scale.y);
   const double top = figure.title.empty() ? 12 : 48;
   const double foot = figure.outline_name.empty() ? 16 : 44;
-  double cell = width;  // a caption may be wider than its picture
+  double cell = width;  // a caption may be wider than its image
   for (const Panel& panel : figure.panels)
     cell = std::max(cell, std::ceil(Canvas::text_width(panel.caption, label_size)));
   const double body_width = columns * (cell + gap);
@@ -165,18 +165,18 @@ RgbImage draw_sheet(const ImageFigure& figure) {
     canvas.text({20 + 0.5 * body_width, top + body_height + 20}, "line: " + figure.outline_name, label_size,
                 paint::black, Align::middle);
   }
-  return canvas.picture();
+  return canvas.image();
 }
 
 }  // namespace
 
 RgbImage coloured(const Image& values, ColourMap map, double low, double high) {
-  RgbImage picture(values.width, values.height);
+  RgbImage image(values.width, values.height);
   const double span = high > low ? high - low : 1;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    picture.values[i] = colour(map, (static_cast<double>(values.values[i]) - low) / span);
+    image.values[i] = colour(map, (static_cast<double>(values.values[i]) - low) / span);
   }
-  return picture;
+  return image;
 }
 
 RgbImage draw(const ImageFigure& figure) {

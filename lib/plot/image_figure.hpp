@@ -1,4 +1,4 @@
-// Figures of pictures: one with axes, or a sheet of many; with colour bar, scale bar and outlines.
+// Figures of images: one with axes, or a sheet of many; with colour bar, scale bar and outlines.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace vam::plot {
 
 struct Panel {
   Image values;         // row 0 at the top
-  std::string caption;  // above the picture, on a sheet
+  std::string caption;  // above the image, on a sheet
   std::vector<ContourPiece> outline;
 };
 
@@ -23,15 +23,15 @@ struct ImageFigure {
   std::vector<Panel> panels;  // of one size; a single one gets axes, several become a sheet
   Axis x;                     // from the left edge of the first column to the right edge of the last
   Axis y;                     // from the lower edge of the last row to the upper edge of the first
-  bool square_pixels = true;  // false: the picture may be stretched (columns against angles)
+  bool square_pixels = true;  // false: the image may be stretched (columns against angles)
   ColourMap colours = ColourMap::viridis;
   double low = 0;  // value at the lower end of the colours
   double high = 1;
   std::string value_label;   // beside the colour bar: "dose / mJ cm-3"
-  std::string outline_name;  // below the picture; none when empty
+  std::string outline_name;  // below the image; none when empty
   double pixel_mm = 0;       // for a scale bar; none when 0
   int columns = 0;           // of a sheet; 0: as many as make it about 4 : 3
-  int size = 720;            // pixels of the longer side of the picture, about
+  int size = 720;            // pixels of the longer side of the image, about
 };
 
 [[nodiscard]] RgbImage draw(const ImageFigure& figure);

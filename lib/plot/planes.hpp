@@ -1,4 +1,4 @@
-// Flat sections of a volume, as pictures.
+// Flat sections of a volume, as images.
 #pragma once
 
 #include <string>

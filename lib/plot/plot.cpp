@@ -167,7 +167,7 @@ RgbImage draw(const Plot& plot) {
   draw_markers(canvas, frame, plot.markers);
   draw_legend(canvas, frame, plot);
   canvas.text({0.5 * (frame.left + frame.right), 26}, plot.title, title_size, paint::black, Align::middle);
-  return canvas.picture();
+  return canvas.image();
 }
 
 HistogramBuilder::HistogramBuilder(double low, double high, int bins)

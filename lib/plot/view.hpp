@@ -17,7 +17,7 @@ struct ViewOptions {
   std::string name;  // of the file, for titles
   Plane plane = Plane::axial;
   std::optional<double> at;   // mm across the plane; z of a slice in mm or stage angle of a frame in degrees
-  int sheet = 1;              // number of pictures, evenly spread
+  int sheet = 1;              // number of images, evenly spread
   std::optional<double> low;  // values of the ends of the colours
   std::optional<double> high;
   std::string colours = "auto";  // auto, grey, viridis, diverging

@@ -1,4 +1,4 @@
-// Sinograms, frames and pictures.
+// Sinograms, frames and images.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -65,7 +65,7 @@ class Selection {
     }
   }
 
-  // How far the picture shown is from the place wanted.
+  // How far the image shown is from the place wanted.
   [[nodiscard]] double away() const { return nearest_; }
 
   std::vector<Panel> panels;

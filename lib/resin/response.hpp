@@ -58,7 +58,7 @@ class GreyLevels {
   std::vector<float> intensity_;  // rising with the level
 };
 
-/// What became of the light of a picture.
+/// Intensity of an image, summed, and the pixels that were clipped.
 struct LightTally {
   double light = 0;  // sum over the pixels, fractions of full
   long pixels = 0;

@@ -217,11 +217,11 @@ static int answer(unsigned long request, void *argument) {
       return 0;
     }
     case DRM_IOCTL_MODE_ADDFB: {
-      struct drm_mode_fb_cmd *picture = argument;
-      if (picture->pitch != PITCH) return refuse(EINVAL);
-      picture->fb_id = 100 + picture->handle;
-      note(now_s(), "\"event\":\"buffer\",\"framebuffer\":%u", picture->fb_id);
-      card->handle_of[picture->handle] = picture->handle;
+      struct drm_mode_fb_cmd *image = argument;
+      if (image->pitch != PITCH) return refuse(EINVAL);
+      image->fb_id = 100 + image->handle;
+      note(now_s(), "\"event\":\"buffer\",\"framebuffer\":%u", image->fb_id);
+      card->handle_of[image->handle] = image->handle;
       return 0;
     }
     case DRM_IOCTL_MODE_SETCRTC: {

@@ -1,5 +1,5 @@
 """Judges vam-project on a graphics card by the card's own log (drm_card.c), in a folder with part.exr and printer.toml,
-and card/ for pictures. usage: drm_trials.py pictures FRAMES FLIPS   what was shown is what FLIPS (the tool's log) says, of the PNGs
+and card/ for images. usage: drm_trials.py images FRAMES FLIPS   what was shown is what FLIPS (the tool's log) says, of the PNGs
               drm_trials.py ends TRIALS CARD.so     black in time after every end of the tool; prints a table"""
 
 import json
@@ -23,7 +23,7 @@ def lines(path):
     return [json.loads(line) for line in text.split("\n")[:-1]]
 
 
-def picture(memory, framebuffer):
+def image(memory, framebuffer):
     """Row-major grey of an image in the card's memory."""
     start = (framebuffer - 100) * ROOM
     rows = [memory[start + y * PITCH:start + y * PITCH + 4 * COLUMNS] for y in range(ROWS)]
@@ -31,7 +31,7 @@ def picture(memory, framebuffer):
     return b"".join(row[0::4] for row in rows)
 
 
-def pictures(frames, flips):
+def images(frames, flips):
     card = lines("card/log")
     memory = open("card/memory", "rb").read(ROOM * 1000)
     wanted = [raw_grey(path) for path in sorted(pathlib.Path(frames).glob("*.png"))]
@@ -40,7 +40,7 @@ def pictures(frames, flips):
     black = bytes(COLUMNS * ROWS)
     for line in told:
         flip = shown[line["sequence"]]
-        assert picture(memory, flip["framebuffer"]) == (black if line["frame"] < 0 else wanted[line["frame"]])
+        assert image(memory, flip["framebuffer"]) == (black if line["frame"] < 0 else wanted[line["frame"]])
         assert abs(flip["t_monotonic_s"] - line["t_monotonic_s"]) < 2e-6
     lit = next(i for i, line in enumerate(card) if line.get("shade") == "lit")
     buffers = [i for i, line in enumerate(card) if line["event"] == "buffer"]
@@ -114,7 +114,7 @@ def ends(count, card):
     sys.exit(failed > 0)
 
 
-if sys.argv[1] == "pictures":
-    pictures(*sys.argv[2:])
+if sys.argv[1] == "images":
+    images(*sys.argv[2:])
 else:
     ends(int(sys.argv[2]), sys.argv[3])

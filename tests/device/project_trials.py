@@ -20,8 +20,8 @@ LANES = 9  # of trials: a cause each; every lane must have as many as the others
 
 def black(screen):
     """True when no grey byte is above 0; the fourth byte of a pixel is not shown."""
-    picture = screen.memory[screen.offset:screen.offset + screen.line * screen.height]
-    return not any(picture[0::4]) and not any(picture[1::4]) and not any(picture[2::4])
+    image = screen.memory[screen.offset:screen.offset + screen.line * screen.height]
+    return not any(image[0::4]) and not any(image[1::4]) and not any(image[2::4])
 
 
 def wait(condition, limit_s):

@@ -1,7 +1,7 @@
 """The image on an Xvfb screen: now from its memory-mapped file (Xvfb -fbdir), which tells how late it is, without
 asking the X server; to watch it by the X server of $DISPLAY, which never shows half an update.
 usage: screen.py FILE now                 prints "black" or the number of lit pixels
-       screen.py FILE watch SECONDS IDLE  prints each new picture as hex of its grey bytes; ends after SECONDS, or when
+       screen.py FILE watch SECONDS IDLE  prints each new image as hex of its grey bytes; ends after SECONDS, or when
                                           the screen was lit once and then black for IDLE seconds
        screen.py FILE compare FRAMES SEEN prints "exact" or "different", and how many of the frames (a folder of PNGs or
                                           a lossless video) were seen"""
@@ -31,7 +31,7 @@ class Screen:
             start = self.offset + y * self.line
             row = self.memory[start:start + 4 * self.width]
             if row[0::4] != row[1::4] or row[1::4] != row[2::4]:
-                raise ValueError("a pixel is not grey, or half a picture was read")
+                raise ValueError("a pixel is not grey, or half an image was read")
             rows.append(row[0::4])
         return b"".join(rows)
 
@@ -66,7 +66,7 @@ class Server:
         self.socket.sendall(struct.pack("<BBHIhhHHI", 73, 2, 5, self.root, 0, 0, self.width, self.height, 0xFFFFFFFF))
         kind, length = struct.unpack_from("<BxxxI", self.receive(32))
         if kind != 1:
-            raise ValueError("the X server shows no picture")
+            raise ValueError("the X server shows no image")
         pixels = self.receive(4 * length)
         if pixels[0::4] != pixels[1::4] or pixels[1::4] != pixels[2::4]:
             raise ValueError("a pixel is not grey")
@@ -89,12 +89,12 @@ def watch(screen, seconds, idle):
     end = time.monotonic() + seconds
     lit_at = None
     while time.monotonic() < end and (lit_at is None or time.monotonic() < lit_at + idle):
-        picture = screen.grey()
-        if any(picture):
+        image = screen.grey()
+        if any(image):
             lit_at = time.monotonic()
-        if picture not in seen:
-            seen.add(picture)
-            print(picture.hex())
+        if image not in seen:
+            seen.add(image)
+            print(image.hex())
         time.sleep(0.004)
 
 
@@ -110,8 +110,8 @@ def compare(path, seen_path):
     else:
         video, size = raw_grey(path), len(seen[0])
         frames = {video[at:at + size] for at in range(0, len(video), size)}
-    lit = [picture for picture in seen if any(picture)]
-    known = [picture for picture in lit if picture in frames]
+    lit = [image for image in seen if any(image)]
+    known = [image for image in lit if image in frames]
     print("exact" if lit and len(known) == len(lit) else "different", len(known), len(lit), len(frames))
 
 

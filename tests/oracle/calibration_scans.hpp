@@ -45,7 +45,7 @@ class SweepBench {
   std::array<std::vector<double>, 2> table_;  // at the low and the high edge, by the root of the depth
 };
 
-/// A picture with a bright vertical band: a flat top between two Gaussian-blurred edges.
+/// An image with a bright vertical band: a flat top between two Gaussian-blurred edges.
 struct BandTruth {
   int columns = 0;
   int rows = 0;

@@ -4,7 +4,7 @@ but not defined, one a line, and fails if there is any.
 [physics §n] and [devices §n] are numbered sections, [formats: heading] is a heading, [RAY21 eq 8] is a paper under
 REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an attribute of vam-formats.7. Keys of
 the printer file and schemas of reports are defined in vam-formats.7. Source paths in these pages and in CONTRIBUTING.md exist, and its
-picture has every folder of lib/layers.txt."""
+diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
 import sys
@@ -91,7 +91,7 @@ for path in re.findall(r'(?:lib|tools|tests|scripts)/[\w/.-]*\w/?(?=[`,. ])', gu
         faults.append(f'CONTRIBUTING.md: there is no {path}')
 for folder in re.findall(r'^([\w/]+):', (root / 'lib/layers.txt').read_text(), re.M):
     if not re.search(rf'(?<![\w/]){folder}(?![\w/])', guide):
-        faults.append(f'CONTRIBUTING.md: the picture of the layers lacks {folder}')
+        faults.append(f'CONTRIBUTING.md: the diagram of the layers lacks {folder}')
 for section, key in re.findall(r'^    \{"(\w+)", "(\w+)", at<', used, re.M):
     if not re.search(rf'^\.It Va {section}\.{key}\b', formats, re.M):
         faults.append(f'man/vam-formats.7: the printer file\'s {section}.{key} is missing')

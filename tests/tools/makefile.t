@@ -6,7 +6,7 @@ box 4 4 1 >box.off
 cp box.off other.off
 ok 'builds all, two at once' make -j2 VOXEL=0.1
 for part in box other; do
-  [ -s $part.mkv ] && [ -s $part.dose.png ]; report $? "$part has video and picture"
+  [ -s $part.mkv ] && [ -s $part.dose.png ]; report $? "$part has a video and a figure"
 done
 is 'a second run does nothing' "$(make -s VOXEL=0.1 | wc -c)" 0
 touch other.off

@@ -1,4 +1,4 @@
-"""Folders of pictures as a camera would take them in a calibration scan, for tests, by formulas of their own.
+"""Folders of images as a camera would take them in a calibration scan, for tests, by formulas of their own.
 
     scans.py sweep DIR axis=511.5 radius=12.7 columns=1024 pitch=8 width=4    a lit line across a vial in air
     scans.py ramp DIR gamma=2.2 each=4                                        17 levels
@@ -57,7 +57,7 @@ def seen(sheet, sights):
 
 
 def glow(job, nodes=150, views=600):
-    """A function of the column, from the axis: the picture's light, from a camera at 90 degrees, 200 mm away."""
+    """A function of the column, from the axis: the image's light, from a camera at 90 degrees, 200 mm away."""
     radius, lens, camera = job["radius"], 1.8 * job["columns"] * 0.065, 200
     tangent = lambda distance: radius / math.sqrt(1 - (radius / distance) ** 2) * (1 - 1e-9)
     sights = []

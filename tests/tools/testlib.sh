@@ -77,7 +77,7 @@ await() {  # await COMMAND...: until it succeeds, at most 10 s
   done
 }
 
-screen_up() {  # screen_up WIDTH HEIGHT: an X server without a screen, its picture in screen/Xvfb_screen0; $server
+screen_up() {  # screen_up WIDTH HEIGHT: an X server without a screen, its image in screen/Xvfb_screen0; $server
   mkdir -p screen
   exec 4>screen.number
   # -noreset, -nocursor: what the server itself draws when its last client goes is no part of a test.

@@ -115,7 +115,7 @@ holds "they receive no dose" "$(json hidden.json part_dose_per_turn_mean_relativ
 # Wrong inputs
 head -c 100000 frames.exr >cut.exr
 $exr make camera.exr space=camera
-$exr make pictures.exr kind=frames
+$exr make images.exr kind=frames
 $exr make flattened.exr pixel=0.1 row=0.3
 $exr make half.exr width=64 step=3
 printf 'no volume' >noise.vdb
@@ -126,7 +126,7 @@ fails 65 cut.exr vam-dose cut.exr -o x.vdb
 cat handle.vdb part.vdb >mixed.vdb  # an insert of other voxels
 fails 65 "differs from that of 'target'" vam-dose frames.exr --like mixed.vdb -o x.vdb
 fails 65 camera vam-dose camera.exr -o x.vdb
-fails 65 frames vam-dose pictures.exr -o x.vdb
+fails 65 frames vam-dose images.exr -o x.vdb
 fails 65 cubes vam-dose flattened.exr -o x.vdb
 fails 65 'cover 180 deg' vam-dose half.exr -o x.vdb
 fails 65 'not slices of the volume' vam-dose flat.exr --like part.vdb -o x.vdb

@@ -14,7 +14,7 @@ print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o dr
 vam-project part.exr -o frames/ --fps 1 --speed 10
 print --missed 1 --log flips 2>errors
 is 'a print by page flips ends well' "$? $(cat errors)" '0 '
-$judge pictures frames flips >judged
+$judge images frames flips >judged
 is 'every flip showed the frame it was said to, at that blank' "$(cut -d' ' -f1 judged)" exact
 holds 'of 36 frames and black nearly all' "$(cut -d' ' -f2 judged) > 30"
 is 'black at the end' "$(shown)" '"shade":"black"'
@@ -22,7 +22,7 @@ is 'the gamma table is linear' "$(grep -o '"straight":.' card/log)" '"straight":
 
 FAKE_DRM_FAULT=skip:10 print --missed 1 --log flips
 is 'blanks are missed' $? 0
-$judge pictures frames flips >judged
+$judge images frames flips >judged
 holds 'and all counted' "$(cut -d' ' -f3 judged) >= 5"
 
 fails 69 'connectors: eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-2
@@ -30,7 +30,7 @@ fails 64 'unknown option' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HD
 fails 65 'do not match the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
 
 # Each answer of the GPU wrong in turn. Without the GPU the screen cannot be blackened: the light engine goes dark.
-dark_after() {  # seconds from the last picture until the last black, by the card's log
+dark_after() {  # seconds from the last image until the last black, by the card's log
   python3 -c 'import json
 shown = [line for line in map(json.loads, open("card/log")) if "shade" in line]
 lit = [line["t_monotonic_s"] for line in shown if line["shade"] == "lit"]

@@ -22,12 +22,12 @@ ok "a lossless video" vam-project part.exr -o print.mkv
 ok "a video to look at" vam-project part.exr -o look.mp4
 is "FFV1 at the projector's rate" "$(ffprobe -v error -count_frames -show_entries stream=codec_name,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 print.mkv)" "ffv1,gray,1/1,36"
 ffmpeg -v error -i print.mkv -f rawvideo -pix_fmt gray video.raw
-for i in 00000 00001 00035; do $png sum frames/$i.png; done | tr '\n' ' ' >pictures.sums
+for i in 00000 00001 00035; do $png sum frames/$i.png; done | tr '\n' ' ' >images.sums
 python3 - >video.sums <<'PY'
 data = open("video.raw", "rb").read()
 print(*[sum(data[512 * n:512 * n + 512]) for n in (0, 1, 35)], end=" ")
 PY
-same "video and images have the same pixels" pictures.sums video.sums
+same "video and images have the same pixels" images.sums video.sums
 
 # Transposition: row 5 is slice 0, rows go up; the sinogram's row n is frame n.
 brightest=$($exr get pipe.exr 0 44 3)

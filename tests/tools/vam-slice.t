@@ -84,7 +84,7 @@ ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print inse
 ok "a mesh as insert, longer than the part" vam-slice cube.stl --insert hollow.stl --voxel 0.25 -o insert.vdb
 
 # Images: 6 x 4 pixels, 3 slices; the middle one half grey
-cat >pictures.py <<'PY'
+cat >images.py <<'PY'
 import os, struct, sys, zlib
 def png(name, rows):
     chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -97,7 +97,7 @@ for k, level in enumerate((255, 51, 255)):
     png("odd/s%d.png" % k, [[0] * 5, [255] * 5, [0] * 5, [0] * 5, [0] * 5])
     png("black/s%d.png" % k, [[0] * 4] * 4)
 PY
-python3 pictures.py
+python3 images.py
 volume 52.8 vam-slice stack --voxel 1 --stretch-z 1
 is "as many slices as images" "$(json report.json voxels.2)" 3
 volume 52.8 vam-slice stack --voxel 1

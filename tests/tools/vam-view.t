@@ -26,7 +26,7 @@ is "one pixel a value" "$($png size slice.png)" "64 60 8 3"
 is "columns to the right, angles down" "$($png get slice.png 44 0) $($png get slice.png 19 30)" "255 255 255 255 255 255"
 is "from a pipe" "$(vam-view --at 0.52 --plain --colours grey <sino.exr >piped.png; $png sum piped.png)" "$($png sum slice.png)"
 
-# Frames of a projector, as EXR, pictures and video: the same pixels
+# Frames of a projector, as EXR, images and video: the same pixels
 small_printer >printer.toml
 $exr make projector.exr space=projector width=64 height=36 count=3
 vam-project projector.exr --bits 8 -o frames.exr; vam-project projector.exr -o frames/; vam-project projector.exr -o frames.mkv

@@ -33,7 +33,7 @@ device::CameraFeed folder_feed(const std::string& place) {
   };
 }
 
-device::CameraFeed picture_feed(const std::string& place) {
+device::CameraFeed image_feed(const std::string& place) {
   auto folder = std::make_shared<io::PictureFolder>(place);
   return [folder, next = 0](CapturedFrame& frame) mutable {
     if (next == folder->count()) return false;
@@ -88,7 +88,7 @@ device::CameraFeed stack_feed(const std::string& place) {
 
 device::CameraFeed open_recording(const std::string& place) {
   if (!std::filesystem::is_directory(place)) return stack_feed(place);
-  return io::is_capture_folder(place) ? folder_feed(place) : picture_feed(place);
+  return io::is_capture_folder(place) ? folder_feed(place) : image_feed(place);
 }
 
 }  // namespace vam::capture_tool

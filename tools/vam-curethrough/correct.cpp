@@ -56,11 +56,11 @@ Json figures(const Correct& options, const Job& job) {
 }
 
 void write_mask(const std::string& path, const Image& mask) {
-  GreyImage picture(mask.width, mask.height, 8);
+  GreyImage image(mask.width, mask.height, 8);
   for (std::size_t p = 0; p < mask.size(); ++p) {
-    picture.values[p] = static_cast<std::uint16_t>(std::min(255, static_cast<int>(mask.values[p]) * 128));
+    image.values[p] = static_cast<std::uint16_t>(std::min(255, static_cast<int>(mask.values[p]) * 128));
   }
-  io::write_png(path, picture);
+  io::write_png(path, image);
 }
 
 std::vector<model::ImageInfo> time_stamps(const Job& job) {
@@ -212,13 +212,13 @@ void declare(cli::App& app, Correct& options) {
 
 void run(const cli::App& root, const cli::App& app, const Correct& options) {
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
-  const bool pictures = !options.png.empty();
+  const bool images = !options.png.empty();
   if (stack) io::refuse_same_file(options.part.path, options.output);
   if (stack && !options.catalogue.empty() && options.output == "-") {
     throw Error{Fault::usage, "--catalogue: the table goes to standard output; give -o a file name"};
   }
   if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: requires a stack; give -o"};
-  Job job = prepare(root, options, stack || pictures);
+  Job job = prepare(root, options, stack || images);
   Json report = figures(options, job);
   if (!options.catalogue.empty()) report["catalogue"] = compare(options, job.print, job.part.columns());
 
@@ -228,8 +228,8 @@ void run(const cli::App& root, const cli::App& app, const Correct& options) {
   std::optional<io::StackWriter> out;
   if (stack) out.emplace(options.output, job.info, time_stamps(job), options.stack);
   std::optional<io::FrameFolder> folder;
-  if (pictures) folder.emplace(options.png);
-  if (pictures || options.quantise) {
+  if (images) folder.emplace(options.png);
+  if (images || options.quantise) {
     const resin::GreyLevels levels(job.print.response, job.print.printer.projector.bits);
     const auto kept = all_levels(options, job, levels, folder ? &*folder : nullptr, frame);
     if (options.quantise) write_levels(options, job, levels, kept, *out);

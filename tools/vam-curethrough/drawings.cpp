@@ -1,4 +1,4 @@
-// The pictures, after the figures of [CURE19].
+// Figures after those of [CURE19].
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,22 +29,22 @@ std::vector<double> sequence(double from, double to, int count) {
   return values;
 }
 
-RgbImage slices_picture(const Plane& plane, const resin::Response& response) {
-  RgbImage picture(plane.light.width, plane.light.height);
+RgbImage slices_image(const Plane& plane, const resin::Response& response) {
+  RgbImage image(plane.light.width, plane.light.height);
   for (std::size_t p = 0; p < plane.light.size(); ++p) {
     const auto level = static_cast<std::uint8_t>(
         std::lround(255 * std::clamp(response.grey(static_cast<double>(plane.light.values[p])), 0.0, 1.0)));
-    picture.values[p] = {level, level, level};
+    image.values[p] = {level, level, level};
   }
-  return picture;
+  return image;
 }
 
-RgbImage cure_picture(const Plane& plane) {
-  RgbImage picture(plane.cure.width, plane.cure.height);
+RgbImage cure_image(const Plane& plane) {
+  RgbImage image(plane.cure.width, plane.cure.height);
   for (std::size_t p = 0; p < plane.cure.size(); ++p) {
-    picture.values[p] = cure_colours[static_cast<std::size_t>(plane.cure.values[p])];
+    image.values[p] = cure_colours[static_cast<std::size_t>(plane.cure.values[p])];
   }
-  return picture;
+  return image;
 }
 
 RgbImage enlarged(const RgbImage& from, int width, int height) {
@@ -55,11 +55,10 @@ RgbImage enlarged(const RgbImage& from, int width, int height) {
   return to;
 }
 
-void draw_picture(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& picture, const std::string& title) {
+void draw_image(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& image, const std::string& title) {
   const int left = static_cast<int>(frame.left);
   const int top = static_cast<int>(frame.top);
-  canvas.paste(enlarged(picture, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left,
-               top);
+  canvas.paste(enlarged(image, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left, top);
   plot::draw_axes(canvas, frame, false);
   canvas.text({frame.left, frame.top - 14}, title, plot::label_size);
 }
@@ -106,9 +105,9 @@ void draw_plane(const std::string& path, const Plane& plane, const Print& print)
     const double start = left + number * (width + left);
     return plot::Frame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
   };
-  draw_picture(canvas, frame(0, width, y), slices_picture(plane, print.response),
-               "slices, row " + std::to_string(plane.row));
-  draw_picture(canvas, frame(1, width, {"", y.low, y.high}), cure_picture(plane), "cured");
+  draw_image(canvas, frame(0, width, y), slices_image(plane, print.response),
+             "slices, row " + std::to_string(plane.row));
+  draw_image(canvas, frame(1, width, {"", y.low, y.high}), cure_image(plane), "cured");
   draw_column(canvas, frame(2, curve, {"", y.low, y.high}), plane, print);
   double at = 2.0 * left + width;
   for (const auto& [words, colour] :
@@ -116,7 +115,7 @@ void draw_plane(const std::string& path, const Plane& plane, const Print& print)
     canvas.text({at, top + height + 74.0}, words, plot::label_size, colour);
     at += plot::Canvas::text_width(words, plot::label_size) + 20;
   }
-  io::write_png(path, canvas.picture());
+  io::write_png(path, canvas.image());
 }
 
 void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,

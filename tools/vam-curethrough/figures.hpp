@@ -1,4 +1,4 @@
-// Tables and pictures of what was found.
+// Tables and figures of the results.
 #pragma once
 
 #include <string>

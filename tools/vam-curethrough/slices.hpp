@@ -25,7 +25,7 @@ struct Slices {
 /// Intensities, fractions of the maximum, to grey 0..1.
 void to_grey(Image& slice, const resin::Response& response);
 
-/// An EXR frame stack or a folder of numbered grey pictures; grey goes through the response. Not a pipe: slices are
+/// An EXR frame stack or a folder of numbered grey images; grey goes through the response. Not a pipe: slices are
 /// read twice. Throws what io throws.
 [[nodiscard]] Slices open_slices(const std::string& path, const resin::Response& response);
 

@@ -51,7 +51,7 @@ struct HeightOptions {
 /// Print against reference.
 void deviation(const cli::App& app, const Options& options);
 
-/// Height picture against design.
+/// Height image against design.
 void height(const HeightOptions& options);
 
 }  // namespace vam::sdf_tool

@@ -16,25 +16,25 @@ solid::FillMode fill_mode(const Options& options) {
   return options.fill == "vote" ? solid::FillMode::vote : solid::FillMode::automatic;
 }
 
-solid::Part picture_part(const Options& options) {
+solid::Part image_part(const Options& options) {
   const auto folder = std::make_shared<io::PictureFolder>(options.input);
   const GreyImage first = folder->read(0);
-  solid::PictureStack stack{first.width, first.height, folder->count(), [folder](int index) {
-                              const GreyImage grey = folder->read(index);
-                              Image image(grey.width, grey.height);
-                              for (std::size_t i = 0; i < image.size(); ++i) {
-                                image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
-                              }
-                              return image;
-                            }};
-  return solid::picture_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
+  solid::ImageStack stack{first.width, first.height, folder->count(), [folder](int index) {
+                            const GreyImage grey = folder->read(index);
+                            Image image(grey.width, grey.height);
+                            for (std::size_t i = 0; i < image.size(); ++i) {
+                              image.values[i] = static_cast<float>(grey.values[i]) / static_cast<float>(grey.full());
+                            }
+                            return image;
+                          }};
+  return solid::image_part(std::move(stack), options.input, options.voxel_mm.value(), options.placement.stretch_z);
 }
 
 }  // namespace
 
 solid::Part part_of(const Options& options, const solid::Writable& room) {
   if (!options.shape.empty()) return solid::shape_part(options.shape, options.placement, room);
-  if (is_folder(options.input)) return picture_part(options);
+  if (is_folder(options.input)) return image_part(options);
   model::TriangleSoup mesh = io::read_mesh(options.input);
   const std::string subject = options.input == "-" ? "stdin" : options.input;
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);

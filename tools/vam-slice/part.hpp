@@ -1,4 +1,4 @@
-// What is to be sliced: a mesh, pictures or a shape, and what it is printed around.
+// What is to be sliced: a mesh, images or a shape, and what it is printed around.
 #pragma once
 
 #include <optional>

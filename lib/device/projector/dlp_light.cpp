@@ -28,7 +28,7 @@ constexpr int video_pattern_mode = 2;
 constexpr int stop = 0;
 constexpr int start = 2;
 constexpr int sequencer_runs = 1 << 1;  // of the main status
-constexpr int picture_found = 1 << 3;   // of the main status, DLPC900
+constexpr int signal_found = 1 << 3;    // of the main status, DLPC900
 // Three of them and the 105 us of black before the next frame fit in a frame of 60 Hz.
 constexpr int pattern_us = 5500;
 
@@ -135,7 +135,7 @@ class DlpLight final : public LightEngine {
     unless_refused([&] {  // by a board without a receiver
       if (link_.ask(video_receiver) == 0) link_.tell(video_receiver, {from_hdmi});
     });
-    require_soon([&] { return (link_.ask(main_status) & picture_found) != 0; }, "finds no video signal at its input",
+    require_soon([&] { return (link_.ask(main_status) & signal_found) != 0; }, "finds no video signal at its input",
                  "check the video cable and the screen mode");
     link_.set(display_mode, {video_pattern_mode}, "video pattern mode", mode_s);
     for (int colour = 0; colour < 3; ++colour) {

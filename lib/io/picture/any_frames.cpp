@@ -67,7 +67,7 @@ class VideoSource : public ImageSource {
   int taken_ = 0;
 };
 
-// frames.csv of vam-project beside the pictures: file,time_s,angle_deg. Empty when there is none.
+// frames.csv of vam-project beside the images: file,time_s,angle_deg. Empty when there is none.
 std::vector<model::ImageInfo> read_frame_index(const std::string& folder) {
   std::ifstream stream(folder + "/frames.csv");
   std::vector<model::ImageInfo> index;

@@ -1,4 +1,4 @@
-// Stacks, videos and folders of pictures, read in the same way.
+// Stacks, videos and folders of images, read in the same way.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ class ImageSource {
   virtual bool next(Image& image, model::ImageInfo& about) = 0;
 };
 
-/// type: stack, video or pictures. Throws Error: no_input, data.
+/// type: stack, video or images. Throws Error: no_input, data.
 [[nodiscard]] std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type);
 
 }  // namespace vam::io

@@ -18,7 +18,7 @@ std::uint32_t big_endian32(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-// libpng talks on stderr and hands out half a picture; so the chunks are checked before it sees them.
+// libpng talks on stderr and hands out half an image; so the chunks are checked before it sees them.
 std::string png_problem(const std::string& bytes) {
   std::size_t at = 8;
   while (at + 12 <= bytes.size()) {

@@ -1,4 +1,4 @@
-// Picture files: grey PNG and TIFF in, PNG of any depth out, folders of numbered pictures.
+// Image files: grey PNG and TIFF in, PNG of any depth out, folders of numbered images.
 #pragma once
 
 #include <cstdint>
@@ -31,16 +31,16 @@ void write_png(const std::string& path, const RgbImage& image, const PictureText
 /// Writes a grey TIFF, 8 bits where 8 are enough and 16 otherwise (10 bits spread over 16). "-" is stdout.
 void write_tiff(const std::string& path, const GreyImage& image);
 
-/// The numbered pictures of a folder (.png, .tif, .tiff) in the order of their numbers, so that 2 comes before 10.
+/// The numbered images of a folder (.png, .tif, .tiff) in the order of their numbers, so that 2 comes before 10.
 class PictureFolder {
  public:
-  /// Throws Error: no_input (no such folder), data (no picture in it, a number missing or twice).
+  /// Throws Error: no_input (no such folder), data (no image in it, a number missing or twice).
   explicit PictureFolder(const std::string& folder);
 
   [[nodiscard]] int count() const { return static_cast<int>(paths_.size()); }
   [[nodiscard]] const std::string& path(int index) const { return paths_[static_cast<std::size_t>(index)]; }
 
-  /// Throws as read_picture does, and Fault::data when the picture has not the size of the first one. One thread at a
+  /// Throws as read_picture does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.
   [[nodiscard]] GreyImage read(int index);
 

@@ -1,4 +1,4 @@
-// Folders of numbered pictures, in the order of their numbers.
+// Folders of numbered images, in the order of their numbers.
 #include <algorithm>
 #include <cctype>
 #include <charconv>
@@ -41,17 +41,17 @@ struct Numbered {
 };
 
 // A missing layer would shorten the part unseen. The step between numbers may be other than 1, but must stay the same.
-void check_gaps(const std::vector<Numbered>& pictures) {
-  for (std::size_t i = 1; i < pictures.size(); ++i) {
-    const long step = pictures[i].number - pictures[i - 1].number;
+void check_gaps(const std::vector<Numbered>& images) {
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    const long step = images[i].number - images[i - 1].number;
     if (step == 0) {
       throw Error{Fault::data,
-                  pictures[i].path.string() + ": has the same number as " + pictures[i - 1].path.filename().string()};
+                  images[i].path.string() + ": has the same number as " + images[i - 1].path.filename().string()};
     }
-    if (step != pictures[1].number - pictures[0].number) {
-      throw Error{Fault::data, pictures[i].path.string() + ": follows number " +
-                                   std::to_string(pictures[i - 1].number) + ", but the previous images are " +
-                                   std::to_string(pictures[1].number - pictures[0].number) + " apart; one is missing"};
+    if (step != images[1].number - images[0].number) {
+      throw Error{Fault::data, images[i].path.string() + ": follows number " + std::to_string(images[i - 1].number) +
+                                   ", but the previous images are " +
+                                   std::to_string(images[1].number - images[0].number) + " apart; one is missing"};
     }
   }
 }
@@ -60,17 +60,17 @@ void check_gaps(const std::vector<Numbered>& pictures) {
 
 PictureFolder::PictureFolder(const std::string& folder) {
   std::error_code problem;
-  std::vector<Numbered> pictures;
+  std::vector<Numbered> images;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
-    if (is_picture(entry->path())) pictures.push_back({number_of(entry->path()), entry->path()});
+    if (is_picture(entry->path())) images.push_back({number_of(entry->path()), entry->path()});
   }
   if (problem) throw Error{Fault::no_input, folder + ": cannot read the folder: " + problem.message()};
-  if (pictures.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};
-  std::sort(pictures.begin(), pictures.end(), [](const Numbered& a, const Numbered& b) {
+  if (images.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};
+  std::sort(images.begin(), images.end(), [](const Numbered& a, const Numbered& b) {
     return a.number != b.number ? a.number < b.number : a.path < b.path;
   });
-  check_gaps(pictures);
-  for (const auto& picture : pictures) paths_.push_back(picture.path.string());
+  check_gaps(images);
+  for (const auto& image : images) paths_.push_back(image.path.string());
 }
 
 GreyImage PictureFolder::read(int index) {

@@ -110,8 +110,8 @@ Bytes wide_rows(const GreyImage& image) {
   return rows;
 }
 
-template <class Picture>
-void write(const std::string& path, const Picture& image, const PictureText& text) {
+template <class Pixels>
+void write(const std::string& path, const Pixels& image, const PictureText& text) {
   OutputFile file(path);
   file.write(encode_png(image, text));
   file.commit();

@@ -1,5 +1,5 @@
 // Camera views from wherever they are kept: an EXR frame stack (also a live stream of them), a folder of vam-capture or
-// of numbered pictures, or a video. Frames that a camera delivered in part are left out, each with a warning.
+// of numbered images, or a video. Frames that a camera delivered in part are left out, each with a warning.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 namespace vam::io {
 
 struct CameraFrame {
-  Image image;  // EXR: as stored; pictures and video: 0...1 of full scale
+  Image image;  // EXR: as stored; images and video: 0...1 of full scale
   double angle_deg = 0;
   double time_s = 0;
   std::string name;  // for messages: "views.exr: frame 12"
@@ -19,7 +19,7 @@ struct CameraFrame {
 
 class ViewSource {
  public:
-  /// A folder of pictures and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of
+  /// A folder of images and a video know no angles: frame i is taken at i * step_deg; so is a stack without angles of
   /// its own and without an angle step. Throws Error: no_input, data (not a frame stack of a camera), usage (angles are
   /// needed but step_deg is 0).
   ViewSource(const std::string& path, double step_deg);
@@ -39,7 +39,7 @@ class ViewSource {
 /// By its name: a PNG or TIFF.
 [[nodiscard]] bool is_picture(const std::string& path);
 
-/// One picture or the mean of all images of a stack, for dark and flat fields.
+/// One image or the mean of all images of a stack, for dark and flat fields.
 [[nodiscard]] Image read_field(const std::string& path);
 
 }  // namespace vam::io

@@ -1,4 +1,4 @@
-// The rotation axis in the camera's picture, and how far the vial (or a bead) runs round it: its place over a turn.
+// The rotation axis in the camera's image, and how far the vial (or a bead) runs round it: its place over a turn.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace vam::metrology {
 [[nodiscard]] std::vector<double> bright_middles(const Image& frame, int bands);
 
 struct TurnScan {
-  int rows = 0;                             // of the pictures
+  int rows = 0;                             // of the images
   std::vector<double> angle_deg;            // of the stage, of each frame
   std::vector<std::vector<double>> middle;  // [band][frame], columns
 };

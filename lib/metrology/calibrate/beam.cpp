@@ -49,17 +49,16 @@ stats::Measured gaussian_width(const std::vector<double>& profile, const std::st
 
 }  // namespace
 
-stats::Measured line_width_px(const Image& picture, const std::string& subject) {
+stats::Measured line_width_px(const Image& image, const std::string& subject) {
   constexpr int groups = 8;
-  if (picture.height < 2 * groups) {
-    throw Error{Fault::data, subject + ": " + std::to_string(picture.height) + " rows; at least " +
+  if (image.height < 2 * groups) {
+    throw Error{Fault::data, subject + ": " + std::to_string(image.height) + " rows; at least " +
                                  std::to_string(2 * groups) + " are needed"};
   }
   double mean = 0;
   std::vector<double> widths;
   for (int g = 0; g < groups; ++g) {
-    const auto extent =
-        half_maximum(column_profile(picture, g * picture.height / groups, (g + 1) * picture.height / groups));
+    const auto extent = half_maximum(column_profile(image, g * image.height / groups, (g + 1) * image.height / groups));
     if (!extent) {
       throw Error{Fault::data, subject + ": no bright line between two dark sides; light one column and focus"};
     }
@@ -72,7 +71,7 @@ stats::Measured line_width_px(const Image& picture, const std::string& subject) 
   return {mean, std::hypot(error, interpolation_px), groups};
 }
 
-BeamWidths side_widths(const Image& picture, const SideView& view, const model::Printer& printer, int planes) {
+BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer, int planes) {
   const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
   if (std::abs(std::cos(azimuth)) > std::sin(10 * rad_per_deg)) {
     throw Error{Fault::data, "beam: the camera looks at " + format_number(printer.camera.azimuth_deg) +
@@ -83,7 +82,7 @@ BeamWidths side_widths(const Image& picture, const SideView& view, const model::
   const double radius_mm = optics::resin_radius_mm(rays);
   std::vector<int> inside;  // columns of the resin's middle, the light's direction from left to right or back
   std::vector<double> plane_mm;
-  for (int c = 0; c < picture.width; ++c) {
+  for (int c = 0; c < image.width; ++c) {
     const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
     if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
     inside.push_back(c);
@@ -100,10 +99,10 @@ BeamWidths side_widths(const Image& picture, const SideView& view, const model::
   for (int p = 0; p < count; ++p) {
     const auto first = inside.size() * static_cast<std::size_t>(p) / static_cast<std::size_t>(count);
     const auto last = inside.size() * (static_cast<std::size_t>(p) + 1) / static_cast<std::size_t>(count);
-    std::vector<double> profile(static_cast<std::size_t>(picture.height));
+    std::vector<double> profile(static_cast<std::size_t>(image.height));
     double sum_mm = 0;
     for (std::size_t i = first; i < last; ++i) {
-      for (int r = 0; r < picture.height; ++r) profile[static_cast<std::size_t>(r)] += picture(inside[i], r);
+      for (int r = 0; r < image.height; ++r) profile[static_cast<std::size_t>(r)] += image(inside[i], r);
       sum_mm += plane_mm[i];
     }
     widths.plane_mm.push_back(sum_mm / static_cast<double>(last - first));

@@ -10,9 +10,9 @@
 
 namespace vam::metrology {
 
-/// Full width at half maximum of the bright vertical line in a picture, in pixels. Eight groups of rows give the
+/// Full width at half maximum of the bright vertical line in an image, in pixels. Eight groups of rows give the
 /// scatter. Throws Fault::data when there is no line with dark sides, or fewer than 16 rows.
-[[nodiscard]] stats::Measured line_width_px(const Image& picture, const std::string& subject);
+[[nodiscard]] stats::Measured line_width_px(const Image& image, const std::string& subject);
 
 struct BeamWidths {
   std::vector<double> plane_mm;  // along the light, 0 at the rotation axis
@@ -22,14 +22,14 @@ struct BeamWidths {
 /// A camera that looks at the resin from the side, square to the light.
 struct SideView {
   double pixel_mm = 0;     // at the axis
-  double axis_column = 0;  // of the picture
+  double axis_column = 0;  // of the image
 };
 
 /// The width of a lit row in up to `planes` planes between -0.8 and 0.8 of the resin's radius, by a Gaussian that is
 /// summed over the camera's rows. Columns become distances along the light by the camera's rays (`printer` gives vial,
 /// indices and camera), rows become heights by [OST22 eq S6]. Throws Fault::data: a camera more than 10 degrees off the
 /// right angle, fewer than 8 columns a plane for four planes, or no line.
-[[nodiscard]] BeamWidths side_widths(const Image& picture, const SideView& view, const model::Printer& printer,
+[[nodiscard]] BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer,
                                      int planes);
 
 struct Beam {

@@ -19,7 +19,7 @@ struct SweepScan {
 };
 
 /// The mean of each of `bands` equally high bands of rows, top to bottom; a remainder at the bottom is left out.
-/// Throws Fault::data when the picture has fewer rows.
+/// Throws Fault::data when the image has fewer rows.
 [[nodiscard]] std::vector<double> band_means(const Image& frame, int bands);
 
 struct VialEdges {

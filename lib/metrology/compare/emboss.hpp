@@ -10,7 +10,7 @@
 
 namespace vam::metrology {
 
-/// A height picture lying level: base at 0.
+/// A height image lying level: base at 0.
 struct Relief {
   Image heights_mm;  // gaps filled from their neighbours
   Image measured;    // 1 where there was a reading, 0 in a gap
@@ -31,7 +31,7 @@ struct Plateaus {
 /// not a number are gaps. Throws Fault::data when fewer than a tenth of the pixels are readings or nothing stands out.
 [[nodiscard]] Relief levelled(const Image& heights_mm, double pixel_mm);
 
-/// Where the design lies in the picture: p -> scale * rotation(turn) * p + shift, both in mm about their middles, x to
+/// Where the design lies in the image: p -> scale * rotation(turn) * p + shift, both in mm about their middles, x to
 /// the right and y up.
 struct Placing {
   double scale = 1;  // below 1: the print shrank
@@ -55,14 +55,14 @@ struct Emboss {
   double height_mm = 0;         // median over the design's area, 0.15 mm and more from its outline
   double height_sigma_mm = 0;   // robust, 1.4826 x median absolute deviation
   double design_height_mm = 0;  // of the emboss above its base
-  Image design;                 // the design's heights above its base, placed, on the picture's pixels
+  Image design;                 // the design's heights above its base, placed, on the image's pixels
 };
 
 /// Fits the design's outline at half height to the print's, with shrinkage: Gauss-Newton on the distance to the print's
-/// outline. Throws Fault::data when the design is flat or does not meet the picture.
+/// outline. Throws Fault::data when the design is flat or does not meet the image.
 [[nodiscard]] Emboss compare_emboss(const Relief& print, const solid::HeightMap& design, EmbossAlign align);
 
-/// Heights along a straight line in the picture, ends in pixels; one value each half pixel.
+/// Heights along a straight line in the image, ends in pixels; one value each half pixel.
 struct Section {
   std::vector<double> along_mm;
   std::vector<double> print_mm;

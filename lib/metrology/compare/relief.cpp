@@ -1,4 +1,4 @@
-// Levelling a profilometer's picture.
+// Levelling a profilometer's image.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -41,7 +41,7 @@ double noise_of(const Image& image) {
   return second.empty() ? 0.0 : stats::median(second) / (0.6745 * std::sqrt(6.0));
 }
 
-// Centre of mass of what stands above the median: right where all of the body is in the picture, near it elsewhere.
+// Centre of mass of what stands above the median: right where all of the body is in the image, near it elsewhere.
 double start_column(const Image& image) {
   std::vector<double> values(image.values.begin(), image.values.end());
   const double floor = stats::median(values);

@@ -1,4 +1,4 @@
-// The operator's picture: the print and its design, each seen from above and from two sides [OST22 fig 5].
+// Overview for the operator: the print and its design, each seen from above and from two sides [OST22 fig 5].
 #pragma once
 
 #include <optional>

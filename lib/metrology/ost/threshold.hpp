@@ -15,9 +15,9 @@ struct Circle {
   double sigma = 0;  // RMS distance of the edge points from it
 };
 
-/// The strongest circle of a picture with one bright (or dark) disc: Hough transform on the gradient (OpenCV), then
+/// The strongest circle of an image with one bright (or dark) disc: Hough transform on the gradient (OpenCV), then
 /// least squares on sub-pixel edge points along its radii. Throws Fault::data when there is none with a radius between
-/// 4 pixels and half the picture.
+/// 4 pixels and half the image.
 [[nodiscard]] Circle find_circle(const Image& image);
 
 /// The mean of a volume along z over the standard's own height, and that height: slices that hold at least half of

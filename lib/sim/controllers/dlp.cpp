@@ -86,7 +86,7 @@ class SimDlp final : public device::UsbLink {
 
   // A DLPC900 has an image when it looks at its port and the receiver there is on.
   [[nodiscard]] bool image() const {
-    return settings_.dlpc900 && !settings_.no_picture && (value(0x1A00) & 7) == 0 && value(0x1A01) != 0;
+    return settings_.dlpc900 && !settings_.no_signal && (value(0x1A00) & 7) == 0 && value(0x1A01) != 0;
   }
   // Grey levels 0..255 are told apart by equal steps of light: by its own account, not by that of its user.
   [[nodiscard]] bool linear() const {

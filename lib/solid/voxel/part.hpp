@@ -36,18 +36,18 @@ enum class FillMode { automatic, exact, vote };
 /// ambiguous: no volume is enclosed, or more than 1 % of it stays undecided.
 [[nodiscard]] Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affine& map, FillMode mode);
 
-/// Numbered pictures, from the lowest slice up; row 0 of a picture is at the largest y.
-struct PictureStack {
+/// Numbered images, from the lowest slice up; row 0 of an image is at the largest y.
+struct ImageStack {
   int width = 0;
   int height = 0;
   int count = 0;
   std::function<Image(int)> read;  // coverage 0...1; asked in ascending order, twice
 };
 
-/// The part of a stack of pictures whose pixels and distances are voxel_mm: pictures centred on the axis, the stack on
-/// z = 0. Stretching along z takes the mean of the pictures in a slice by their shares; x and y stay as they are (where
+/// The part of a stack of images whose pixels and distances are voxel_mm: images centred on the axis, the stack on
+/// z = 0. Stretching along z takes the mean of the images in a slice by their shares; x and y stay as they are (where
 /// height is odd and width is not, or the reverse, y is off by half a voxel).
-[[nodiscard]] Part picture_part(PictureStack stack, const std::string& subject, double voxel_mm, double stretch_z);
+[[nodiscard]] Part image_part(ImageStack stack, const std::string& subject, double voxel_mm, double stretch_z);
 
 /// What a filled grid holds.
 struct Content {

@@ -48,7 +48,7 @@ struct Extent {
 void transform(model::TriangleSoup& soup, const Affine& map);
 
 /// How the lattice of voxels lies: by default their faces are at multiples of voxel_mm in x, y and z, so that with
-/// voxel_mm = pixel_mm slices coincide with rows of the projector. Stacks of pictures bring a lattice of their own.
+/// voxel_mm = pixel_mm slices coincide with rows of the projector. Stacks of images bring a lattice of their own.
 struct Lattice {
   bool odd_side = false;  // a voxel's centre on the axis, not a corner
   double z_phase = 0;     // faces at multiples plus this share of a voxel

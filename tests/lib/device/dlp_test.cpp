@@ -53,7 +53,7 @@ TEST_CASE("The light engine wakes dark, shines when told, with linear grey, and 
 }
 
 TEST_CASE("A DLPC900 without an image at its input is waited for, for 15 s; no light comes") {
-  LightLab lab({.dlpc900 = true, .no_picture = true});
+  LightLab lab({.dlpc900 = true, .no_signal = true});
   const double start_s = lab.clock.now_s();
   const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
   CHECK(message.find("finds no video signal at its input within 15 s") != std::string::npos);

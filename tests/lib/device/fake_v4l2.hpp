@@ -1,4 +1,4 @@
-// A V4L2 camera behind the system calls that the backend makes, for tests: a counter picture, 4 x 2 pixels.
+// A V4L2 camera behind the system calls that the backend makes, for tests: a counter image, 4 x 2 pixels.
 #pragma once
 
 #include <linux/videodev2.h>

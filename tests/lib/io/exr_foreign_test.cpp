@@ -41,7 +41,7 @@ void write_by_openexr(const std::string& path, const model::StackInfo& info, Imf
   std::vector<Image> images;
   std::vector<Imf::OutputPart> parts;
   std::vector<std::uint16_t> alpha(static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height));
-  for (int i = 0; i < info.count; ++i) images.push_back(picture(info.width, info.height, i));
+  for (int i = 0; i < info.count; ++i) images.push_back(pattern(info.width, info.height, i));
   for (int i = 0; i < info.count; ++i) {
     parts.emplace_back(file, i);
     Imf::FrameBuffer pixels;
@@ -71,7 +71,7 @@ TEST_CASE("stacks of OpenEXR's own writer: other channels, types, compressions, 
       model::ImageInfo about;
       for (int i = 0; i < 4; ++i) {
         REQUIRE(reader.next(image, about));
-        CHECK(image.values == picture(29, 64, i).values);
+        CHECK(image.values == pattern(29, 64, i).values);
         CHECK(about.angle_deg == 7.5 * i);
       }
     }

@@ -36,7 +36,7 @@ TEST_CASE("five thousand parts go through a pipe, into a file and out of it in c
 #else
   constexpr double allowed_mib = 40;
 #endif
-  const Image image = picture(80, 64, 1);
+  const Image image = pattern(80, 64, 1);
   const double before = resident_mib();
   double peak = before;
   const auto write = [&](const std::string& path, bool sample) {

@@ -46,7 +46,7 @@ TEST_CASE("facts and pixels survive a file, for every compression and both width
         REQUIRE(reader.next(image, about));
         CHECK(about.z_mm == doctest::Approx(-3 + 0.1 * i));
         CHECK_FALSE(about.has_angle);
-        const Image wanted = picture(37, 70, i);
+        const Image wanted = pattern(37, 70, i);
         // A half has 11 significant bits: rounding to the nearest errs by at most 2^-11 of the value.
         double worst = 0;
         for (std::size_t p = 0; p < wanted.size(); ++p) {
@@ -89,7 +89,7 @@ TEST_CASE("a pipe carries the bytes of a valid, complete file") {
     CHECK(slurp(folder / "piped.exr") == slurp(folder / "file.exr"));
     for (int i = 0; i < 5; ++i) {
       const Image read = read_by_openexr(folder / "piped.exr", i);
-      if (!narrow) CHECK(read.values == picture(33, 12, i).values);
+      if (!narrow) CHECK(read.values == pattern(33, 12, i).values);
     }
   }
 }
@@ -104,7 +104,7 @@ TEST_CASE("a compressed file can be read from a pipe") {
   Image image;
   model::ImageInfo about;
   int count = 0;
-  while (reader.next(image, about)) CHECK(image.values == picture(33, 40, count++).values);
+  while (reader.next(image, about)) CHECK(image.values == pattern(33, 40, count++).values);
   CHECK(count == 40);
   cat.join();
 }
@@ -120,7 +120,7 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
   }
   const auto write = [&](const std::string& path, bool known) {
     StackWriter writer = known ? StackWriter(path, info, facts) : StackWriter(path, info);
-    for (int i = 0; i < 6; ++i) writer.write(picture(4, 3, i), facts[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 6; ++i) writer.write(pattern(4, 3, i), facts[static_cast<std::size_t>(i)]);
     writer.commit();
   };
   for (const bool known : {true, false}) {
@@ -145,9 +145,9 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
         CHECK(about.time_s == wanted.time_s);
         CHECK(about.z_mm == 1.5);
         CHECK(reader.about()[static_cast<std::size_t>(i)].angle_deg == wanted.angle_deg);
-        CHECK(image.values == picture(4, 3, i).values);
+        CHECK(image.values == pattern(4, 3, i).values);
       }
-      CHECK(read_by_openexr(folder / "a.exr", 5).values == picture(4, 3, 5).values);
+      CHECK(read_by_openexr(folder / "a.exr", 5).values == pattern(4, 3, 5).values);
     }
   }
 }
@@ -167,7 +167,7 @@ TEST_CASE("several stacks on one stream follow each other") {
   REQUIRE(reader.next_stack());
   CHECK(reader.info().height == 5);
   for (int i = 0; i < 2; ++i) REQUIRE(reader.next(image, about));
-  CHECK(image.values == picture(8, 5, 1).values);
+  CHECK(image.values == pattern(8, 5, 1).values);
   CHECK_FALSE(reader.next_stack());
 }
 

@@ -32,7 +32,7 @@ inline model::StackInfo sinogram(int width, int height, int count) {
 }
 
 // Smooth stretches and noise, so that every compressor has chunks that shrink and chunks that do not.
-inline Image picture(int width, int height, int seed) {
+inline Image pattern(int width, int height, int seed) {
   Image image(width, height);
   unsigned state = 12345U + static_cast<unsigned>(seed);
   for (int y = 0; y < height; ++y) {
@@ -46,7 +46,7 @@ inline Image picture(int width, int height, int seed) {
 
 inline void write_stack(const std::string& path, const model::StackInfo& info, const io::StackOptions& options = {}) {
   io::StackWriter writer(path, info, options);
-  for (int i = 0; i < info.count; ++i) writer.write(picture(info.width, info.height, i));
+  for (int i = 0; i < info.count; ++i) writer.write(pattern(info.width, info.height, i));
   writer.commit();
 }
 

@@ -104,9 +104,9 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
     image(0, 0) = static_cast<std::uint16_t>(i);
     write_png((folder / "part2_" + std::to_string(i) + ".png"), image);
   }
-  PictureFolder pictures(folder.path.string());
-  REQUIRE(pictures.count() == 12);
-  for (int i = 0; i < 12; ++i) CHECK(pictures.read(i)(0, 0) == i + 1);
+  PictureFolder images(folder.path.string());
+  REQUIRE(images.count() == 12);
+  for (int i = 0; i < 12; ++i) CHECK(images.read(i)(0, 0) == i + 1);
 
   write_png(folder / "part2_13.png", GreyImage(5, 3, 8));
   PictureFolder uneven(folder.path.string());

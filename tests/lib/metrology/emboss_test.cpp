@@ -16,7 +16,7 @@ using namespace vam::metrology;
 
 namespace {
 
-// The design's pixels differ from the picture's, and no edge falls on their middles.
+// The design's pixels differ from the image's, and no edge falls on their middles.
 // A flag on a disc, 1 where it stands out: a bar with an arm and a dot; no turn maps it onto itself.
 bool stands_out(double x, double y) {
   const bool bar = std::abs(x + 2) < 0.7 && std::abs(y) < 3;
@@ -46,8 +46,8 @@ struct Print {
   double noise_mm = 0;
 };
 
-// The picture of a print of it: 0.35 mm high, lying askew, with a few lost readings.
-Image picture(const Print& print, double pixel_mm) {
+// The image of a print of it: 0.35 mm high, lying askew, with a few lost readings.
+Image image(const Print& print, double pixel_mm) {
   Image image(240, 260);
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, print.noise_mm);
@@ -72,7 +72,7 @@ Image picture(const Print& print, double pixel_mm) {
 TEST_CASE("shrinkage, turn, shift and height of an embossed print are found in its height image") {
   const double pixel_mm = 0.05;
   const Print print{0.985, 97, 0.4, -0.7, 0.01};
-  const Relief relief = levelled(picture(print, pixel_mm), pixel_mm);
+  const Relief relief = levelled(image(print, pixel_mm), pixel_mm);
   CHECK(relief.tilt_deg == doctest::Approx(std::atan(std::hypot(0.002, 0.001) / pixel_mm) * deg_per_rad).epsilon(0.01));
   const Emboss found = compare_emboss(relief, design(0.037), EmbossAlign::any_turn);
   MESSAGE("scale ", found.placing.scale, ", turn ", found.placing.turn_deg, ", outline RMS ", found.outline_rms_mm);
@@ -90,7 +90,7 @@ TEST_CASE("shrinkage, turn, shift and height of an embossed print are found in i
 
 TEST_CASE("without alignment the pose shows in the outline") {
   const double pixel_mm = 0.05;
-  const Relief relief = levelled(picture({1, 0, 0.3, 0, 0}, pixel_mm), pixel_mm);
+  const Relief relief = levelled(image({1, 0, 0.3, 0, 0}, pixel_mm), pixel_mm);
   const Emboss found = compare_emboss(relief, design(0.037), EmbossAlign::none);
   CHECK(found.placing.scale == 1);
   CHECK(found.outline_max_mm == doctest::Approx(0.3).epsilon(0.15));  // a pixel is 0.05 mm
@@ -100,7 +100,7 @@ TEST_CASE("without alignment the pose shows in the outline") {
 
 TEST_CASE("a section shows print and design") {
   const double pixel_mm = 0.05;
-  const Relief relief = levelled(picture({1, 0, 0, 0, 0}, pixel_mm), pixel_mm);
+  const Relief relief = levelled(image({1, 0, 0, 0, 0}, pixel_mm), pixel_mm);
   const Emboss found = compare_emboss(relief, design(0.037), EmbossAlign::near);
   const Section line = section(relief, found, 0, 129, 239, 129);
   CHECK(line.along_mm.back() == doctest::Approx(239 * pixel_mm));
@@ -113,7 +113,7 @@ TEST_CASE("images and designs without relief are errors") {
   CHECK_THROWS_WITH_AS((void)levelled(Image(50, 50, 1.0F), 0.05), doctest::Contains("flat"), Error);
   CHECK_THROWS_WITH_AS((void)levelled(Image(50, 50, std::numeric_limits<float>::quiet_NaN()), 0.05),
                        doctest::Contains("0 of 2500"), Error);
-  const Relief relief = levelled(picture({}, 0.05), 0.05);
+  const Relief relief = levelled(image({}, 0.05), 0.05);
   solid::HeightMap flat = design(0.037);
   for (float& h : flat.heights_mm.values) h = 1;
   CHECK_THROWS_WITH_AS((void)compare_emboss(relief, flat, EmbossAlign::near), doctest::Contains("flat"), Error);

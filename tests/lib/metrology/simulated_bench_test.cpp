@@ -1,4 +1,4 @@
-// The fits on pictures of the simulated bench: what the simulator has set is what they find.
+// The fits on images of the simulated bench: what the simulator has set is what they find.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -31,8 +31,8 @@ metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px) {
   scan.height_mm = {2, 0, -2};
   scan.signal.resize(3);
   for (int n = 0; n < optics::pattern_frames(line, projector); ++n) {
-    const GreyImage picture = optics::pattern_frame(line, projector, n);
-    const Image frame = fractions(scene.render({0, &picture, 0}, 20000, n));
+    const GreyImage image = optics::pattern_frame(line, projector, n);
+    const Image frame = fractions(scene.render({0, &image, 0}, 20000, n));
     scan.column.push_back(n * line.pitch_px + 0.5 * (line.width_px - 1));
     const auto means = metrology::band_means(frame, 3);
     for (std::size_t b = 0; b < 3; ++b) scan.signal[b].push_back(means[b]);
@@ -106,10 +106,10 @@ TEST_CASE("A lit row seen from the side: waist, focus and divergence of the simu
   bench.divergence_deg = 3.5;
   bench.glow = 2;
   auto& printer = bench.printer;
-  const GreyImage picture = optics::pattern_frame({"row", 1, 1, 1, 0}, printer.projector, 0);
+  const GreyImage image = optics::pattern_frame({"row", 1, 1, 1, 0}, printer.projector, 0);
   for (const double azimuth : {90.0, -90.0}) {
     printer.camera.azimuth_deg = azimuth;
-    const Image frame = fractions(sim::SimScene(bench, 1, 16).render({0, &picture, 0}, 20000, 0));
+    const Image frame = fractions(sim::SimScene(bench, 1, 16).render({0, &image, 0}, 20000, 0));
     const auto widths = metrology::side_widths(frame, {0.15, 99.5}, printer, 9);
     const auto beam = metrology::measure_beam(widths);
     CHECK(beam.waist_mm.value == doctest::Approx(std::hypot(0.5, 0.068)).epsilon(0.01));

@@ -15,13 +15,13 @@ using vam::RgbImage;
 
 namespace {
 
-int count(const RgbImage& picture, Rgb colour) {
-  return static_cast<int>(std::count(picture.values.begin(), picture.values.end(), colour));
+int count(const RgbImage& image, Rgb colour) {
+  return static_cast<int>(std::count(image.values.begin(), image.values.end(), colour));
 }
 
-// Pictures for the eye, when $VAM_PICTURES names a folder.
-void keep(const RgbImage& picture, const std::string& name) {
-  if (const char* folder = std::getenv("VAM_PICTURES")) write_png(std::string(folder) + "/" + name, picture);
+// Figures to look at, when $VAM_IMAGES names a folder.
+void keep(const RgbImage& image, const std::string& name) {
+  if (const char* folder = std::getenv("VAM_IMAGES")) write_png(std::string(folder) + "/" + name, image);
 }
 
 }  // namespace
@@ -64,18 +64,18 @@ TEST_CASE("a curve is where its values are") {
   }
   plot.series = {parabola, points};
   plot.markers = {{5, "half way", paint::green}};
-  const RgbImage picture = draw(plot);
-  keep(picture, "curve.png");
-  CHECK(picture.width == 900);
+  const RgbImage image = draw(plot);
+  keep(image, "curve.png");
+  CHECK(image.width == 900);
   // Frame of draw(): left 86, right 872, top 52, bottom 538. At x = 7 the parabola is at 49.
   const int x = static_cast<int>(std::lround(86 + 0.7 * 786));
   const int y = static_cast<int>(std::lround(538 - 0.49 * 486));
   bool found = false;
-  for (int dy = -2; dy <= 2; ++dy) found = found || picture(x, y + dy) == paint::blue;
+  for (int dy = -2; dy <= 2; ++dy) found = found || image(x, y + dy) == paint::blue;
   CHECK(found);
-  CHECK(picture(x, y + 60) != paint::blue);
-  CHECK(count(picture, paint::orange) > 11 * 15);
-  CHECK(count(picture, paint::green) > 50);
+  CHECK(image(x, y + 60) != paint::blue);
+  CHECK(count(image, paint::orange) > 11 * 15);
+  CHECK(count(image, paint::green) > 50);
 }
 
 TEST_CASE("histograms count shares and draw bars") {
@@ -87,11 +87,11 @@ TEST_CASE("histograms count shares and draw bars") {
   Plot plot{"histogram", {"dose", 0, 1, false}, {"share of the voxels / %", 0, 0, false}, {}, {}, 600, 400};
   plot.series = {{"in part", histogram.edges, histogram.percent, paint::vermilion, SeriesStyle::bars},
                  {"out of part", histogram.edges, {40, 30, 20, 10}, paint::blue, SeriesStyle::bars}};
-  const RgbImage picture = draw(plot);
-  keep(picture, "histogram.png");
+  const RgbImage image = draw(plot);
+  keep(image, "histogram.png");
   // Last bin, frame 86..572 by 52..338: 37.5 of 42 % high.
-  CHECK(picture(540, 330) != paint::white);
-  CHECK(picture(540, 60) == paint::white);
+  CHECK(image(540, 330) != paint::white);
+  CHECK(image(540, 60) == paint::white);
 }
 
 TEST_CASE("text has the reported width, can be vertical, and stays on the canvas") {
@@ -100,7 +100,7 @@ TEST_CASE("text has the reported width, can be vertical, and stays on the canvas
   const double width = Canvas::text_width("Hxg", 20);
   CHECK(width > 25);
   CHECK(width < 45);
-  const RgbImage across = canvas.picture();
+  const RgbImage across = canvas.image();
   int right = 0;
   for (int y = 0; y < 200; ++y) {
     for (int x = 0; x < 200; ++x) right = across(x, y) != paint::white ? std::max(right, x) : right;
@@ -110,7 +110,7 @@ TEST_CASE("text has the reported width, can be vertical, and stays on the canvas
   upright.text({100, 190}, "Hxg", 20, paint::black, Align::begin, Align::middle, true);
   int top = 200;
   for (int y = 0; y < 200; ++y) {
-    for (int x = 0; x < 200; ++x) top = upright.picture()(x, y) != paint::white ? std::min(top, y) : top;
+    for (int x = 0; x < 200; ++x) top = upright.image()(x, y) != paint::white ? std::min(top, y) : top;
     if (top < 200) break;
   }
   CHECK(std::abs(top - (190 - width)) < 6);

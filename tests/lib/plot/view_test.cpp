@@ -54,8 +54,8 @@ SparseVolume ball(const vam::model::Grid& grid) {
   return volume;
 }
 
-void keep(const vam::RgbImage& picture, const std::string& name) {
-  if (const char* folder = std::getenv("VAM_PICTURES")) write_png(std::string(folder) + "/" + name, picture);
+void keep(const vam::RgbImage& image, const std::string& name) {
+  if (const char* folder = std::getenv("VAM_IMAGES")) write_png(std::string(folder) + "/" + name, image);
 }
 
 }  // namespace
@@ -157,12 +157,12 @@ TEST_CASE("a figure shows every voxel as a square of its colour, right way up") 
   CHECK(figure.x.high == doctest::Approx(2));
   CHECK(figure.y.low == doctest::Approx(-1.5));
   CHECK(figure.high == 1);
-  const auto picture = draw(figure);
-  keep(picture, "voxel.png");
-  // Picture at (92, 52), 90 pixels a voxel: the bright one is at the upper right.
-  CHECK(picture(92 + 7 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 1));
-  CHECK(picture(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
-  CHECK(picture(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
+  const auto image = draw(figure);
+  keep(image, "voxel.png");
+  // Image at (92, 52), 90 pixels a voxel: the bright one is at the upper right.
+  CHECK(image(92 + 7 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 1));
+  CHECK(image(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
+  CHECK(image(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
   options.at = 9.0;
   CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }, vam::Fault::data),
             "no axial section at 9 mm; it reaches from 0 mm to 1.5 mm"));

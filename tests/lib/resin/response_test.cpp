@@ -92,7 +92,7 @@ TEST_CASE("every level maps to itself") {
   for (int level = 0; level < 256; ++level) CHECK(levels.level(levels.intensity(level)) == level);
 }
 
-TEST_CASE("pictures of levels and of intensity are each other's inverse; beyond full is full") {
+TEST_CASE("images of levels and of intensity are each other's inverse; beyond full is full") {
   const GreyLevels levels(Response(gamma_table(2.2)), 4);
   vam::Image light(3, 1);
   light.values = {levels.intensity(3), 7.0F, -1.0F};

@@ -14,7 +14,7 @@ class SightLines {
  public:
   /// Throws Fault::data where lens, window and vial cannot stand like that.
   explicit SightLines(const model::Printer& printer);
-  /// Sum over the picture's columns of what shines on their line of sight from the sheet that the projector's `ray`
+  /// Sum over the image's columns of what shines on their line of sight from the sheet that the projector's `ray`
   /// stands for; a ray that goes along the sheet of a whole diameter would give 1. The resin's absorption weakens the
   /// sheet on its way. 0 for a ray that passes beside the resin.
   [[nodiscard]] double seen(const optics::ChiefRay& ray) const;
@@ -22,7 +22,7 @@ class SightLines {
  private:
   struct Sight {
     double offset_mm = 0, cosine = 1, sine = 0;  // of the line of sight, as optics::ChiefRay has them
-    double weight = 0;                           // transmittance x part of the picture, up to the next one
+    double weight = 0;                           // transmittance x part of the image, up to the next one
   };
   double radius_mm_;  // of the resin
   double absorption_per_mm_;

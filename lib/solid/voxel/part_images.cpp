@@ -9,26 +9,26 @@ namespace vam::solid {
 
 namespace {
 
-// Where pixels land: the picture's centre on the axis; in y half a voxel off where its sides differ in parity.
+// Where pixels land: the image's centre on the axis; in y half a voxel off where its sides differ in parity.
 struct Offsets {
   int i;
   int j;
 };
-Offsets offsets(const PictureStack& stack, const model::Grid& grid) {
+Offsets offsets(const ImageStack& stack, const model::Grid& grid) {
   return {static_cast<int>(std::floor((grid.nx - stack.width) / 2.0)),
           static_cast<int>(std::floor((grid.ny - stack.height) / 2.0))};
 }
 
-Extent picture_extent(const PictureStack& stack, double voxel_mm, double stretch_z) {
+Extent image_extent(const ImageStack& stack, double voxel_mm, double stretch_z) {
   Extent result;
   for (int k = 0; k < stack.count; ++k) {
-    const Image picture = stack.read(k);
-    for (int row = 0; row < picture.height; ++row) {
-      for (int column = 0; column < picture.width; ++column) {
-        if (picture(column, row) == 0) continue;
+    const Image image = stack.read(k);
+    for (int row = 0; row < image.height; ++row) {
+      for (int column = 0; column < image.width; ++column) {
+        if (image(column, row) == 0) continue;
         // The far corner of the pixel.
-        const double x = (column + 0.5 - 0.5 * picture.width) * voxel_mm;
-        const double y = (0.5 * picture.height - row - 0.5) * voxel_mm;
+        const double x = (column + 0.5 - 0.5 * image.width) * voxel_mm;
+        const double y = (0.5 * image.height - row - 0.5) * voxel_mm;
         const double z = (k + 0.5 - 0.5 * stack.count) * voxel_mm;
         for (const double side : {-0.5, 0.5}) {
           result.box.add({x + side * voxel_mm, y + side * voxel_mm, (z + side * voxel_mm) * stretch_z});
@@ -41,37 +41,37 @@ Extent picture_extent(const PictureStack& stack, double voxel_mm, double stretch
   return result;
 }
 
-// Adds share times a picture to a slice; pixels outside the grid are empty (the grid holds the extent).
-void add_picture(const Image& picture, float share, const model::Grid& grid, Offsets at, float* slice) {
-  for (int row = 0; row < picture.height; ++row) {
-    const int j = at.j + picture.height - 1 - row;
+// Adds share times an image to a slice; pixels outside the grid are empty (the grid holds the extent).
+void add_image(const Image& image, float share, const model::Grid& grid, Offsets at, float* slice) {
+  for (int row = 0; row < image.height; ++row) {
+    const int j = at.j + image.height - 1 - row;
     if (j < 0 || j >= grid.ny) continue;
     const int first = std::max(0, -at.i);
-    const int last = std::min(picture.width, grid.nx - at.i);
+    const int last = std::min(image.width, grid.nx - at.i);
     float* line = slice + static_cast<std::ptrdiff_t>(j) * grid.nx + at.i;
-    for (int column = first; column < last; ++column) line[column] += share * picture(column, row);
+    for (int column = first; column < last; ++column) line[column] += share * image(column, row);
   }
 }
 
-void fill_pictures(const PictureStack& stack, double stretch_z, const model::Grid& grid, const SliceSink& sink) {
+void fill_images(const ImageStack& stack, double stretch_z, const model::Grid& grid, const SliceSink& sink) {
   const Offsets at = offsets(stack, grid);
   std::vector<float> slices(grid.slice_size() * slab);
-  Image picture;
+  Image image;
   int held = -1;
   for (int k0 = 0; k0 < grid.nz; k0 += slab) {
     const int count = std::min(slab, grid.nz - k0);
     std::fill(slices.begin(), slices.end(), 0.0F);
     for (int s = 0; s < count; ++s) {
-      // The slice's lower and upper face in pictures.
-      const auto to_picture = [&](double k) { return grid.z_mm(k) / (stretch_z * grid.voxel_mm) + 0.5 * stack.count; };
-      const double low = to_picture(k0 + s - 0.5);
-      const double high = to_picture(k0 + s + 0.5);
+      // The slice's lower and upper face in images.
+      const auto to_image = [&](double k) { return grid.z_mm(k) / (stretch_z * grid.voxel_mm) + 0.5 * stack.count; };
+      const double low = to_image(k0 + s - 0.5);
+      const double high = to_image(k0 + s + 0.5);
       float* slice = slices.data() + static_cast<std::size_t>(s) * grid.slice_size();
       const int last = std::min(stack.count - 1, static_cast<int>(std::ceil(high - 1e-9)) - 1);
       for (int p = std::max(0, static_cast<int>(std::floor(low + 1e-9))); p <= last; ++p) {
-        if (p != held) picture = stack.read(held = p);
+        if (p != held) image = stack.read(held = p);
         const double share = (std::min<double>(high, p + 1) - std::max<double>(low, p)) / (high - low);
-        add_picture(picture, static_cast<float>(share), grid, at, slice);
+        add_image(image, static_cast<float>(share), grid, at, slice);
       }
     }
     for (float& value : slices) value = value > 1 - 1e-6F ? 1.0F : value;  // shares that add up to 1 but for rounding
@@ -81,15 +81,15 @@ void fill_pictures(const PictureStack& stack, double stretch_z, const model::Gri
 
 }  // namespace
 
-Part picture_part(PictureStack stack, const std::string& subject, double voxel_mm, double stretch_z) {
+Part image_part(ImageStack stack, const std::string& subject, double voxel_mm, double stretch_z) {
   Part part;
   part.subject = subject;
   part.map = scaling({1, 1, stretch_z});
-  part.extent = picture_extent(stack, voxel_mm, stretch_z);
+  part.extent = image_extent(stack, voxel_mm, stretch_z);
   if (part.extent.radius_mm == 0) throw Error{Fault::data, subject + ": all images are black"};
   part.lattice = {stack.width % 2 != 0, 0.5 * (stack.count % 2)};
   part.fill = [stack = std::move(stack), stretch_z](const model::Grid& grid, const SliceSink& sink) {
-    fill_pictures(stack, stretch_z, grid, sink);
+    fill_images(stack, stretch_z, grid, sink);
     return Vote{};
   };
   return part;
