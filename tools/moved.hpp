@@ -14,8 +14,8 @@
 
 namespace vam::tool {
 
-/// When the first argument is one of `commands`: says so on stderr and becomes `now` ("vam-calibrate resin"), with the
-/// arguments that follow; the first one stays unless `now` names a command itself. Returns the exit status if that
+/// When the first argument is one of `commands`: reports it on stderr and becomes `now` ("vam-calibrate resin"), with
+/// the arguments that follow; the first one stays unless `now` names a command itself. Returns the exit status if that
 /// tool cannot be run, else -1.
 inline int follow_moved(int argc, char** argv, const std::vector<std::string>& commands, const std::string& now) {
   if (argc < 2 || std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) return -1;

@@ -14,7 +14,7 @@ inline model::Printer load_printer(const cli::PrinterOptions& options) {
   return io::load_printer(options.file, options.sets);
 }
 
-/// Writes `printer` as commented TOML to `output` if --print-printer asks for it; says whether it did.
+/// Writes `printer` as commented TOML to `output` if --print-printer is given; returns whether it did.
 inline bool print_printer(const cli::PrinterOptions& options, const model::Printer& printer,
                           const std::string& output) {
   if (options.print) io::write_text(output, io::printer_toml(printer));

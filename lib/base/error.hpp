@@ -17,7 +17,7 @@ enum class Fault : int {
   no_output = 73,  // cannot create an output
   io = 74,         // read or write failed, the final flush included
   busy = 75,       // locked or timed out; try again
-  protocol = 76,   // a device spoke nonsense
+  protocol = 76,   // an invalid answer of a device
 };
 
 /// One line for the user: subject, problem with numbers, remedy. "part.stl: 12 open edges; --repair closes them".

@@ -14,7 +14,7 @@ namespace vam {
 namespace {
 std::unique_ptr<tbb::global_control> limit;  // NOLINT: one per process, like the thread pool it limits
 
-// ThreadSanitizer sees nothing of oneTBB's own synchronisation, as the library is not instrumented. It is told that
+// ThreadSanitizer sees nothing of oneTBB's own synchronisation, as the library is not instrumented. It is informed that
 // what was done before a loop is seen by its items, and what these did by what follows.
 #ifdef __SANITIZE_THREAD__
 void hand_over(char& mark) { __tsan_release(&mark); }

@@ -243,7 +243,7 @@ Declaration App::whole() const {
   return tool;
 }
 
-// CLI11 says only that a count is wrong: find the option that comes twice, or the one whose value is missing.
+// CLI11 reports only that a count is wrong: find the option that comes twice, or the one whose value is missing.
 void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   std::set<std::string> seen;
   std::string last;

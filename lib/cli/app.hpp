@@ -16,7 +16,7 @@ struct ExitStatus {
   std::string meaning;
 };
 
-/// What the manual says beside the options. Paragraphs are plain text.
+/// Sections of the manual beside the options. Paragraphs are plain text.
 struct Manual {
   std::string name;                                           // vam-slice
   std::string summary;                                        // one line, lower case, no full stop
@@ -73,7 +73,7 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
-  /// The option declared last leaves the result as it is, or has job() say nothing of it for another reason.
+  /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it.

@@ -1,5 +1,5 @@
-// Options that several tools share: one spelling, one help text. None is part of App::job(); of the printer, its TOML
-// text says more.
+// Options that several tools share: one spelling, one help text. None is part of App::job(): of the printer its TOML
+// text is recorded, which is complete.
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@
 namespace vam::model {
 
 /// Triangle soup in mm, right-handed, z up. A triangle is three indices into points, anticlockwise seen from outside
-/// where the file says so. Readers promise: finite points, indices in range, at least one triangle.
+/// where the file gives one. Readers guarantee: finite points, indices in range, at least one triangle.
 struct TriangleSoup {
   std::vector<std::array<double, 3>> points;
   std::vector<std::array<int, 3>> triangles;

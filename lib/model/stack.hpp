@@ -12,7 +12,7 @@ enum class Kind { sinogram, frames };
 /// Whose columns the images have: the ideal parallel-beam ("virtual") projector, the real projector, or the camera.
 enum class Space { virtual_, projector, camera };
 
-/// Facts common to all images of a stack (EXR attributes `vam:*`, see the FILES section of any manual page).
+/// Facts common to all images of a stack (EXR attributes `vam:*`, [formats: Stack attributes]).
 /// Sinogram: width = detector columns, axis in the middle (column coordinate (c - (width-1)/2) * pixel_mm),
 /// height = stage angles, row a at angle_start_deg + a * angle_step_deg. Frames: width x height of the device.
 struct StackInfo {

@@ -1,6 +1,6 @@
-// Flatland: the validation movie of [CAL17] fig 3. A thin layer of resin lies where the projector's image is formed;
-// each frame is the light that a cross-section of the part would receive at one angle, and the layer adds the frames
-// up.
+// Flatland: the movie that validates computed axial lithography [CAL17 fig 3]. A thin layer of resin lies where the
+// projector's image is formed; each frame is the light that a cross-section of the part would receive at one angle, and
+// the layer adds the frames up.
 #pragma once
 
 #include <span>

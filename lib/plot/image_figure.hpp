@@ -20,7 +20,7 @@ struct Panel {
 
 struct ImageFigure {
   std::string title;
-  std::vector<Panel> panels;  // of one size; a single one gets axes, several become a sheet
+  std::vector<Panel> panels;  // of one size; a single one has axes, several become a sheet
   Axis x;                     // from the left edge of the first column to the right edge of the last
   Axis y;                     // from the lower edge of the last row to the upper edge of the first
   bool square_pixels = true;  // false: the image may be stretched (columns against angles)

@@ -1,4 +1,5 @@
-// How long to print: from the dose of one turn to turns and seconds [CAL19 eq 1].
+// How long to print: turns and seconds until the dose of one turn, (mu / Omega) integral I e^{-mu s} dtheta [CAL19 eq
+// 1], adds up to the critical dose [physics §4].
 #pragma once
 
 #include <optional>
@@ -20,7 +21,7 @@ class DoseRange {
   void add(const Image& dose, const Image& target);
   [[nodiscard]] double largest() const { return largest_; }
 
-  /// What a report says. With a target also part_dose_min and part_dose_mean; with a critical dose the turns and
+  /// Fields of the report. With a target also part_dose_min and part_dose_mean; with a critical dose the turns and
   /// seconds until the mean of the part, and until all of it, has reached it. Without a target the largest dose stands
   /// for the part.
   [[nodiscard]] Json figures(const model::Printer& printer, bool absolute, double scale) const;

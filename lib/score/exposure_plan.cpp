@@ -16,7 +16,7 @@ double window_middle(const model::DoseMetrics& doses) {
 
 ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer) {
   constexpr double most_turns = 1e6;
-  constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns gets 3
+  constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns is given 3
   const double critical = *printer.resin.critical_dose_mj_cm3;
   const double full_turns = critical / middle_mj_cm3;
   if (!(middle_mj_cm3 > 0) || !(full_turns <= most_turns)) {

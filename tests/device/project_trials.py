@@ -45,7 +45,7 @@ def angles(table):
 
 
 class Feeder(threading.Thread):
-    """Says where a stage is, until told to stop or until nobody listens."""
+    """Prints the angle of a stage until stopped or until the reader has gone."""
 
     def __init__(self, pipe):
         super().__init__(daemon=True)

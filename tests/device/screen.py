@@ -46,7 +46,7 @@ class Server:
         self.socket.sendall(struct.pack("<BxHHHHxx", ord("l"), 11, 0, 0, 0))
         status, length = struct.unpack("<BxxxxxH", self.receive(8))
         if status != 1:
-            raise ConnectionError("the X server does not let us in")
+            raise ConnectionError("the X server refuses the connection")
         facts = self.receive(4 * length)
         vendor, formats = struct.unpack_from("<H", facts, 16)[0], facts[21]
         root = 32 + (vendor + 3) // 4 * 4 + 8 * formats  # of the first screen

@@ -138,7 +138,7 @@ void reap(Host& host, UMockdevIoctlClient* client, UMockdevIoctlData* arg) {
   umockdev_ioctl_client_complete(client, 0, 0);
 }
 
-// umockdev says nothing of clients that have gone, and may put a new one where an old one was.
+// umockdev does not report clients that have gone, and may put a new one where an old one was.
 void connected(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer user) {
   static_cast<Host*>(user)->done.erase(client);
   static_cast<Host*>(user)->unanswered.erase(client);

@@ -6,8 +6,8 @@
 
 namespace vam::oracle {
 
-/// size x size coverage 0...1, row-major, of what inside(x, y) says, x and y in pixels from the centre; 8 x 8 samples a
-/// pixel. Nothing is left outside a circle of radius 0.48 size.
+/// size x size coverage 0...1, row-major, of the region inside(x, y), x and y in pixels from the centre; 8 x 8 samples
+/// a pixel. Nothing is left outside a circle of radius 0.48 size.
 std::vector<float> draw(int size, const std::function<bool(double, double)>& inside);
 
 /// Discs of radius 8 px on a square grid of 35 px [RAY21 fig 7]; scale stretches both.

@@ -23,12 +23,12 @@ done
 rm -f .vam-*  # killed between link and rename, the new file stands under a name of its own
 is 'nothing else is left' "$(ls -A)" "$(printf '.log\nout.exr\nout.vdb\nviews.exr')"
 
-# A capture folder: a run of two frames makes so many of these calls.
+# A capture folder: the number of these calls in a run of two frames.
 vam-capture --device 'sim:?pace=virtual&noise=0.004' --binning 12 --frames 2 -o views.exr
 take() { vam-capture --device replay:views.exr --frames 2 -o "$1/"; }
 take whole
 sort whole/manifest.jsonl >whole.lines
-resumed() {  # resumed INJECTION STATUS: of a first run; the second one makes up for it
+resumed() {  # resumed INJECTION STATUS: of a first run; the second one completes it
   rm -rf folder
   inject "$1" vam-capture --device replay:views.exr --frames 2 -o folder/; status=$?
   take folder 2>.log/again; again=$?

@@ -26,7 +26,7 @@ ok() {  # ok NAME COMMAND...: the command succeeds
   [ $status -eq 0 ] || { echo "# status $status: $*"; sed 's/^/# /' .log/err .log/out | head -n 20; }
 }
 
-quiet() {  # quiet NAME COMMAND...: it succeeds and says nothing on stderr
+quiet() {  # quiet NAME COMMAND...: it succeeds with nothing on stderr
   name=$1; shift
   "$@" >.log/out 2>.log/err; status=$?
   if [ $status -eq 0 ] && [ ! -s .log/err ]; then report 0 "$name"; else

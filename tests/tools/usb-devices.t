@@ -31,7 +31,7 @@ begin found-too-bright dlpc900:?current=120 $grey 0.05 --light dlpc900:
 begin stuck-grey dlpc900:?stuck_grey=yes $grey 0.05 --light dlpc900:
 prepared=27  # reports
 for fault in error unplug; do begin $fault "dlpc900:?fault=$fault&fault_after=9" $grey 0.05 --light dlpc900:; done
-for fault in silent late garbage truncated wrong-sender; do  # when it is told to come on
+for fault in silent late garbage truncated wrong-sender; do  # on the command to switch on
   begin $fault "dlpc900:?fault=$fault&fault_after=$prepared" $grey 0.05 --light dlpc900:
 done
 

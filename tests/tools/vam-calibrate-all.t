@@ -60,7 +60,7 @@ $judge latency seen keep/latency.exr >delay
 # The flips' own times are exact, and the frames are late by what the camera's log says: 0.1 ms is a 25th of an
 # exposure. On a busy machine the shortest way from the camera is found anew now and then; so much is added.
 read -r late wander <delay
-near 'latency: what the frames are late by' "$(value latency latency)" "$late" "(0.1 + $wander)"
+near 'latency: the delay of the frames' "$(value latency latency)" "$late" "(0.1 + $wander)"
 holds 'latency: is known well' "$(sigma latency latency) < 0.05 + $wander"
 near 'response: the gamma of the projector' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-simulated-response-*.csv)" 0.289 0.01
 near 'axis: the column' "$(value axis axis_column)" 102 0.05
@@ -70,7 +70,7 @@ holds 'axis: it is known well' "$(sigma axis tilt) < 0.06"
 # A lit row is 0.1 mm high, as wide as a Gaussian of 0.068 mm: hypot(0.5, 0.068). 2 %: it is no Gaussian, and the planes
 # are 1.6 mm thick. The rest is the noise that the record tells.
 near 'beam: the waist' "$(value beam waist)" 0.5046 0.01
-near 'beam: where it is' "$(value beam focus)" 1.5 "0.05 + 3 * $(sigma beam focus)"
+near 'beam: the position of the waist' "$(value beam focus)" 1.5 "0.05 + 3 * $(sigma beam focus)"
 near 'beam: the divergence' "$(value beam divergence)" 1.5 "0.03 + 3 * $(sigma beam divergence)"
 holds 'beam: it is known well' "$(sigma beam divergence) < 0.1 && $(sigma beam focus) < 0.2"
 # The figures of the proof: 0.1 px, 0.05 %.

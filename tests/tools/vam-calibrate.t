@@ -34,7 +34,7 @@ fails 65 '8 rows; at least 16' vam-calibrate beam --from ramp --pixel 0.0035 --s
 
 # Without a folder the record is printed.
 vam-calibrate beam --from beam --pixel 0.0035 --first -6.35 --step 1.27 >beam.json
-is 'beam: it ends well' $? 0
+is 'beam: status 0' $? 0
 near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
 is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
 
@@ -50,7 +50,7 @@ TOML
 quiet 'edges' vam-calibrate edges --from sweep --pitch 4 --width 2
 near 'edges: the middle' "$(value cal/current-edges.json axis_column)" 249.3 0.1
 near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
-is 'edges: what is said of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
+is 'edges: the fields of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
 is 'edges: the frames are named by their hash' "$(json cal/current-edges.json sha256.sweep)" "$(cd sweep && sha256sum * | sha256sum | cut -d' ' -f1)"
 quiet 'response' vam-calibrate response --from ramp
 near 'response: half grey' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-lab-1-response-*.csv)" 0.229 0.003
@@ -79,16 +79,16 @@ fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --nee
 fails 64 'expected one of edges' vam-calibrate check --need edge
 fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
 fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
-ok 'without them all goes on' vam-project --print-printer --set calibration.folder= -o plain.toml
+ok 'without them the print continues' vam-project --print-printer --set calibration.folder= -o plain.toml
 vam-calibrate axis --from turn --step 10 --set calibration.valid_hours=1e-7
 fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-printer
 quiet 'a stale record does not stop a new one' vam-calibrate axis --from turn --step 10
-ok 'which heals' vam-project --print-printer -o healed.toml
+ok 'which recovers' vam-project --print-printer -o healed.toml
 
 # A vial that moved is reported and not put in force, except with --accept.
 before=$(readlink cal/current-edges.json)
 vam-calibrate edges --from moved --pitch 4 --width 2 2>errors
-is 'a vial that moved by 2 px is a judgement' $? 1
+is 'a vial that moved by 2 px is status 1' $? 1
 ok 'which reports the distance' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
 is 'the record in force stays' "$(readlink cal/current-edges.json)" "$before"
 is 'the other is kept, too' "$(kept edges)" 2

@@ -35,7 +35,7 @@ is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 # Lost and incomplete frames: said, counted, marked.
 lossy='sim:?pace=virtual&lose=3,4&cut=6'
 vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said
-is 'a capture with losses ends well' $? 0
+is 'a capture with losses has status 0' $? 0
 ok 'lost frames are reported' grep -q '2 frames dropped and 1 incomplete' said
 is 'and reported' "$(json lossy.json frames) $(json lossy.json dropped) $(json lossy.json incomplete)" '10 2 1'
 is 'and logged' "$(grep -c '"event":"dropped","first":3,"last":4' lossy.log) $(grep -c '"event":"incomplete","number":6' lossy.log)" '1 1'
@@ -62,10 +62,10 @@ quiet 'a whole recording' vam-capture --device replay:views.exr --frames 12 -o w
 cp -r whole half; rm half/000003.png half/00001*.png
 sed -e '5d' -e '12,13d' whole/manifest.jsonl >half/manifest.jsonl
 printf '{"frame":10,"file":"0000' >>half/manifest.jsonl
-quiet 'goes on' vam-capture --device replay:views.exr --frames 12 -o half/
+quiet 'resumes' vam-capture --device replay:views.exr --frames 12 -o half/
 is 'and took only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -l <whole/manifest.jsonl)))" 0
 sort half/manifest.jsonl >half.lines; sort whole/manifest.jsonl >whole.lines
-same 'the manifests tell the same' half.lines whole.lines
+same 'the manifests agree' half.lines whole.lines
 for file in whole/*.png; do cmp -s "$file" "half/$(basename "$file")" || echo "$file"; done >different
 is 'the images are identical' "$(cat different)" ''
 touch -d '2001-01-01' half/*.png

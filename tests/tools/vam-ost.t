@@ -99,7 +99,7 @@ is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''
 is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is now --filter' .log/err)" 2
 grep -q 'nothing visible' .log/err; report $? 'the log is there'
 quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
-is 'and says so' "$(grep -c 'nothing visible' faint.jsonl)" 1
+is 'and is reported' "$(grep -c 'nothing visible' faint.jsonl)" 1
 fails 65 'no volume' vam-ost views --step 2 $rig --live
 
 fails 64 'give their distance with --step' vam-ost views -o x.vdb

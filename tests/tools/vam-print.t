@@ -69,7 +69,7 @@ turntable() { stage_up --acceleration 1000 --max-speed 360 --at -130 "$@"; }
 print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
 
 # A machine too busy to turn a stage safely ends a print, as it must (too late an answer, no
-# progress): that says nothing of the print, which is made again, twice at most.
+# progress): that is no fault of the print, which is repeated at most twice.
 too_busy() {  # too_busy RUN: after a print that ended with $printed
   { [ $printed -eq 75 ] || [ $printed -eq 137 ]; } && [ $attempt -lt 3 ] || return 1
   sed 's/^/# attempt ended: /' errors
@@ -89,15 +89,15 @@ for attempt in 1 2 3; do
   camera_down
   too_busy run || break
 done
-is 'the print ends well' $printed 0
-is 'without a word' "$(cat errors)" ''
+is 'the print has status 0' $printed 0
+is 'silently' "$(cat errors)" ''
 ok 'the stage stands still' stood
 is 'the light came on once and went off' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 is 'the screen is black' "$($screen now)" black
 $judge truth run/flips.jsonl >judged
 cat judged | sed 's/^/# /'
 holds 'shown-frame angle error, p99' "$(json judged p99_deg) <= 0.1"
-# 864 blanks a turn. A busy machine misses some, or wakes late; the log says which, and they are no more than may be.
+# 864 blanks a turn. A busy machine misses some, or wakes late; the log lists which, and they are within the limit.
 holds 'of a whole turn of flips' "$(json judged flips) > 600 && $(json judged late) < 0.1 * 864"
 holds 'by elapsed time it would have been worse' "$(json judged elapsed_p99_deg) > 1"
 $screen compare frames.mkv seen >compared
@@ -120,7 +120,7 @@ for attempt in 1 2 3; do
   printed=$?
   too_busy live || break
 done
-is 'a print that vam-ost ends is well' $printed 0
+is 'a print that vam-ost ends has status 0' $printed 0
 is 'and is reported' "$(json live/summary.json outcome)" 'stopped by vam-ost'
 is 'with its condition' "$(json live/summary.json stop_event.condition)" 'missing<=100'
 holds 'after one turn of three' "$(json live/summary.json stop_event.turns) < 1.5"

@@ -13,9 +13,9 @@ print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o dr
 
 vam-project part.exr -o frames/ --fps 1 --speed 10
 print --missed 1 --log flips 2>errors
-is 'a print by page flips ends well' "$? $(cat errors)" '0 '
+is 'a print by page flips has status 0' "$? $(cat errors)" '0 '
 $judge images frames flips >judged
-is 'every flip showed the frame it was said to, at that blank' "$(cut -d' ' -f1 judged)" exact
+is 'every flip showed the frame in its log line, at that blank' "$(cut -d' ' -f1 judged)" exact
 holds 'of 36 frames and black nearly all' "$(cut -d' ' -f2 judged) > 30"
 is 'black at the end' "$(shown)" '"shade":"black"'
 is 'the gamma table is linear' "$(grep -o '"straight":.' card/log)" '"straight":1'

@@ -24,7 +24,7 @@ fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
 fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
-ok 'a dry run tells which pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
+ok 'a dry run reports the pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
 is 'in its log' "$(grep '"event":"pattern"' rows | grep -c '"name":"row"')" 1
 is 'a sweep has 64 / 16 places' "$(ls sweep | grep -c png)" 4
 ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o null: --log ramps --light sim:
@@ -40,7 +40,7 @@ early=$!
 (vam-stage spin --device 'sim:?acceleration_deg_s2=1000&speed_error=0.03' --speed 85 --run-up 0.1 | follow leds3 flips3) 2>errors3 &
 fast=$!
 vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 | follow leds flips --report report.json
-is 'a followed print ends well' $? 0
+is 'a followed print has status 0' $? 0
 is 'the light came on once and went off once' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 holds 'about four seconds of light at 60 Hz' "$(json report.json lit_flips) > 200 && $(json report.json lit_flips) < 260"
 is 'black before and after' "$(grep -c '"frame":-1' flips | awk '{ print ($1 > 50) }') $(grep '"event":"flip"' flips | tail -n 1 | grep -c '"frame":-1')" '1 1'
@@ -78,13 +78,13 @@ await test -s shown
 vam-project part.exr -o sdl:0 2>second
 is 'a second user is refused' "$? $(grep -c "in use by process $tool;" second)" '75 1'
 wait $tool
-is 'an unfollowed print ends well' $? 0
+is 'an unfollowed print has status 0' $? 0
 wait $watcher
 $screen compare frames seen >compared
 is 'every image on the screen equals one of the frames' "$(cut -d' ' -f1 compared)" exact
 holds 'and of the 19 different frames nearly all were seen' "$(cut -d' ' -f2 compared) >= 18"
 is 'black at the end' "$($screen now)" black
-is 'nothing was said' "$(cat errors)" ''
+is 'silent' "$(cat errors)" ''
 
 screen_down
 done_testing

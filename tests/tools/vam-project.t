@@ -19,7 +19,7 @@ is "row 0 is at the top: z = 5 rows of 0.26 mm" "$($exr attr frames.exr vam:z_mm
 vam-project <part.exr >pipe.exr
 is "stdin and stdout give the same pixels" "$($exr sum pipe.exr)" "$($exr sum frames.exr)"
 ok "a lossless video" vam-project part.exr -o print.mkv
-ok "a video to look at" vam-project part.exr -o look.mp4
+ok "a video for viewing" vam-project part.exr -o look.mp4
 is "FFV1 at the projector's rate" "$(ffprobe -v error -count_frames -show_entries stream=codec_name,pix_fmt,r_frame_rate,nb_read_frames -of csv=p=0 print.mkv)" "ffv1,gray,1/1,36"
 ffmpeg -v error -i print.mkv -f rawvideo -pix_fmt gray video.raw
 for i in 00000 00001 00035; do $png sum frames/$i.png; done | tr '\n' ' ' >images.sums

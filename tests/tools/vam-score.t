@@ -17,7 +17,7 @@ is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z
 quiet "met conditions" vam-score --grid target part.vdb --require 'ver<=0.01, pw>=0'
 vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
 is "an unmet condition is status 1" $? 1
-ok "that says why" grep -Eq "^vam-score: pw = [0-9.]+, but pw>1.5 is required$" why
+ok "with the reason" grep -Eq "^vam-score: pw = [0-9.]+, but pw>1.5 is required$" why
 holds "after the table" "$(wc -l <table) > 10"
 quiet "at a critical dose" vam-score --grid target part.vdb --critical-dose 0.5 --report at.json
 is "all of the part cures" "$(json at.json cured_part)" 1.0

@@ -13,7 +13,7 @@ namespace vam::calibrate_tool {
 
 namespace {
 
-constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is told from noise
+constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is distinguished from noise
 constexpr double allowed_shift_px = 1;
 constexpr double allowed_radius_change = 0.005;
 

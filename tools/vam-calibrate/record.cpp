@@ -51,13 +51,13 @@ Json hashes(const ScanOptions& options) {
   return json;
 }
 
-// {"camera": {"serial": ...}, "stage": {...}}: what the tools' identify says.
+// {"camera": {"serial": ...}, "stage": {...}}: the output of the tools' identify.
 Json read_devices(const std::string& path) {
   Json devices = Json::parse(io::read_all(path), nullptr, false);
   if (!devices.is_object()) throw Error{Fault::data, path + ": not a JSON object of devices"};
   for (const auto& [name, device] : devices.items()) {
     if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is not a JSON object"};
-    if (device.contains(name)) device = Json(device[name]);  // vam-capture says more than the camera's own
+    if (device.contains(name)) device = Json(device[name]);  // vam-capture reports more than the camera's own
   }
   return devices;
 }

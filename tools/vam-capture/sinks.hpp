@@ -1,4 +1,4 @@
-// Where frames go: an EXR frame stack, a stream of small ones, or a folder that a later capture goes on with.
+// Where frames go: an EXR frame stack, a stream of small ones, or a folder that a later capture resumes.
 #pragma once
 
 #include <memory>

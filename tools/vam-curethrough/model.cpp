@@ -46,7 +46,7 @@ struct Inputs {
   Print print;
 };
 
-// What the stack says of its print stands where the command line is silent.
+// The stack's facts about its print apply where the command line gives none.
 PrintOptions with_facts(const cli::App& app, PrintOptions options, const Slices& slices) {
   const auto fact = [&](const char* name) {
     const auto found = slices.facts.find(name);

@@ -19,7 +19,8 @@ struct Place {
   model::Grid grid;
 };
 
-/// As --like says, or around what the light reaches. Throws Fault::data when an exposure is to be planned without part.
+/// The grid of --like, or one around what the light reaches. Throws Fault::data when an exposure is to be planned
+/// without part.
 [[nodiscard]] Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info);
 
 /// The volume 'dose', with the histories of light and part.

@@ -16,7 +16,7 @@ namespace vam::dose_tool {
 /// Takes them in ascending order, writes them eight at a time, and gathers their statistics.
 class Sink {
  public:
-  /// judged: where part and void are told apart, if at all.
+  /// judged: where part and void are distinguished, if at all.
   Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, int first,
        std::optional<model::Circle> judged);
 

@@ -18,7 +18,7 @@ struct Unit {
   std::optional<score::ExposurePlan> plan;  // of the print
 };
 
-/// Absolute when the resin says what it takes. Throws Fault::data when an exposure is to be planned for a target
+/// Absolute when the resin has a critical dose. Throws Fault::data when an exposure is to be planned for a target
 /// without part or void; warns when there is no process window.
 [[nodiscard]] Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer);
 

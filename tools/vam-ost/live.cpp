@@ -92,7 +92,7 @@ void live(const cli::App& app, const Options& options) {
   int left_out = 0;
   io::CameraFrame frame;
   while (frames.next(frame)) {
-    if (!metrology::exposure_problem(frame.image).empty()) {  // a print goes on without a frame or two
+    if (!metrology::exposure_problem(frame.image).empty()) {  // a print continues without a frame or two
       ++left_out;
       continue;
     }

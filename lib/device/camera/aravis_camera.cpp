@@ -31,7 +31,7 @@ struct Unref {
 template <class Object>
 using Handle = std::unique_ptr<Object, Unref>;
 
-// Collects what Aravis says; one problem at a time.
+// Collects Aravis's messages; one problem at a time.
 class Problem {
  public:
   ~Problem() { g_clear_error(&error_); }
@@ -74,7 +74,8 @@ void abandon(GObject* object) {
   abandoned.push_back(object);
 }
 
-// The kernel's memory for USB transfers, where it says so: too little of it makes frames of more than a megabyte fail.
+// The kernel's memory for USB transfers, where it is reported: too little of it makes frames of more than a megabyte
+// fail.
 void check_usb_memory(std::size_t needed_bytes) {
   std::ifstream file("/sys/module/usbcore/parameters/usbfs_memory_mb");
   double megabytes = 0;
@@ -265,7 +266,7 @@ class AravisCamera final : public Camera {
     check(problem, "exposure");
   }
 
-  // Point Grey and FLIR keep the rate to themselves until they are told not to, each model by other names.
+  // Point Grey and FLIR do not apply the rate until it is enabled, under names that differ from model to model.
   void set_rate() {
     if (!settings_.fps) return;
     Problem problem;

@@ -30,7 +30,7 @@ struct CameraSettings {
   [[nodiscard]] double patience_s(double period_s) const;
 };
 
-/// What the camera says it does, read back after setting.
+/// The camera's mode, read back after setting.
 struct CameraMode {
   int columns = 0;
   int rows = 0;
@@ -43,7 +43,7 @@ struct CameraMode {
 /// An image with the facts of its taking.
 struct CapturedFrame {
   GreyImage levels;                 // 8 or 16 bits; depths between are spread over 16
-  long number = 0;                  // frames since start(), those counted that the camera made but nobody received
+  long number = 0;                  // frames since start(), including those the camera made that were not received
   double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, were the stamp set at its end
   std::optional<double> device_s;   // the time stamp on the camera's own clock
   bool complete = true;             // false: parts of the image did not arrive and are not of this moment

@@ -20,7 +20,7 @@ std::unique_ptr<Stage> open_sim(const Address& address, Clock& clock, Guardian* 
   return make_gcs_stage(sim::make_sim_port(std::move(device), clock), clock, {}, "1", guardian);
 }
 
-// The guardian holds the lock too: nobody gets the device before it is safe.
+// The guardian holds the lock too: the device is not released before it is safe.
 std::unique_ptr<DeviceLock> lock_device(const std::string& name, Guardian* guardian) {
   auto lock = std::make_unique<DeviceLock>(name);
   if (guardian != nullptr) guardian->keep(lock->handle());

@@ -1,4 +1,4 @@
-// One JSON line per event, with UTC and monotonic time, for cron and for whoever looks for the cause afterwards.
+// One JSON line per event, with UTC and monotonic time, for cron and for a later search for causes.
 #pragma once
 
 #include <functional>
@@ -38,7 +38,7 @@ class EventLog {
 /// error leaves no log where there was none.
 void logged(const std::string& path, const std::function<void()>& body);
 
-/// "2026-11-21T04:43:00.123Z", or so many seconds ago.
+/// "2026-11-21T04:43:00.123Z", or of a moment that many seconds ago.
 [[nodiscard]] std::string utc_now(double ago_s = 0);
 
 }  // namespace vam::device

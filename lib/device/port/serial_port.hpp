@@ -1,4 +1,4 @@
-// Serial ports by libserialport, without its traps.
+// Serial ports by libserialport, its pitfalls handled.
 #pragma once
 
 #include <memory>

@@ -28,7 +28,7 @@ struct TextureCloser {
 };
 struct Library {
   Library() {
-    // Without a desktop SDL would draw on a screen that nobody sees.
+    // Without a desktop SDL would draw on an invisible screen.
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
       throw Error{Fault::absent, "sdl: cannot reach a desktop; set DISPLAY or WAYLAND_DISPLAY, or use drm:"};
     }

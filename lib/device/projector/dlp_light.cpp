@@ -129,7 +129,7 @@ class DlpLight final : public LightEngine {
     unless_refused([&] { link_.tell(pattern_start_stop, {stop}); });  // when there are none
   }
 
-  // A DLPC900 cannot be told to leave its gamma. Its grey is linear where it takes a frame for three patterns of 8
+  // The gamma of a DLPC900 cannot be switched off. Its grey is linear where it takes a frame for three patterns of 8
   // bits, its colours one after the other, which it does only with an image that it has found.
   void show_patterns() {
     unless_refused([&] {  // by a board without a receiver
@@ -167,7 +167,7 @@ class DlpLight final : public LightEngine {
   void watch() {
     if (guardian_ == nullptr || action_) return;
     const Json about = link_.about();
-    // Flags 0: no acknowledgement, since nobody is left to read it.
+    // Flags 0: no acknowledgement, since no process is left to read it.
     const Json reports =
         Json::array({to_hex(dlp_report(0, 0, led_enable, {0})), to_hex(dlp_report(0, 1, pattern_start_stop, {stop})),
                      to_hex(dlp_report(0, 2, power, {asleep}))});

@@ -67,7 +67,7 @@ bool carry_out_usb(const Json& action) {
   return false;
 }
 
-// A flip of the dead tool may be under way: then the card says busy until its next vertical blank.
+// A flip of the dead tool may be under way: then the card is busy until its next vertical blank.
 bool blacken(const Json& action, int card) {
   const auto crtc = action.value("crtc", 0U);
   const auto black = action.value("framebuffer", 0U);

@@ -1,4 +1,4 @@
-// The guardian's order to stop a stage: standing from the moment it is told to move until it is known to stand.
+// The guardian's order to stop a stage: in force from the first motion command until the stage is known to be at rest.
 #pragma once
 
 #include <optional>

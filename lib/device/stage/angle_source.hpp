@@ -19,7 +19,8 @@ class AngleSource {
   [[nodiscard]] virtual std::optional<AngleSample> at(double t_s) const = 0;
 };
 
-/// By the clock alone: the angle is speed times the time since the first question [OST22].
+/// By the clock alone, as the printer with tomography during the print: the angle is speed times the time since the
+/// first question [OST22].
 [[nodiscard]] std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock);
 
 /// By the lines of vam-stage from a file, FIFO, or "-" (stdin): their running line fit, extrapolated. update() throws

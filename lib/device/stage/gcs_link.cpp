@@ -67,7 +67,7 @@ Error GcsLink::malformed(const std::string& question, const std::string& answer,
 }
 
 double GcsLink::send(const std::string& text) {
-  // Bytes that nobody asked for would be taken for the answer. 1 ns: only what is there already.
+  // Unsolicited bytes would be taken for the answer. 1 ns: only what has already arrived.
   while (!port_->read(1e-9).empty()) continue;
   // Before the bytes leave: a process that must wait for its processor right after has its answer before it knows.
   const double t0_s = clock_.now_s();

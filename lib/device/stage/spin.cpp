@@ -14,7 +14,7 @@ namespace vam::device {
 namespace {
 
 constexpr double assumed_acceleration_deg_s2 = 40;  // when the controller does not say
-constexpr double judged_s = 0.6;  // before angle 0: a projector that follows is told in time, and never shines
+constexpr double judged_s = 0.6;  // before angle 0: a following projector is informed in time, and stays dark
 constexpr double settle_s = 1.6;  // at speed before angle 0: the fit's window, and the time before
 
 struct Course {

@@ -1,5 +1,5 @@
 // The text formats and PLY through CGAL. CGAL's readers trust the counts in a header and accept some cut files, so both
-// are looked at first.
+// are examined first.
 #include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>

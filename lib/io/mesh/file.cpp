@@ -19,7 +19,7 @@ PolygonSoup parse(const std::string& bytes) {
   for (const MeshFormat& format : mesh_formats()) {
     if (format.recognises(bytes)) return format.read(bytes);
   }
-  // No other binary format is left: its reader says what is missing.
+  // No other binary format is left: its reader reports what is missing.
   if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
   throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
 }

@@ -8,16 +8,16 @@
 
 namespace vam::io {
 
-/// Reads a mesh; the format is told by the content, "-" is stdin. Polygons are cut into fans of triangles. Coordinates
-/// are those of the file, 3MF's converted to mm by its unit. Nothing is welded or repaired.
-/// Throws Error: no_input, io, data (unknown format, truncated, no triangle, a vertex that is not finite, a face with
-/// an index that does not exist or with fewer than three corners).
+/// Reads a mesh; the format is determined by the content, "-" is stdin. Polygons are cut into fans of triangles.
+/// Coordinates are those of the file, 3MF's converted to mm by its unit. Nothing is welded or repaired. Throws Error:
+/// no_input, io, data (unknown format, truncated, no triangle, a vertex that is not finite, a face with an index that
+/// does not exist or with fewer than three corners).
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
 
 /// The formats that are read, for messages and help: "3MF, PLY, ...".
 [[nodiscard]] std::string mesh_format_names();
 
-/// Writes the format that the name's ending says, PLY to "-"; comments go where the format has some.
+/// Writes the format of the file name's extension, PLY to "-"; comments go where the format has some.
 /// Throws Error: usage (an ending that is not written), no_output, io.
 void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments);
 /// Throws Fault::usage as write_mesh would, before there is a mesh.

@@ -1,4 +1,4 @@
-// The table of mesh formats, and how each is told by its content.
+// The table of mesh formats, and how each is recognised by its content.
 #include "io/mesh/private/formats.hpp"
 
 #include <algorithm>

@@ -36,7 +36,7 @@ struct CaptureManifest {
 
 class CaptureFolder {
  public:
-  /// Makes the folder, or goes on with the one that is there. Throws Fault::no_output when its head differs ("was taken
+  /// Makes the folder, or resumes an existing one. Throws Fault::no_output when its head differs ("was taken
   /// with exposure_us 20000, not 10000"), or it holds other things.
   CaptureFolder(const std::string& folder, const Json& head);
   ~CaptureFolder();

@@ -28,7 +28,7 @@ class FrameSink {
   FrameSink& operator=(const FrameSink&) = delete;
   /// The next frames, in order. Throws Error: no_output, io.
   virtual void write(std::span<const ProjectorFrame> frames) = 0;
-  /// After the last one; what was written appears under its name, whole. Without it nothing is left.
+  /// After the last one; what was written appears under its name, whole. If it is not called, nothing is left.
   virtual void commit() = 0;
 };
 

@@ -10,7 +10,7 @@
 
 namespace vam::io {
 
-/// Reads PNG or TIFF, told apart by their content, as 8 or 16 grey bits; colours become their luma, transparency is
+/// Reads PNG or TIFF, recognised by their content, as 8 or 16 grey bits; colours become their luma, transparency is
 /// ignored, fewer bits are spread over 8. "-" is stdin.
 /// Throws Error: no_input, io, data (neither PNG nor TIFF, truncated, damaged).
 [[nodiscard]] GreyImage read_picture(const std::string& path);

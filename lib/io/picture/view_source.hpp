@@ -26,7 +26,7 @@ class ViewSource {
   ~ViewSource();
   /// False after the last frame; a live stream continues with its next stack by itself.
   bool next(CameraFrame& frame);
-  /// Column pitch at the axis as the stack says; 0 when nothing is said.
+  /// Column pitch at the axis by the stack's attribute; 0 without one.
   [[nodiscard]] double pixel_mm() const;
   [[nodiscard]] std::vector<std::string> history() const;
 

@@ -22,7 +22,7 @@ std::string pipe_head(int descriptor) {
   std::array<int, 2> copy{};
   if (pipe2(copy.data(), O_CLOEXEC) != 0) return "";
   std::string head;
-  // A writer may deliver its first bytes one by one; what is there is looked at again until it is enough or the end.
+  // A writer may deliver its first bytes one by one; they are examined again until they suffice or the input ends.
   for (int attempt = 0; attempt < 1000 && head.size() < look; ++attempt) {
     const ssize_t copied = tee(descriptor, copy[1], look, 0);
     if (copied <= 0) break;

@@ -12,7 +12,7 @@ enum class FileType {
   pictures,  // a folder
 };
 
-/// Looks without taking anything away, so that whoever reads next gets every byte; "-" is stdin, a file or a pipe.
+/// Peeks without consuming, so that the next reader receives every byte; "-" is stdin, a file or a pipe.
 /// Throws Error: no_input, data (none of these).
 [[nodiscard]] FileType file_type(const std::string& path);
 

@@ -126,7 +126,7 @@ void OutputFile::commit() {
   if (!is_stream()) publish();
   const int descriptor = descriptor_;
   descriptor_ = -1;
-  // stdout stays open for whoever writes to it next. Network file systems report a full disk only on close.
+  // stdout stays open for the next writer. Network file systems report a full disk only on close.
   if (descriptor != STDOUT_FILENO && close(descriptor) != 0) fail(Fault::io, name_, "cannot finish", errno);
 }
 

@@ -9,7 +9,7 @@
 
 namespace vam::io {
 
-static_assert(std::endian::native == std::endian::little, "the header says little");
+static_assert(std::endian::native == std::endian::little, "the header states little-endian");
 
 namespace {
 

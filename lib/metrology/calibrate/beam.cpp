@@ -22,7 +22,7 @@ constexpr double interpolation_px = 0.015;
 
 const double fwhm_per_sigma = 2 * std::sqrt(2 * std::numbers::ln2);
 
-constexpr double middle_part = 0.8;  // of the resin's radius that is looked at
+constexpr double middle_part = 0.8;  // of the resin's radius that is evaluated
 constexpr int least_columns = 8;     // of a plane
 
 // Full width at half maximum of the Gaussian that, summed over each sample, fits a bright peak on even ground.

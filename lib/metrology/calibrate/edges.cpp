@@ -42,10 +42,10 @@ double column_of_impact_mm(const optics::View& view, double impact) {
   return 0.5 * (low + high);
 }
 
-// What SightLines gets of a sheet is what a perfect camera would. What else there is, of lens and place, changes with
-// how the sheet lies, that is with the turn delta of its ray, which near grazing goes with the root of the depth below
-// the edge, and with where it lies. So its share is a polynomial in t, the turn that is missing to that at the edge
-// plus the depth as a part of R_e.
+// SightLines sees a sheet as a perfect camera would. Effects of lens and position change with the orientation of the
+// sheet, that is with the angle delta of its ray, which near grazing varies with the square root of the depth below the
+// edge, and with its position. Their share is therefore a polynomial in t, the angle from that at the edge plus the
+// depth as a fraction of R_e.
 constexpr std::size_t powers = 3;
 using Terms = std::array<double, powers>;
 

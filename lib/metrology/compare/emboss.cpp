@@ -163,7 +163,7 @@ Emboss compare_emboss(const Relief& print, const solid::HeightMap& map, EmbossAl
   emboss.outline_mean_mm /= count;
   emboss.outline_rms_mm = outline.rms(design.outline, pose);
   emboss.design = placed(design, pose, print);
-  constexpr double margin_mm = 0.15;  // a projector's edge is that soft [RAY21 fig 12]
+  constexpr double margin_mm = 0.15;  // edge blur of an image corrected for refraction [RAY21 fig 12]
   measure_area(print, margin_mm, emboss);
   if (emboss.iou == 0) throw Error{Fault::data, "design: does not overlap the embossing in the height image"};
   return emboss;

@@ -9,7 +9,7 @@
 namespace vam::metrology {
 
 /// Keeps the views of the last 360 degrees. Angles may be given modulo a turn and in either sense; a step of more than
-/// half a turn between two frames cannot be told from one the other way.
+/// half a turn between two frames cannot be distinguished from one in the opposite direction.
 class SlidingTurn {
  public:
   /// A volume is due every `every_deg`, first after one full turn.

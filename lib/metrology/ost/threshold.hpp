@@ -28,8 +28,8 @@ struct OverheadMean {
 };
 [[nodiscard]] OverheadMean overhead_mean(const model::Volume& scatter);
 
-/// What the standard says: the mean of the overhead mean projection under the circle of the true diameter, centred on
-/// the circle that the projection itself shows.
+/// Threshold from the standard: the mean of the overhead mean projection under the circle of the true diameter, centred
+/// on the circle that the projection itself shows.
 struct Threshold {
   double level = 0;                 // I_p
   double spread = 0;                // standard deviation along the circle

@@ -1,4 +1,4 @@
-// What a print gets right: correctly cured, cure-through, undercured, and how wrong the height of each feature is
+// Outcome of a print: correctly cured, cure-through, undercured, and how wrong the height of each feature is
 // [CURE19 fig 2, 4 and 5c].
 #pragma once
 

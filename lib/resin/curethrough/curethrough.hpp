@@ -7,7 +7,7 @@
 //
 // The nodes are where the dose is followed. Continuous: node = plane, 0..N; a feature of slices a..b-1 covers the nodes
 // a..b and its designed edges are the two outer ones. Layer by layer: node n = the side of layer n that is turned away
-// from the light, where the layer gets least; a feature of layers a..b-1 covers the nodes a..b-1.
+// from the light, where the layer receives least; a feature of layers a..b-1 covers the nodes a..b-1.
 #pragma once
 
 #include <span>

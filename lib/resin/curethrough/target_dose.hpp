@@ -23,7 +23,7 @@ namespace vam::resin {
 struct DoseLimit {
   double omega_max = 1;  // at least 1, or infinite
   /// Features that stand on the platform have no resin behind them that could cure: they get the maximum intensity
-  /// from their bottom edge on, whatever omega_max says, as the rails of [CURE19 fig 4] do.
+  /// from their bottom edge on, whatever omega_max is, as the rails of [CURE19 fig 4] do.
   bool strong_base = false;
 };
 
@@ -67,7 +67,8 @@ struct Column {
 };
 
 /// The exact solution for part[n] = "slice n is in the part", followed by extra_slices empty slices. When no Phi
-/// satisfies every constraint the column says so and carries the nearest attempt; nothing is clipped in silence.
+/// satisfies every constraint the column is marked infeasible and holds the nearest attempt; nothing is clipped
+/// silently.
 [[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
                                     int extra_slices);
 

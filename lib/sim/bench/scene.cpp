@@ -95,7 +95,7 @@ struct SimScene::State {
     return seen;
   }
 
-  // Light that the camera gets out of the resin, by camera column, when the vial stands `shift` columns to the right;
+  // Light that reaches the camera from the resin, by camera column, when the vial stands `shift` columns to the right;
   // lit: by the beam's width.
   [[nodiscard]] std::vector<double> glow(const std::vector<LitRow>& lit, double shift) const {
     const auto& ends = beams.columns();

@@ -69,7 +69,7 @@ class DescriptionFile {
   std::string path_;
 };
 
-// Aravis shares its port with whoever has it; then each gets some of the packets.
+// Aravis shares its port with any other user; then each receives some of the packets.
 void require_free(const std::string& address) {
   const std::string subject = address + ": cannot serve a camera there: ";
   sockaddr_in place{};
@@ -154,7 +154,7 @@ struct SimGvCamera::State {
   }
 
   static void copy(const GreyImage& levels, ArvBuffer* buffer) {
-    // Filling it is what the callback is for, though the accessor says const.
+    // Filling it is what the callback is for, though the accessor is const.
     auto* bytes = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, nullptr)));
     for (const std::uint16_t level : levels.values) {
       *bytes++ = static_cast<std::uint8_t>(level & 255U);

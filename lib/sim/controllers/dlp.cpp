@@ -28,7 +28,7 @@ class SimDlp final : public device::UsbLink {
     if (settings.dlpc900) {
       registers_[0x1A01] = std::string(1, '\x00');  // video receiver off
       registers_[0x1A31] = std::string(6, '\0');    // table of patterns
-      registers_[0x1A34] = std::string(12, '\0');   // the pattern told last
+      registers_[0x1A34] = std::string(12, '\0');   // the pattern set last
     } else {
       registers_[0x1A0E] = std::string(1, '\x80');  // gamma on
     }
@@ -88,13 +88,13 @@ class SimDlp final : public device::UsbLink {
   [[nodiscard]] bool image() const {
     return settings_.dlpc900 && !settings_.no_signal && (value(0x1A00) & 7) == 0 && value(0x1A01) != 0;
   }
-  // Grey levels 0..255 are told apart by equal steps of light: by its own account, not by that of its user.
+  // Whether grey levels 0..255 are equal steps of light: by the engine's own state, not by what its user set.
   [[nodiscard]] bool linear() const {
     if (!settings_.dlpc900) return value(0x1A1B) == 0 && value(0x1A0E) < 0x80;
     return value(0x1A1B) == 2 && value(0x1A24) == 2 && all_bits_ == 0xFFFFFF;
   }
 
-  // What it says of its state at first is still the old one.
+  // The state it reports first is still the old one.
   std::string read(int command) {
     const bool slow = slow_[command] > 0 && slow_[command]-- > 0;
     if (slow && command == 0x0200) return std::string(1, '\1');

@@ -11,11 +11,11 @@ namespace vam::sim {
 
 struct SimDlpSettings {
   bool dlpc900 = false;
-  int slow_reads = 0;  // so often it says that it still sleeps, has no image yet, is in its old mode
+  int slow_reads = 0;  // number of answers that it still sleeps, has no image yet, is in its old mode
   int current = 40;
-  bool stuck_grey = false;  // keeps its gamma on (DLPC350), its video mode (DLPC900), whatever it is told
+  bool stuck_grey = false;  // keeps its gamma on (DLPC350), its video mode (DLPC900), whatever the command
   bool no_signal = false;   // at its input
-  int refuse = 0;           // command (CMD2 << 8 | CMD3) that gets a NACK
+  int refuse = 0;           // command (CMD2 << 8 | CMD3) that is answered by a NACK
   // What spoils every answer from the n-th report (from 0) on: silent · late (the answer comes with the next question)
   // · garbage · truncated (three bytes) · wrong-sender (an answer to another question) · error (NACK) · unplug.
   std::string fault{};

@@ -11,7 +11,7 @@ struct MotorSettings {
   double ripple = 0;           // relative amplitude of the speed error that repeats with every 30 deg (worm, gear)
 };
 
-/// Moves in steps of 0.5 ms of the time it is told, so its path does not depend on how often it is asked.
+/// Moves in steps of 0.5 ms of the time it is given, so its path does not depend on the sampling.
 class SimMotor {
  public:
   SimMotor(const MotorSettings& settings, double start_s) : settings_(settings), now_s_(start_s) {}

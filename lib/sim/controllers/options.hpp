@@ -1,4 +1,4 @@
-// Simulators are told apart by options of their device string: sim:?speed_error=0.01&jitter_ms=5&log=truth.jsonl.
+// Simulators are configured by options of their device string: sim:?speed_error=0.01&jitter_ms=5&log=truth.jsonl.
 #pragma once
 
 #include <string>

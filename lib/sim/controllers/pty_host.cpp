@@ -86,7 +86,7 @@ void serve(Pty& pty, SimDevice& device, std::optional<int> baud) {
     const std::string answer = device.take(clock.now_s());
     if (answer.empty() || pty.master() < 0) continue;
     const std::string sent = right_rate ? answer : garbled(answer);
-    if (write(pty.master(), sent.data(), sent.size()) < 0) continue;  // nobody reads: a serial line drops bytes, too
+    if (write(pty.master(), sent.data(), sent.size()) < 0) continue;  // no reader: a serial line drops bytes, too
   }
 }
 

@@ -171,7 +171,7 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   for (const Pose& pose : starting_poses(all, points_of(reference_mesh, options.samples), options.with_scale)) {
     starts.push_back({0, pose});
   }
-  // Ever fewer starts are looked at ever more closely.
+  // Fewer and fewer starts are refined more and more.
   const auto keep = [&](std::size_t count, const auto& rms_of) {
     parallel_for(static_cast<int>(starts.size()), [&](int i) {
       Start& start = starts[static_cast<std::size_t>(i)];

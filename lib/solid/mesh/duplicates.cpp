@@ -42,8 +42,8 @@ std::vector<Key> sorted_keys(const model::TriangleSoup& mesh) {
 }
 
 // Which of the triangles left over from copies that cancel are needless: a patch of them is when the other triangles
-// meet it and are closed without it, as where two solids touch. A patch that closes a hole stays, and so does a surface
-// made of nothing else.
+// meet it and are closed if it is removed, as where two solids touch. A patch that closes a hole stays, and so does a
+// surface made of nothing else.
 class Patches {
  public:
   Patches(const model::TriangleSoup& mesh, const std::vector<char>& drop, const std::vector<std::size_t>& cancelling)

@@ -25,7 +25,7 @@ std::uint64_t hash(const Vector3& p) {
   return h;
 }
 
-// Points get the numbers in `target`; numbers that nobody uses are closed up.
+// Points get the numbers in `target`; unused numbers are closed up.
 void renumber(model::TriangleSoup& mesh, std::vector<int>& target) {
   std::vector<int> number(mesh.points.size(), -1);
   std::vector<Vector3> points;

@@ -87,7 +87,8 @@ Field torus(Values v) {
   return upright([=](const Point& p) { return sdf::torus(p, ring, tube); }, ring + tube, tube, 1 / tube);
 }
 
-// The hull of two balls, hollow, with a round opening at the top (egg prints of [CURE19, fig 1]).
+// The egg shell of continuous stereolithography: the hull of two balls, hollow, with a round opening at the top [CURE19
+// fig 1].
 Field egg_shell(Values v) {
   const double low = v[1] / 2;
   const double high = 0.62 * low;  // the blunt and the pointed end of an egg

@@ -80,7 +80,7 @@ Field gyroid(Values v) {
 }
 
 // The octet truss [CAL17 fig 8C]: the edges between nearest neighbours of a face-centred cubic lattice. A cell is
-// mirror-symmetric about its middle planes, so one octant with the six edges of a tetrahedron says it all.
+// mirror-symmetric about its middle planes, so one octant with the six edges of a tetrahedron describes it.
 Field octet(Values v) {
   const double cell = v[0];
   const double strut = v[1] / 2;

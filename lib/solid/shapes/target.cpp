@@ -6,8 +6,8 @@
 
 namespace vam::solid::build {
 
-// Discs on a square grid, one on the axis, those that lie wholly within the diameter [RAY21 fig 7a: period 35 px,
-// radius 8 px]. The cross-section is constant.
+// The pattern that shows uncorrected refraction: discs on a square grid, one on the axis, those that lie wholly within
+// the diameter [RAY21 fig 7a: period 35 px, radius 8 px]. The cross-section is constant.
 Field disc_grid(Values v) {
   const double period = v[0];
   const double radius = v[1];

@@ -60,7 +60,7 @@ struct Content {
 /// Fills the grid and hands each slab on. Throws Fault::data when nothing is covered.
 Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink);
 
-/// What --report says: volume and size of the print (not of the stretched target), the grid, repairs.
+/// Contents of --report: volume and size of the print (not of the stretched target), the grid, repairs.
 [[nodiscard]] Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
                            const Writable& room);
 

@@ -60,7 +60,7 @@ void enter_slice(const std::vector<Corners>& triangles, std::span<const int> mem
   }
 }
 
-// The two ends of what one axis says: the sum from one end of the row, and that from the other.
+// The votes along one axis from its two ends: the sum from one end of the row, and that from the other.
 struct Ends {
   float a;
   float b;

@@ -4,7 +4,7 @@
 
 using namespace vam;
 
-TEST_CASE("numbers are whole texts") {
+TEST_CASE("a number is the whole of its text") {
   CHECK(parse_number("0.065") == 0.065);
   CHECK(parse_number("+2") == 2.0);
   CHECK(parse_number("1e-3") == 1e-3);
@@ -17,7 +17,7 @@ TEST_CASE("split keeps empty parts inside and at the end") {
   CHECK(split("", ',').empty());
 }
 
-TEST_CASE("nearest finds a slip of the pen and nothing else") {
+TEST_CASE("nearest finds a misspelt word and no other") {
   const std::vector<std::string> known{"radius_mm", "wall_mm", "index_glass"};
   CHECK(nearest("radus_mm", known) == "radius_mm");
   CHECK(nearest("throw_ratio", known).empty());

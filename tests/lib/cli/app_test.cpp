@@ -155,7 +155,7 @@ TEST_CASE("options of a command may stand before or behind it") {
   }
 }
 
-TEST_CASE("the error for a wrong option of a command says where it belongs") {
+TEST_CASE("the error for a wrong option of a command names the command it belongs to") {
   const auto said = [](const std::vector<std::string>& words, bool plain) {
     return written_to(stderr, [&] { CHECK(Stage(plain).run(words) == 64); });
   };

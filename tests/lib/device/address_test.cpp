@@ -19,7 +19,7 @@ TEST_CASE("A device string is scheme, place and options") {
   CHECK(parse_address("sim:", {"gcs", "sim"}).place.empty());
 }
 
-TEST_CASE("A bad device string is a usage error that says what is wrong") {
+TEST_CASE("A bad device string is a usage error that names the fault") {
   for (const char* bad :
        {"", "/dev/ttyUSB0", "usb:1", "gcs:/dev/x?baud", "gcs:/dev/x?=1", "gcs:/dev/x?baud=1&baud=2"}) {
     CAPTURE(bad);

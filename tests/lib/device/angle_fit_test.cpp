@@ -20,7 +20,7 @@ TEST_CASE("Samples on a line give the line") {
   CHECK(std::abs(fit.at(1e5 + 1.05).angle_deg - (-3 + 25 * 1.05)) < 1e-8);
 }
 
-TEST_CASE("The promised sigma covers the error of the prediction") {
+TEST_CASE("The reported sigma covers the error of the prediction") {
   // 500 fits with Gaussian noise of the stated sigma: |error| <= 2 sigma in 95.4 % of them; the count has a standard
   // deviation of sqrt(500 * 0.954 * 0.046) = 4.7, so 3 of those below 477 is 463.
   std::mt19937_64 random(7);

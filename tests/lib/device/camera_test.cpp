@@ -28,7 +28,7 @@ std::unique_ptr<Camera> v4l2(V4l2Script& script, VirtualClock& clock, const Came
                           std::make_unique<FakeV4l2>(script, clock), clock);
 }
 
-// A recording of so many frames, a tenth of a second and step_deg apart; those in `lost` are not in it.
+// A recording of that many frames, a tenth of a second and step_deg apart; those in `lost` are not in it.
 CameraBench recording(int count, double step_deg, std::set<long> lost, std::set<long> cut) {
   return {[=](const std::string&) -> CameraFeed {
             return [=, next = 0L](CapturedFrame& frame) mutable {
@@ -72,7 +72,7 @@ Taken take(const CameraBench& bench, const CapturePlan& plan, AngleSource* angle
 
 }  // namespace
 
-TEST_CASE("Frame ids: gaps are counted, GigE ids come round after 65535, a malformed one counts as the next frame") {
+TEST_CASE("Frame ids: gaps are counted, GigE ids wrap after 65535, a malformed one counts as the next frame") {
   FrameCount count;
   CHECK(count.number(65530) == 0);
   CHECK(count.number(65533) == 3);
@@ -86,7 +86,7 @@ TEST_CASE("Frame ids: gaps are counted, GigE ids come round after 65535, a malfo
   CHECK(usb.number(70000 - 69000) == 1000);
 }
 
-TEST_CASE("Stamps: the shortest delay stands for all, and follows a drifting clock") {
+TEST_CASE("Time stamps: the shortest delay is used for all, and follows a drifting clock") {
   StampClock clock(10);
   CHECK(clock.host_s(5, 105.030) == doctest::Approx(105.030));
   CHECK(clock.host_s(6, 106.002) == doctest::Approx(106.002));
@@ -141,7 +141,7 @@ TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error fla
   CHECK(fault_of([&] { (void)camera->next(); }) == Fault::absent);
 }
 
-TEST_CASE("V4L2: what a camera cannot do is named") {
+TEST_CASE("V4L2: an unsupported setting is named in the error") {
   VirtualClock clock;
   V4l2Script script;
   const auto fault = [&](const CameraSettings& settings) {
@@ -222,7 +222,7 @@ TEST_CASE("A followed series begins at angle 0 and keeps the frame nearest to ea
   CHECK(taken.numbers == std::vector<long>{5, 9, 12, 15});  // 7.45 s, 7.85 s, 8.15 s, 8.45 s
 }
 
-TEST_CASE("A simulated camera: virtual pace waits for nothing, lost and cut frames, a pulled cable") {
+TEST_CASE("A simulated camera: virtual pace does not wait, lost and cut frames, a pulled cable") {
   VirtualClock clock;
   CameraSettings settings;
   settings.fps = 10;

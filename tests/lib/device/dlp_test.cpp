@@ -33,7 +33,7 @@ struct LightLab {
 
 }  // namespace
 
-TEST_CASE("The light engine wakes dark, shines when told, with linear grey, and is dark again") {
+TEST_CASE("The light engine wakes dark, shines on command, with linear grey, and is dark again") {
   for (const bool dlpc900 : {false, true}) {
     CAPTURE(dlpc900);
     LightLab lab({.dlpc900 = dlpc900, .slow_reads = 3});
@@ -52,7 +52,7 @@ TEST_CASE("The light engine wakes dark, shines when told, with linear grey, and 
   }
 }
 
-TEST_CASE("A DLPC900 without an image at its input is waited for, for 15 s; no light comes") {
+TEST_CASE("A DLPC900 without an image at its input is given 15 s; its light stays off") {
   LightLab lab({.dlpc900 = true, .no_signal = true});
   const double start_s = lab.clock.now_s();
   const std::string message = error_of([&] { lab.light->prepare(); }, Fault::busy);
@@ -159,7 +159,7 @@ TEST_CASE("An engine that refuses to stop a pattern still goes to sleep") {
   CHECK(heard_by({.refuse = 0x1A24}).back().substr(4) == "0300000201");
 }
 
-TEST_CASE("Leaving without a word is dark, too") {
+TEST_CASE("Exit without a command is dark, too") {
   LightLab lab;
   lab.light->prepare();
   lab.light->on();
@@ -186,7 +186,7 @@ TEST_CASE("The current is capped, as given and as found") {
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);
 }
 
-TEST_CASE("Grey that does not get linear is found by reading back") {
+TEST_CASE("Grey that stays non-linear is found by reading back") {
   LightLab gamma({.stuck_grey = true});
   CHECK(
       error_of([&] { gamma.light->prepare(); }, Fault::protocol).find("gamma off was set to 00 but reads back as 80") !=

@@ -56,7 +56,7 @@ TEST_CASE("An event has UTC and monotonic time of the same moment, also one of a
   CHECK(std::abs(utc_s - monotonic_s) < 0.003);  // UTC has milliseconds
 }
 
-TEST_CASE("What ends a tool is its last event, and is passed on") {
+TEST_CASE("The cause of a tool's end is its last event, and is passed on") {
   const LogFile file;
   CHECK(fault_of([&] { logged(file.path, [] { throw Error{Fault::busy, "stage: in use"}; }); }) == Fault::busy);
   CHECK_THROWS_AS(logged(file.path, [] { throw Interrupted{15}; }), Interrupted);

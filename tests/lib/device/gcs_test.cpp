@@ -12,7 +12,7 @@ using namespace vam;
 using namespace vam::device;
 using namespace vam::sim;
 
-TEST_CASE("A PI controller says who it is and what it can do") {
+TEST_CASE("A PI controller reports its identity and its limits") {
   VirtualStage lab;
   const Json about = describe(*lab.stage);
   CHECK(about["model"] == "C-863.11");
@@ -54,7 +54,7 @@ TEST_CASE("Homing ends at the reference, moves end at their angle") {
   const double start_s = lab.clock.now_s();
   move(*lab.stage, lab.clock, 90, false, 30, 60);
   CHECK(lab.stage->sample().angle_deg == 90);
-  // 90/30 + 30/60 = 3.5 s by the trapezium; looked at every 20 ms.
+  // 90/30 + 30/60 = 3.5 s by the trapezium; sampled every 20 ms.
   CHECK(std::abs(lab.clock.now_s() - start_s - 3.5) < 0.05);
   move(*lab.stage, lab.clock, -100, true, 30, 60);
   CHECK(lab.stage->sample().angle_deg == doctest::Approx(-10));

@@ -61,7 +61,7 @@ TEST_CASE("A GRBL board homes, moves and prints like any other stage") {
   CHECK(samples.back().angle_deg >= 360);
 }
 
-TEST_CASE("Something else than GRBL is not taken for it") {
+TEST_CASE("A device other than GRBL is refused") {
   VirtualClock clock;
   auto pi = make_sim_gcs({}, clock.now_s(), {});
   CHECK(fault_of([&] { (void)make_grbl_stage(make_sim_port(std::move(pi), clock), clock, 0, nullptr); }) ==

@@ -69,7 +69,7 @@ Outcome outcome(const std::function<void(Guardian&, int)>& cause, const std::fun
 
 }  // namespace
 
-TEST_CASE("Whatever the tool dies of, dark comes first, then still, within 100 ms") {
+TEST_CASE("However the tool ends, the light is off first, then the stage stops, within 100 ms") {
   for (const int signal : {SIGKILL, SIGSEGV, SIGABRT, SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGBUS}) {
     CAPTURE(signal);
     const Outcome result = outcome({}, [signal](pid_t tool) { kill(tool, signal); });
@@ -83,7 +83,7 @@ TEST_CASE("A tool that throws, returns or leaves by _exit has the same end") {
   CHECK(outcome([](Guardian&, int) { _exit(3); }).bytes == "dark\nstill\n");
 }
 
-TEST_CASE("A tool that hangs is killed and made safe; one that beats is left alone") {
+TEST_CASE("A tool that hangs is killed and made safe; one with a heartbeat is not") {
   const Outcome stopped = outcome({}, [](pid_t tool) { kill(tool, SIGSTOP); });
   CHECK(stopped.bytes == "dark\nstill\n");
   CHECK(stopped.seconds > 0.25);
@@ -98,7 +98,7 @@ TEST_CASE("A tool that hangs is killed and made safe; one that beats is left alo
   CHECK(beating.bytes == "alive dark\nstill\n");
 }
 
-TEST_CASE("What is safe is left alone") {
+TEST_CASE("A device in its safe state is not touched") {
   const Outcome result = outcome([](Guardian& guardian, int) {
     guardian.forget(1);
     guardian.forget(2);
@@ -106,7 +106,7 @@ TEST_CASE("What is safe is left alone") {
   CHECK(result.bytes.empty());
 }
 
-TEST_CASE("Without orders no heartbeat is needed") {
+TEST_CASE("Without registered actions no heartbeat is needed") {
   const Outcome result = outcome([](Guardian& guardian, int device) {
     guardian.forget(1);
     guardian.forget(2);
@@ -116,7 +116,7 @@ TEST_CASE("Without orders no heartbeat is needed") {
   CHECK(result.bytes == "alive");
 }
 
-TEST_CASE("A tool learns that its guardian is gone") {
+TEST_CASE("A tool detects that its guardian is gone") {
   const Outcome result = outcome([](Guardian& guardian, int device) {
     kill(guardian.pid(), SIGKILL);
     usleep(20000);

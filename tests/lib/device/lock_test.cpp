@@ -31,7 +31,7 @@ struct LockFolder {
   std::string path;
 };
 
-// A process that takes the lock, says so and waits.
+// A process that takes the lock, reports it and waits.
 pid_t holder(const std::string& name) {
   std::array<int, 2> ready{};
   REQUIRE(pipe(ready.data()) == 0);
@@ -71,7 +71,7 @@ TEST_CASE("Two names of one device node are one device") {
   CHECK_FALSE(fault_of([] { DeviceLock("/dev/null"); }).has_value());
 }
 
-TEST_CASE("A folder that is not there cannot hold locks") {
+TEST_CASE("A missing folder cannot hold locks") {
   const LockFolder folder;
   setenv("VAM_LOCK_DIR", "/nonexistent", 1);
   CHECK(fault_of([] { DeviceLock("usb-1"); }) == Fault::no_output);

@@ -229,7 +229,7 @@ class Watched final : public Display {
 
 }  // namespace
 
-TEST_CASE("A light engine that goes wrong in a print: the right fault, the screen black, the LEDs off where it hears") {
+TEST_CASE("A light engine that fails in a print: the right fault, the screen black, the LEDs off where it answers") {
   const std::vector<std::pair<const char*, Fault>> cases{
       {"silent", Fault::busy},           {"late", Fault::busy},
       {"garbage", Fault::protocol},      {"truncated", Fault::protocol},
@@ -269,7 +269,7 @@ TEST_CASE("A light engine that goes wrong in a print: the right fault, the scree
 
 namespace {
 
-// Wakes late every now and then, as a busy machine does, and says when; blanks are every 1/60 s.
+// Wakes late occasionally, as a busy machine does, and records when; blanks are every 1/60 s.
 class LateDisplay final : public Display {
  public:
   explicit LateDisplay(VirtualClock& clock) : clock_(clock), origin_s_(clock.now_s()) {}
@@ -293,7 +293,7 @@ class LateDisplay final : public Display {
 
 }  // namespace
 
-TEST_CASE("A flip that comes late says so, and those after it are still predicted for their own blanks") {
+TEST_CASE("A late flip is logged as late, and those after it are still predicted for their own blanks") {
   VirtualClock clock(100);
   LateDisplay display(clock);
   for (int i = 0; i < frames_per_turn; ++i) display.add(GreyImage(16, 8, 8));

@@ -67,7 +67,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
 }
 
 // [devices promise 2]
-TEST_CASE("However seldom a sample is wanted, a stage that moves is asked every 200 ms") {
+TEST_CASE("A moving stage is sampled every 200 ms at least, whatever the rate of the output") {
   VirtualStage lab;
   SpinPlan plan;
   plan.speed_deg_s = 60;
@@ -142,7 +142,7 @@ TEST_CASE("A stage 1 % off its speed may print, one 3 % off may not") {
   }
 }
 
-TEST_CASE("A stage that is held fast is noticed within a few degrees") {
+TEST_CASE("A blocked stage is detected within a few degrees") {
   SimGcsSettings sim;
   sim.faults.push_back({"block", "POS?", 900});
   VirtualStage lab(sim);

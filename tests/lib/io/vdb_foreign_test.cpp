@@ -13,7 +13,7 @@ using namespace vam::volumes;
 using scratch::spill;
 using scratch::status;
 
-TEST_CASE("a level set of another program gets its active box, off the index origin, and can be written back") {
+TEST_CASE("a level set of another program is read as its active box, off the index origin, and can be written back") {
   const scratch::Folder folder;
   openvdb::initialize();
   const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(3.0F, {10.0F, -4.0F, 2.0F}, 0.25F);

@@ -82,7 +82,7 @@ TEST_CASE("A and A* are adjoint with the blur between, also from slab to slab") 
   check_adjoint(ParallelOperator(parts::turn(48, 60)));
 }
 
-TEST_CASE("A and A* are adjoint with the blur between in the vial too, around an insert in a resin that absorbs") {
+TEST_CASE("A and A* are adjoint with the blur between in the vial too, around an insert in an absorbing resin") {
   VialSetup setup = vial_setup(48, 60);
   setup.absorption_per_mm = 0.07;
   check_adjoint(VialOperator(setup));
@@ -146,7 +146,7 @@ TEST_CASE("a narrow beam through the vial has, blurred, the profile of light tra
   }
 }
 
-TEST_CASE("the blur is the judge's, which is another implementation") {
+TEST_CASE("the blur agrees with that of the oracle") {
   const int size = 40;
   const ParallelOperator sharp(parts::turn(size, 60));
   const BlurredOperator light(sharp, 1.3, lanes);
@@ -170,7 +170,7 @@ TEST_CASE("the blur is the judge's, which is another implementation") {
   CHECK(worst < 1e-4F);  // of values of order 5, in float
 }
 
-TEST_CASE("a part made up for the blur prints better under it than one that was not") {
+TEST_CASE("a part compensated for the blur prints better under it than one that was not") {
   const int size = 96;
   const double sigma_px = 1.2;
   const auto target = vam::oracle::resolution_target(size);

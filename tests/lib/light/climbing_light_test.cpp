@@ -106,7 +106,7 @@ double smooth(int column, int row, int angle) {
 
 }  // namespace
 
-TEST_CASE("light that climbs leaves the dose that its rays deposit, one by one") {
+TEST_CASE("skew rays leave the dose deposited ray by ray") {
   for (const Bench& b : {bench(90, -1.8, 0, 1, 0), bench(60, 6, 0.08, 1, 0), bench(92, 15, 0.05, 1.4, 20)}) {
     const Difference d = compare(b, smooth);
     // 6 x 6 rays a pixel: the oracle's own grain, which falls to 0.002 to 0.003 with 16 x 16.
@@ -115,7 +115,7 @@ TEST_CASE("light that climbs leaves the dose that its rays deposit, one by one")
   }
 }
 
-TEST_CASE("light that jumps from pixel to pixel is read over the pixel's own width") {
+TEST_CASE("projections that jump from pixel to pixel are read over the pixel's own width") {
   std::mt19937 random(7);
   std::vector<double> noise(48 * 20 * 30);
   for (double& v : noise) v = static_cast<double>(random() % 1000) / 500;

@@ -150,7 +150,7 @@ TEST_CASE("around an insert, convex or concave, chief rays through the vial leav
   }
 }
 
-TEST_CASE("no light comes into a closed ring, all of it past an insert of nothing") {
+TEST_CASE("a closed ring leaves its inside dark, an empty insert casts no shadow") {
   const std::vector<float> closed = ::oracle::draw(size, ring);
   for (const model::Space space : {model::Space::virtual_, model::Space::projector}) {
     const bool parallel = space == model::Space::virtual_;

@@ -83,7 +83,7 @@ TEST_CASE("a closed ring leaves its inside dark") {
   CHECK(*dose.at(60, 32) > 0.0F);
 }
 
-TEST_CASE("a handle around a screwdriver's shaft: at least 98 % of the voxels are right") {
+TEST_CASE("a handle around a screwdriver's shaft: at least 98 % of the voxels are correct") {
   const int size = 128;
   const auto shaft = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 12; });
   auto handle = vam::oracle::draw(size, [](double x, double y) {

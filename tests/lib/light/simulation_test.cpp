@@ -99,7 +99,7 @@ TEST_CASE("grids: cubes, and slices that are slices of the volume") {
   CHECK_THROWS_AS(static_cast<void>(dose_grid(printer, info, std::nullopt)), Error);
 }
 
-TEST_CASE("values become light") {
+TEST_CASE("sinogram values become intensity") {
   std::vector<Image> values(1, Image(4, 1));
   values[0].values = {-1, 0.5F, 2, 4};
   std::vector<Image> light = values;

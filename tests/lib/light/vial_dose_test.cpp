@@ -83,7 +83,7 @@ TEST_CASE("a matched telecentric bench lights the resin evenly, and nothing else
   }
 }
 
-TEST_CASE("light weighted by J/T exposes everything within reach evenly, through lens and glass") {
+TEST_CASE("intensity weighted by J/T exposes the writable circle evenly, through lens and glass") {
   for (const View& view : {vial, walled}) {
     VialSetup setup = setup_of(view, 96, 2 * reach_mm(view));
     const Image dose = dose_of(setup, sinogram(setup, [&](double x_p, double) {
@@ -240,7 +240,7 @@ TEST_CASE("direction and angle offset: the part turns, the dose turns with it") 
   CHECK(most < 1e-3);  // other angles of the same turn: the rectangle rule over angles, and the table's steps
 }
 
-TEST_CASE("a projector narrower than the vial leaves the rest dark") {
+TEST_CASE("a projector narrower than the vial leaves the remainder dark") {
   VialSetup setup = setup_of(matched, 64, 24, 360, 101, 0.065);
   const Image dose = dose_of(setup, Image(101, 360, 1.0F));
   const double field = 0.5 * 101 * 0.065;

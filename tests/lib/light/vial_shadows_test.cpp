@@ -15,7 +15,7 @@ using namespace vam::light;
 using parts::packed;
 using parts::vial_setup;
 
-TEST_CASE("around an insert in the vial A and A* are adjoint, also round a concave one in a resin that absorbs") {
+TEST_CASE("around an insert in the vial A and A* are adjoint, also around a concave one in an absorbing resin") {
   VialSetup setup = vial_setup(64, 72);
   setup.absorption_per_mm = 0.07;
   setup.direction = -1;
@@ -29,7 +29,7 @@ TEST_CASE("around an insert in the vial A and A* are adjoint, also round a conca
   CHECK(parts::adjoint_error(light) < 1e-5);
 }
 
-TEST_CASE("an insert of nothing casts no shadow in the vial") {
+TEST_CASE("an empty insert casts no shadow in the vial") {
   const VialSetup setup = vial_setup(48, 60);
   const Slab nothing(48, 48);
   const VialOperator plain(setup);
@@ -44,7 +44,7 @@ TEST_CASE("an insert of nothing casts no shadow in the vial") {
   CHECK(worst < 1e-4);  // sums of order 10 of the same terms in another order
 }
 
-TEST_CASE("a ray traced by Snell's law is lit up to the insert and dark behind it") {
+TEST_CASE("a ray traced by Snell's law is lit as far as the insert and dark behind it") {
   const int size = 128;
   const VialSetup setup = vial_setup(size, 36);
   vam::oracle::Bench bench;

@@ -105,7 +105,7 @@ TEST_CASE("A* filter A is about the identity in the vial, and the preconditioner
   parts::check_preconditioner(light);
 }
 
-TEST_CASE("a projector that does not see the vial is told so") {
+TEST_CASE("a projector whose rays miss the vial is an error") {
   VialSetup setup = vial_setup(40, 60);
   setup.projector.axis_column = 5000;
   CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
@@ -148,7 +148,7 @@ double adjoint_error_of_volume(const VialOperator& light, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("where rays climb A and A* are adjoint, with slices that do not fill the slabs and around an insert") {
+TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the slabs and around an insert") {
   CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 43, 60)), 3) < 1e-5);
   VialSetup turned = climbing(33, 70, 37);
   turned.direction = -1;

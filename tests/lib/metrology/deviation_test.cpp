@@ -25,7 +25,7 @@ TEST_CASE("two equal spheres, one shifted: closed form") {
   CHECK(found.reference_to_print.mean_mm == doctest::Approx(-shift * shift / (3 * radius)).scale(1).epsilon(0.003));
 }
 
-TEST_CASE("a sphere that grew is outside everywhere, both ways positive") {
+TEST_CASE("distances to an enlarged sphere are positive in both directions") {
   const auto reference = test::sphere({1, 2, 3}, 5, 120);
   const solid::Surface surface(reference);
   const auto found = metrology::compare(test::sphere({1, 2, 3}, 5.2, 120), reference, surface, 10000);
@@ -36,7 +36,7 @@ TEST_CASE("a sphere that grew is outside everywhere, both ways positive") {
   }
 }
 
-TEST_CASE("statistics of known numbers") {
+TEST_CASE("statistics of given numbers") {
   const std::vector<float> values{-2, -1, 0, 1, 7};
   const auto d = metrology::deviation(values);
   CHECK(d.mean_mm == doctest::Approx(1));

@@ -79,7 +79,7 @@ TEST_CASE("a schedule has one frame per time step and starts at angle 0") {
   error_of([] { (void)frame_schedule(16, 1e-9, 1); }, vam::Fault::usage);
 }
 
-TEST_CASE("at matching pitch a frame is the transposition: row = slice from the top, exact") {
+TEST_CASE("at matching pitch a frame is the transpose: row = slice from the top, exact") {
   const StackInfo info = sinograms(20, 12, 5, 0.1, 0.1, -0.2);
   const FrameComposer composer = composed(info, {20, 9, 0.1, 4.0, 0});
   for (const int angle : {0, 3, 11}) {
@@ -175,7 +175,7 @@ TEST_CASE("light beyond the projector, negative, missing, or of another printer 
   CHECK(has(error_of([&] { composer.add(image, 0.1); }, vam::Fault::data), "-0.5"));
 }
 
-TEST_CASE("orientation flips what it says, and the stack's z follows") {
+TEST_CASE("orientation flips rows and columns as named, and the stack's z follows") {
   Image image(3, 2);
   image.values = {1, 2, 3, 4, 5, 6};
   const auto turned = [&](const std::string& orientation) {
@@ -270,7 +270,7 @@ TEST_CASE("flatland: the frames of a made-up sinogram add up to a plain back-pro
   CHECK(at_y == 11);  // 0.4 mm above it
 }
 
-TEST_CASE("flatland takes the slice nearest to z, and says where there is none") {
+TEST_CASE("flatland takes the slice nearest to z; a z outside the stack is an error") {
   StackInfo info = sinograms(20, 12, 3, 0.1, 0.1, -0.1);
   const auto fed = [&](double z_mm) {
     FlatlandSlice slice("part.exr", info, {20, 20, 0.1, 9.5, 9.5}, z_mm);

@@ -67,7 +67,7 @@ TEST_CASE("A sweep lights every column exactly once") {
   CHECK(times == std::vector<int>(64, 1));
 }
 
-TEST_CASE("A star is half light, in 36 sectors") {
+TEST_CASE("A star is half lit, in 36 sectors") {
   auto projector = small_projector();
   projector.columns = 401;
   projector.rows = 401;

@@ -107,7 +107,7 @@ TEST_CASE("light is conserved: the sum of S_p T over the projector is that of S_
   CHECK(after == doctest::Approx(before).epsilon(1e-4));
 }
 
-TEST_CASE("there and back again converges to the start with the order of the cubic") {
+TEST_CASE("resampling there and back converges with the order of the cubic") {
   const auto error = [](int fineness) {
     const Sampling s = sampling(fineness);
     const Image in = virtual_blob(s);
@@ -205,7 +205,7 @@ TEST_CASE("a coarser output averages instead of picking columns") {
   for (int c = 1; c < out.width - 1; ++c) CHECK(std::abs(out(c, 3) - 1) < 0.02);
 }
 
-TEST_CASE("overshoot goes when asked") {
+TEST_CASE("overshoot is removed on request") {
   const Sampling s = sampling(1);
   Image edge(s.virtual_.columns, s.turn.rows);
   for (int a = 0; a < edge.height; ++a) std::fill_n(edge.row(a) + 30, 20, 1.0F);

@@ -155,7 +155,7 @@ TEST_CASE("views are built from the printer") {
   CHECK(camera.shells[1].index == 1.5);
 }
 
-TEST_CASE("impossible benches are refused") {
+TEST_CASE("impossible geometries are refused") {
   model::Printer printer;
   printer.vial.wall_mm = 12.7;
   CHECK_THROWS_AS(static_cast<void>(projector_view(printer)), Error);

@@ -52,7 +52,7 @@ double cost(const Iterate& state, const Problem& problem, bool right) {
 
 }  // namespace
 
-TEST_CASE("surface voxels are left out unless asked; then they are part from half coverage on") {
+TEST_CASE("surface voxels are left out by default, else part from half coverage on") {
   const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 20.3; });
   Demands demands;
   const auto left_out = problem_of(disc, demands);
@@ -110,7 +110,7 @@ TEST_CASE("the band around the surface: every voxel against every other") {
   }
 }
 
-TEST_CASE("weights: nothing is asked where they are 0, and errors go where they cost less") {
+TEST_CASE("weights: voxels of weight 0 are unconstrained, and errors move to where they cost less") {
   const auto target = vam::oracle::resolution_target(size);
   std::vector<float> weight(target.size(), 1.0F);
   for (int y = 0; y < size; ++y) {
@@ -136,7 +136,7 @@ TEST_CASE("weights: nothing is asked where they are 0, and errors go where they 
   CHECK(*std::max_element(half.weight[0].values.begin(), half.weight[0].values.end()) == 1.0F);
 }
 
-TEST_CASE("a grey target: each voxel's dose within a tolerance of its own") {
+TEST_CASE("a grey target: each voxel's dose within its own tolerance") {
   // A ring, hard on one side and soft on the other, in a void that may have up to 0.6; nothing is asked at the edges.
   std::vector<float> target(static_cast<std::size_t>(size * size), 0.3F);
   std::vector<float> tolerance(target.size(), 0.3F);

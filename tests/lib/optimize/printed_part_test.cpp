@@ -24,7 +24,7 @@ TEST_CASE("test parts print under method auto, judged by chief rays, and no wors
   }
 }
 
-TEST_CASE("light made for the vial itself prints with a wider window than resampled light") {
+TEST_CASE("projections optimised for the vial print with a wider window than resampled ones") {
   const vam::model::Printer printer;
   for (const char* shape : {"gyroid", "boat"}) {
     CAPTURE(shape);

@@ -127,7 +127,7 @@ TEST_CASE("a slice that the part only grazes is printed from half coverage on") 
   CHECK(largest(2) == 0.0F);
 }
 
-TEST_CASE("a part beyond the light is refused with both radii") {
+TEST_CASE("a part beyond the writable radius is refused with both radii") {
   VolumeTask task;
   task.circle = {31.5, 31.5, 20};
   CHECK_THROWS_WITH_AS(run({vam::oracle::wheel(size)}, task), doctest::Contains("light reaches only 20;"), vam::Error);
@@ -150,7 +150,7 @@ TEST_CASE("targets without part or without void are refused") {
   CHECK_THROWS_WITH_AS(run({filled}, task), doctest::Contains("fills the whole"), vam::Error);
 }
 
-TEST_CASE("an insert that overlaps the part is refused; one that hides part of it is told") {
+TEST_CASE("an insert that overlaps the part is refused; one that shadows it is reported") {
   const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y) < 10; });
   const auto ring = vam::oracle::draw(size, [](double x, double y) { return std::abs(std::hypot(x, y) - 14) < 2; });
   const auto outside = vam::oracle::draw(size, [](double x, double y) {
@@ -172,7 +172,7 @@ TEST_CASE("an insert that overlaps the part is refused; one that hides part of i
   CHECK(result.outcome.dark_part_voxels < 314);
 }
 
-TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
+TEST_CASE("the loop stops at its goal, and when it stagnates") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.watch = true;
@@ -189,7 +189,7 @@ TEST_CASE("the loop stops on its goal, and when nothing improves any more") {
   CHECK(stalled.outcome.iterations < 500);
 }
 
-TEST_CASE("projections to start from are taken up") {
+TEST_CASE("initial projections are used") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.limits.iterations = 20;
@@ -201,7 +201,7 @@ TEST_CASE("projections to start from are taken up") {
   CHECK(again.outcome.metrics.pw == doctest::Approx(first.outcome.metrics.pw).epsilon(1e-4));
 }
 
-TEST_CASE("the schedule forgets results that would be held too long") {
+TEST_CASE("the schedule drops results that would be held too long") {
   std::vector<Digest> slices;
   for (std::uint64_t i : {1U, 1U, 2U, 3U, 4U, 1U, 4U}) slices.push_back({i, i});
   const auto generous = make_schedule(slices, 10);
@@ -211,7 +211,7 @@ TEST_CASE("the schedule forgets results that would be held too long") {
   CHECK(tight.job_of_slice == std::vector<int>{0, 0, 1, 2, 3, 4, 3});
 }
 
-TEST_CASE("digests tell slices apart by one bit and by order") {
+TEST_CASE("digests differ for one bit and for another order") {
   const std::vector<float> a{1, 2, 3};
   const std::vector<float> b{1, 2, 3.0000002F};
   const std::vector<float> c{2, 1, 3};
@@ -254,7 +254,7 @@ Broken run_in_pieces(const std::vector<std::vector<float>>& slices, const Volume
 
 }  // namespace
 
-TEST_CASE("a run that is broken off again and again gives the bytes of one that is not, with every method") {
+TEST_CASE("a run interrupted repeatedly gives the bytes of an uninterrupted one, with every method") {
   std::vector<std::vector<float>> slices;
   for (int k = 0; k < 70; ++k) {  // two passes; the last slices come again
     slices.push_back(
@@ -334,7 +334,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   CHECK_THROWS_WITH_AS(resume(bad, "job"), doctest::Contains("checksum"), vam::Error);
 }
 
-TEST_CASE("light never exceeds the largest, whatever the scale of the end") {
+TEST_CASE("intensity never exceeds its bound, whatever the final scale") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
   for (const std::string name : {"cal", "osmo", "pm", "bclp", "apg"}) {
     CAPTURE(name);

@@ -202,7 +202,7 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
             "the dose has 40 x 40 x 40 voxels, but the target has 8 x 8 x 8"));
 }
 
-TEST_CASE("NRRD has the dense box behind a header that says where it is") {
+TEST_CASE("NRRD has the dense box behind a header that gives its position") {
   const scratch::Folder folder;
   const auto grid = vam::model::centred_grid(5, 4, 19, 0.5, -2);
   SparseVolume volume = labelled("dose", grid);

@@ -116,7 +116,7 @@ TEST_CASE("a burst is the fewest slices that reach the critical dose") {
   CHECK(resin::burst_slices(weak) == 0);
 }
 
-TEST_CASE("impossible processes are refused with the numbers") {
+TEST_CASE("impossible processes are refused with their numbers") {
   const auto message = [](const resin::Process& process) {
     try {
       (void)resin::limits_of(process);

@@ -61,7 +61,7 @@ TEST_CASE("pooling is the isotonic least squares solution") {
   CHECK(fit.contrast == std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE("readings that make no response") {
+TEST_CASE("readings that determine no response are errors") {
   const auto message = [](const std::vector<PhotodiodeReading>& readings, double dark) {
     try {
       (void)resin::fit_response(readings, dark, "d.csv");

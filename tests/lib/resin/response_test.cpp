@@ -92,7 +92,7 @@ TEST_CASE("every level maps to itself") {
   for (int level = 0; level < 256; ++level) CHECK(levels.level(levels.intensity(level)) == level);
 }
 
-TEST_CASE("images of levels and of intensity are each other's inverse; beyond full is full") {
+TEST_CASE("images of levels and of intensity are each other's inverse; above full is full") {
   const GreyLevels levels(Response(gamma_table(2.2)), 4);
   vam::Image light(3, 1);
   light.values = {levels.intensity(3), 7.0F, -1.0F};
@@ -102,7 +102,7 @@ TEST_CASE("images of levels and of intensity are each other's inverse; beyond fu
   CHECK(to_intensity(image, levels).values == std::vector<float>{levels.intensity(3), 1.0F, 0.0F});
 }
 
-TEST_CASE("light beyond full is clipped and counted") {
+TEST_CASE("intensities above full are clipped and counted") {
   vam::Image light(2, 2);
   light.values = {0, 1, 2, 4};
   const auto tally = vam::resin::limit_to_full(light, 0.5F);

@@ -126,7 +126,7 @@ TEST_CASE("omega_max: the dose inside follows the limit, the edges stay") {
   }
 }
 
-TEST_CASE("strong base: what stands on the platform gets full light, as the rails of the paper's figure 4") {
+TEST_CASE("strong base: features on the platform receive full intensity, as the rails of the paper's figure 4") {
   const resin::Limits limits = resin::limits_of({});
   Part part(50, 1);
   std::fill(part.begin() + 30, part.begin() + 40, std::uint8_t{0});

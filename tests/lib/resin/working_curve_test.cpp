@@ -82,7 +82,7 @@ TEST_CASE("exact data give the exact curve") {
   CHECK(curve.samples == 18);
 }
 
-TEST_CASE("confidence intervals hold the truth as often as they say") {
+TEST_CASE("confidence intervals cover the true value at their stated rate") {
   int slope = 0;
   int exposure = 0;
   int dose = 0;
@@ -114,7 +114,7 @@ TEST_CASE("an outlier is flagged and kept") {
   CHECK(curve.residual_um[7] > 300);
 }
 
-TEST_CASE("repeats tell scatter from a curve that is no line") {
+TEST_CASE("repeated readings separate scatter from curvature") {
   CHECK(resin::fit_working_curve(measured(11, 50)).lack_of_fit_p > 0.01);
   auto bent = measured(11, 20);
   for (auto& sample : bent) sample.thickness_um += 400 * std::pow(std::log10(sample.exposure_mj_cm2 / 60), 2);
@@ -122,7 +122,7 @@ TEST_CASE("repeats tell scatter from a curve that is no line") {
   CHECK(resin::fit_working_curve(measured(11, 50, 1)).lack_of_fit_p == 1);
 }
 
-TEST_CASE("data that do not make a working curve") {
+TEST_CASE("data that determine no working curve are errors") {
   CHECK(message({{10, 100}, {10, 110}, {20, 300}, {20, 310}}) ==
         "working curve: 2 different exposures do not judge a line; measure at least 3");
   CHECK(message({{10, 100}, {20, 0}, {30, 300}}).find("sample 2 has exposure 20 mJ/cm2 and thickness 0 um") !=

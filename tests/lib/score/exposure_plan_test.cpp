@@ -53,7 +53,7 @@ ExposurePlan rod(const model::Printer& printer) {
 
 }  // namespace
 
-TEST_CASE("the fewest whole turns, and the light that makes them exact") {
+TEST_CASE("the fewest whole turns, and the intensity that makes them exact") {
   const model::Printer printer = printer_of(0.05, 100);
   const ExposurePlan plan = plan_exposure(30, printer);
   CHECK(plan.turns == 4);

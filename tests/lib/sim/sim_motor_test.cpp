@@ -8,7 +8,7 @@
 using vam::sim::MotorSettings;
 using vam::sim::SimMotor;
 
-TEST_CASE("The stage keeps to the trapezium of speed") {
+TEST_CASE("The stage follows the trapezoidal speed profile") {
   MotorSettings settings;
   settings.acceleration_deg_s2 = 50;
   SimMotor motor(settings, 0);
@@ -26,7 +26,7 @@ TEST_CASE("The stage keeps to the trapezium of speed") {
   CHECK(motor.angle_deg() == 100);
 }
 
-TEST_CASE("Its path does not depend on how often one looks") {
+TEST_CASE("Its path does not depend on the sampling") {
   MotorSettings settings;
   settings.ripple = 0.02;
   SimMotor often(settings, 0);

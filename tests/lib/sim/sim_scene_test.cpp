@@ -67,7 +67,7 @@ TEST_CASE("A ball on the axis looks as wide as refraction makes it, and grows wi
   CHECK(total(scene.render({0, nullptr, 0}, 20000, 0)) == 0);
 }
 
-TEST_CASE("What turns with the stage is seen where x cos(theta + azimuth) + y sin(theta + azimuth) says") {
+TEST_CASE("What turns with the stage is seen at x cos(theta + azimuth) + y sin(theta + azimuth)") {
   SimBench bench = small_bench();
   bench.bodies = parse_bodies("sphere:x=3,diameter=1");
   bench.lit_s = 1;

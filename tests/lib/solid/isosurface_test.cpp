@@ -71,7 +71,7 @@ TEST_CASE("a surface closes at the grid's border") {
   CHECK(signed_volume(mesh) > 0);
 }
 
-TEST_CASE("nothing above the level is an empty mesh; nonsense is refused") {
+TEST_CASE("nothing above the level is an empty mesh; invalid levels are refused") {
   const auto volume = ball(4, 0.5, 24);
   CHECK(solid::isosurface(volume, 1000).triangles.empty());
   CHECK_THROWS_AS((void)solid::isosurface(volume, std::nan("")), Error);

@@ -62,7 +62,7 @@ TEST_CASE("cracks are welded, features are not") {
   CHECK(wall.points.size() == 8);
 }
 
-TEST_CASE("degenerate and duplicate triangles go") {
+TEST_CASE("degenerate and duplicate triangles are removed") {
   TriangleSoup mesh = cube;
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({mesh.triangles[3][1], mesh.triangles[3][2], mesh.triangles[3][0]});  // a copy
@@ -75,7 +75,7 @@ TEST_CASE("degenerate and duplicate triangles go") {
   CHECK(vam::oracle::signed_volume(mesh) == doctest::Approx(8));
 }
 
-TEST_CASE("a wall of no thickness between closed surfaces goes, both sides of it") {
+TEST_CASE("a wall of zero thickness between closed surfaces is removed, both sides of it") {
   // Two cubes side by side, each with its own face where they touch: the two copies cancel.
   TriangleSoup mesh = vam::oracle::join(cube, cube, {2, 0, 0});
   const Repair done = repaired(mesh);
@@ -106,7 +106,7 @@ TEST_CASE("orientation: one triangle, all of them, and one of two solids") {
   CHECK(vam::oracle::signed_volume(two) == doctest::Approx(16));
 }
 
-TEST_CASE("cavities and islands keep their sense, in files that are inside out too") {
+TEST_CASE("cavities and islands keep their orientation, in inverted files too") {
   const TriangleSoup large = vam::oracle::box({-3, -3, -3}, {3, 3, 3});
   const TriangleSoup island = vam::oracle::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
   const TriangleSoup nest = vam::oracle::join(vam::oracle::join(large, vam::oracle::flipped(cube, 1, 1)), island);

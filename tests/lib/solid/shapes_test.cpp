@@ -201,7 +201,7 @@ TEST_CASE("transformed: the volume scales, the bounds follow") {
   CHECK(lying.box.high[2] == doctest::Approx(2));
 }
 
-TEST_CASE("bad shapes say what would be right") {
+TEST_CASE("errors of shapes state the valid range") {
   CHECK(usage_error("gyrod").find("did you mean gyroid?") != std::string::npos);
   CHECK(usage_error("qqqqqqqqqqq").find("known: gyroid") != std::string::npos);
   CHECK(usage_error("gyroid:cel=3").find("did you mean cell?") != std::string::npos);

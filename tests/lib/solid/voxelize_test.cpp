@@ -153,7 +153,7 @@ TEST_CASE("a sphere's surface against counting points") {
   CHECK(std::sqrt(square / static_cast<double>(surface)) < 0.002);  // required: 0.01; counting 24^3 points errs 0.001
 }
 
-TEST_CASE("damage leaves at most a voxel in a thousand grossly wrong") {
+TEST_CASE("a damaged mesh leaves at most a voxel in a thousand grossly wrong") {
   const model::Grid grid = cube_grid(100);
   const double radius = 44;
   const TriangleSoup whole = vam::oracle::lumpy_sphere(radius, 100, 0.05);

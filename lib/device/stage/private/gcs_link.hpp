@@ -18,7 +18,7 @@ struct GcsSettings {
   double timeout_s = 0.2;      // without a byte; less than the guardian's patience
 };
 
-/// An answer and when it came: the controller looked at its axis somewhere between t0_s and t1_s.
+/// An answer and when it came: the controller read its axis at some time between t0_s and t1_s.
 struct GcsAnswer {
   std::vector<std::string> lines;
   double t0_s = 0;

@@ -9,7 +9,7 @@
 
 namespace vam::io::exr {
 
-/// What the stack says about image `index`, which has no facts of its own.
+/// The stack's facts about image `index`, which has none of its own.
 [[nodiscard]] model::ImageInfo implied(const model::StackInfo& info, int index);
 
 /// "z0007" in a sinogram stack, "a0007" among frames; wide enough for `count` parts to sort.
@@ -23,7 +23,7 @@ void set_own(Imf::Header& header, const model::StackInfo& info, int index, const
 /// The facts of a stack from its first header; width and height are left to the caller, count is 0 where it is absent.
 /// Throws std::runtime_error: no vam:kind, an unknown space, no positive pixel pitch.
 [[nodiscard]] model::StackInfo stack_info(const Imf::Header& header);
-/// The facts of part `index`. Throws std::runtime_error when the part says that it is another, or of another stack.
+/// The facts of part `index`. Throws std::runtime_error when the part is marked as another, or of another stack.
 [[nodiscard]] model::ImageInfo image_info(const Imf::Header& header, const model::StackInfo& info, int index);
 
 [[nodiscard]] std::string kind_name(model::Kind kind);

@@ -6,7 +6,7 @@
 namespace vam::io {
 
 /// Creates an empty file ".vam-<pid>-<n><extension>" beside `target` and lists its name, so that SIGHUP, SIGINT and
-/// SIGTERM remove it before they end the process (where nobody else handles or ignores them).
+/// SIGTERM remove it before they end the process (unless they are handled or ignored elsewhere).
 /// Returns the descriptor, or -1 with errno set.
 int create_temporary(const std::string& target, std::string& name, int& slot);
 

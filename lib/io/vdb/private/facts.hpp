@@ -1,4 +1,4 @@
-// Private to the VDB files: what a grid says of itself beside its voxels.
+// Private to the VDB files: a grid's facts beside its voxels.
 #pragma once
 
 #include <openvdb/openvdb.h>

@@ -1,4 +1,4 @@
-// What a camera beside the vial gets of the light of a thin sheet in the resin.
+// The image of a thin luminous sheet in the resin, seen by a camera beside the vial.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace vam::metrology {
 
 /// All chief rays of the camera through the resin. Near grazing they cross each other, and so many of them that pass
-/// one place make it bright: what the camera gets of a sheet has a kink where the sheet leaves such a place.
+/// one place make it bright: the image of a sheet has a kink where the sheet leaves such a place.
 class SightLines {
  public:
   /// Throws Fault::data where lens, window and vial cannot stand like that.

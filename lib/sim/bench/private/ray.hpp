@@ -36,7 +36,7 @@ struct SimShells {
   return all;
 }
 
-/// Unpolarised intensity that goes on from index n1 to n2, with the cosines of the angles there (Fresnel).
+/// Transmittance of unpolarised intensity from index n1 to n2, with the cosines of the angles there (Fresnel).
 [[nodiscard]] inline double sim_passed(double n1, double cos1, double n2, double cos2) {
   const double across = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
   const double along = (n2 * cos1 - n1 * cos2) / (n2 * cos1 + n1 * cos2);

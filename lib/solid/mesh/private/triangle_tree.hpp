@@ -35,7 +35,7 @@ struct TriangleTree {
   /// Splits at the median of the longest side of the centroids' box.
   explicit TriangleTree(std::vector<Corners> soup);
 
-  /// Triangle 'start' is looked at first: a neighbour's answer saves half of the way. There must be a triangle.
+  /// Triangle 'start' is tested first: a neighbour's answer saves half of the way. There must be a triangle.
   [[nodiscard]] Nearest nearest(const Vector3& point, int start = 0) const;
 };
 
