@@ -1,10 +1,10 @@
 """Holds what the source cites against the manual pages of section 7. usage: citations.py ROOT; prints what is cited
 but not defined, one a line, and fails if there is any.
 
-[physics §n] and [devices §n] are numbered sections, [formats: heading] is a heading, [RAY21 eq 8] is a paper under
-REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an attribute of vam-formats.7. Keys of
-the printer file and schemas of reports are defined in vam-formats.7. Source paths in these pages and in CONTRIBUTING.md exist, and its
-diagram has every folder of lib/layers.txt."""
+[physics §n] and [devices §n] are numbered sections, cited in no other form, [formats: heading] is a heading,
+[RAY21 eq 8] is a paper under REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an
+attribute of vam-formats.7. Keys of the printer file and schemas of reports are defined in vam-formats.7. Source paths
+in these pages and in CONTRIBUTING.md exist, and its diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
 import sys
@@ -22,10 +22,14 @@ def headings(text):
     return {m.strip().strip('"').lower() for m in re.findall(r'^\.S[hs] (.*)', text, re.M)}
 
 
+def joined(text):
+    """The text with comments that run over lines joined."""
+    return re.sub(r'\n\s*(?:///?|#)\s?', ' ', text)
+
+
 def brackets(text):
-    """What stands in brackets around a paper's key, comments that run over lines joined."""
-    joined = re.sub(r'\n\s*(?:///?|#)\s?', ' ', text)
-    return [b for b in re.findall(r'\[([^\[\]\n]*)\]', joined) if re.search(rf'(?<![\w.]){KEY}\b', b)]
+    """The contents of brackets around a paper's key."""
+    return [b for b in re.findall(r'\[([^\[\]\n]*)\]', joined(text)) if re.search(rf'(?<![\w.]){KEY}\b', b)]
 
 
 def equations(bracket):
@@ -49,6 +53,8 @@ faults = []
 
 
 def check(where, text):
+    for words in re.findall(r'(?i)\b(?:physics|devices|formats|vam-(?:physics|devices|formats)\(7\)),? section \d*', joined(text)):
+        faults.append(f'{where}: "{words}" is to be written [physics §n]')
     for kind, numbers in re.findall(r'\b(physics|devices) (§\d+(?:\.\d+)?(?:, §\d+(?:\.\d+)?)*)', text):
         for number in numbers.replace('§', '').split(', '):
             if number not in sections[kind]:

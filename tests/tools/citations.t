@@ -1,5 +1,5 @@
 #!/bin/sh
-# What the source cites stands in the manual pages of section 7; and the check that says so finds what does not.
+# What the source cites stands in the manual pages of section 7; and the check that verifies it finds what does not.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 check() { python3 "$VAM_SOURCE/tests/tools/citations.py" "$1"; }
@@ -14,6 +14,8 @@ finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the 
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
 }
 finds 'vam-physics.7. has no section 99' '// along the ray [physics §2, §99]'
+finds '"physics section 4" is to be written' '// the dose of physics section 4'
+finds '"vam-physics.7. section 4" is to be written' '// the dose, see vam-physics(7) section 4'
 finds 'vam-devices.7. has no section 99' '// as [devices §99] has it'
 finds 'vam-devices.7. has no promise 9' '// promise 9'
 finds '.KELLY99. is not among the references' '// as in [KELLY99]'
