@@ -21,6 +21,22 @@ quiet "auto is apg until the part prints with a margin" vam-optimize --angles 18
 is "auto reaches its goal" "$(value auto.json stopped_by)" goal
 holds "no voxel is wrong" "$(value auto.json ver) == 0"
 
+resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
+quiet "unlimited" vam-optimize --angles 180 $resin --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
+quiet "limited by default" vam-optimize --angles 180 $resin --report limited.json part.vdb -o limited.exr
+holds "a limit prints at least three times as fast" "3 * $(value limited.json seconds) <= $(value spikes.json seconds)"
+holds "at nearly the same process window" "$(value limited.json pw) > $(value spikes.json pw) - 0.02"
+quiet "in so many turns" vam-optimize --angles 180 $resin --turns 3 --report turns.json part.vdb -o turns.exr
+is "it takes the turns that were asked for" "$(value turns.json turns)" 3
+vam-dose turns.exr --like part.vdb $resin --exposure-plan -o dose.vdb --report plan.json
+is "vam-dose plans the same" "$(value plan.json turns)" 3
+fails 64 'where everything is lit from all sides' vam-optimize --angles 60 --max-intensity 0.05 part.vdb -o out.exr
+fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --turns 3 part.vdb -o out.exr
+fails 64 'omit --max-intensity' vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr
+fails 64 'method fbp has no maximum intensity' vam-optimize --method fbp --turns 3 part.vdb -o out.exr
+vam-optimize --angles 60 --iterations 1 --max-intensity 0.12 part.vdb -o out.exr 2>missed.txt
+is "what a limit spoils is reported" "$(grep -c 'does not print after 1 iterations: .*--max-intensity above 0.12' missed.txt)" 1
+
 quiet "a handle around a screwdriver" sh -c 'vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o handle.vdb &&
   vam-optimize --angles 180 --report handle.json handle.vdb -o handle.exr'
 holds "no voxel of the handle is wrong" "$(value handle.json ver) == 0"

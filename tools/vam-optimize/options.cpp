@@ -94,9 +94,14 @@ void declare_parameters(cli::App& app, Options& options) {
                  "negative intensities are set to the lower bound, or all intensities of a slice are raised by its "
                  "minimum.");
   app.option("--power", "P", options.how.power, {1, 20}, readers("--power") + "exponent of the norm.");
-  app.option("--max-intensity", "VALUE", options.how.max_intensity, cli::non_negative,
+  app.option("--max-intensity", "VALUE", options.max_intensity, cli::non_negative,
              readers("--max-intensity") + "upper bound on projected intensity; 0 is none.");
+  app.default_is(
+      "3 times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at every angle");
   app.was("--max-light");
+  app.option("--turns", "N", options.turns, cli::positive,
+             "Duration of the print, in turns at full grey: sets --max-intensity from resin.critical_dose_mj_cm3, "
+             "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --seconds.");
 }
 
 void declare_beam(cli::App& app, Options& options) {
@@ -179,6 +184,21 @@ void refuse_contradictions(const Options& options, const optimize::MethodEntry& 
   }
 }
 
+void settle_limit(Options& options, const optimize::MethodEntry& method) {
+  const bool reads = std::find(method.options.begin(), method.options.end(), "--max-intensity") != method.options.end();
+  if (options.turns && options.max_intensity) {
+    throw Error{Fault::usage, "--turns: sets the maximum intensity; omit --max-intensity"};
+  }
+  if (options.turns && !reads)
+    throw Error{Fault::usage, "--turns: method " + method.name + " has no maximum intensity"};
+  if (options.turns) return;  // with the printer
+  if (options.max_intensity) {
+    options.limit.most = *options.max_intensity;
+  } else if (reads && !options.demands.grey) {
+    options.limit.of_even = optimize::usual_of_even;
+  }
+}
+
 }  // namespace
 
 void settle(const cli::App& app, Options& options) {
@@ -187,6 +207,7 @@ void settle(const cli::App& app, Options& options) {
   refuse_contradictions(options, method);
   if (options.demands.grey && !app.given("--response")) options.response = "linear";
   options.how.offset = options.negative == "offset";
+  settle_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());

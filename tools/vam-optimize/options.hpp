@@ -7,7 +7,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack.hpp"
-#include "optimize/run/iterate.hpp"
+#include "optimize/run/volume.hpp"
 
 namespace vam::optimize_tool {
 
@@ -30,6 +30,9 @@ struct Options {
   std::string checkpoint;
   std::string trace;
   optimize::MethodOptions how;
+  std::optional<double> max_intensity;
+  std::optional<double> turns;  // of the print, at full grey
+  optimize::IntensityLimit limit;
   std::string negative = "clip";
   std::string absorption_model = "exact";
   bool no_blur = false;

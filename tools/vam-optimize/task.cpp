@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
+#include "score/exposure.hpp"
 
 namespace vam::optimize_tool {
 
@@ -63,16 +65,38 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
 
 }  // namespace
 
+namespace {
+
+/// Full grey for so many turns gives the critical dose where the relative dose is the threshold: intensity over the
+/// limit is irradiance over the lamp's.
+optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
+  if (!options.turns) return options.limit;
+  const auto per_radian = score::dose_per_radian_mj_cm3(scene.printer);
+  if (!per_radian) {
+    throw Error{Fault::usage,
+                "--turns: the duration is determined by the resin; set resin.critical_dose_mj_cm3 and "
+                "resin.absorption_per_mm, or give --max-intensity"};
+  }
+  const double threshold = options.demands.window.threshold();
+  return {.most = *options.turns * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3, .of_even = 0};
+}
+
+}  // namespace
+
 optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options) {
   optimize::VolumeTask task;
   task.source = make_source(scene, in, options);
   task.circle = scene.circle;
   task.demands = options.demands;
   task.limits = options.limits;
-  task.max_intensity = options.how.max_intensity;
+  task.limit = limit(scene, options);
   task.blur_px = blur_px(scene, options);
   task.watch = !options.trace.empty();
-  task.make = [&] { return optimize::make_method(options.method, options.how); };
+  task.make = [&](double max_intensity) {
+    optimize::MethodOptions how = options.how;
+    how.max_intensity = max_intensity;
+    return optimize::make_method(options.method, how);
+  };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
   return task;
 }

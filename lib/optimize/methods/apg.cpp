@@ -98,7 +98,8 @@ class Apg final : public Method {
     restore(iterate.dose, before_.dose, better);
   }
 
-  void prepare(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
+  void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
+    enter_bounds(light, largest_light(options_, light), iterate);
     before_ = iterate;
     const Window& window = problem.demands.window;
     length_ = constant(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));

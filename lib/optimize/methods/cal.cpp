@@ -69,7 +69,8 @@ class Cal final : public Method {
 
  private:
   /// The line search begins with Newton's step for a resin whose response is the dose: filter is about (A A*)^-1.
-  void prepare(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
+  void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
+    enter_bounds(light, largest_light(options_, light), iterate);
     length_ = constant(iterate.g.size(), 1.0F);
     loss_ = losses(problem, light, iterate);
   }

@@ -67,9 +67,18 @@ class Osmo final : public Method {
     bound(iterate.g, largest_light(options_, light));
     if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
     light.adjoint(iterate.g, iterate.dose);
-    unit_ = reciprocal(largest_pooled(maxima(iterate.dose, problem), light));
+    const PerSlice now = reciprocal(largest_pooled(maxima(iterate.dose, problem), light));
+    unit_ = unit_.empty() || options_.max_intensity <= 0 ? now : smaller(unit_, now);
     scale(iterate.g, unit_);
     scale(iterate.dose, unit_);
+  }
+
+  /// The scale of limited light never grows: with that of clipped light the limit would fall, and clip more.
+  static PerSlice smaller(PerSlice a, const PerSlice& b) {
+    for (std::size_t s = 0; s < a.size(); ++s) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) a[s][lane] = std::min(a[s][lane], b[s][lane]);
+    }
+    return a;
   }
 
   /// 0 <= g <= g_max. The scale that g will have is not known yet; the last one is near.

@@ -49,6 +49,18 @@ PerSlice constant(std::size_t slabs, float value) {
   return result;
 }
 
+void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {
+  const PerSlice brightest = largest(iterate.g);
+  const auto over = [&](const auto& lane) {
+    return std::any_of(lane.begin(), lane.end(), [&](float v) { return v > peak; });
+  };
+  if (std::none_of(brightest.begin(), brightest.end(), over)) return;
+  for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) iterate.g[s].values[i] = std::min(iterate.g[s].values[i], peak);
+  });
+  light.adjoint(iterate.g, iterate.dose);
+}
+
 float largest_light(const MethodOptions& options, const light::Operator& light) {
   if (options.max_intensity <= 0) return std::numeric_limits<float>::max();
   return static_cast<float>(options.max_intensity * light.row_angle_rad());

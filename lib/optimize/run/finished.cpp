@@ -1,10 +1,21 @@
 #include "optimize/run/private/finished.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
+
+#include "base/error.hpp"
 
 namespace vam::optimize {
 
 void Finished::take(std::vector<Image> images) {
+  for (const Image& image : images) {
+    if (std::all_of(image.values.begin(), image.values.end(), [](float v) { return std::isfinite(v); })) continue;
+    throw Error{Fault::data,
+                "projections of slice " + std::to_string(slices_) +
+                    " and those optimised with it are not finite; check the target's values and --weights"};
+  }
   for (Image& image : images) held_.emplace(jobs_++, std::move(image));
   for (; slices_ < static_cast<int>(schedule_.job_of_slice.size()); ++slices_) {
     const int job = schedule_.job_of_slice[static_cast<std::size_t>(slices_)];

@@ -40,6 +40,29 @@ Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, ligh
   return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
 }
 
+/// Mean dose inside the circle of intensity 1 from everywhere.
+double even_dose(const light::Operator& light, const Circle& circle, int slices) {
+  const auto count = static_cast<std::size_t>((slices + lanes - 1) / lanes);
+  Slab even(light.image().width, light.image().height);
+  std::fill(even.values.begin(), even.values.end(), 1.0F);
+  std::vector<Slab> sinograms = slabs(count, light.sinogram().width, light.sinogram().height);
+  for (Slab& slab : sinograms) light.collapse(even, slab);
+  std::vector<Slab> dose = slabs(count, light.object().width, light.object().height);
+  light.adjoint(sinograms, dose);
+  double sum = 0;
+  std::int64_t voxels = 0;
+  for (int y = 0; y < light.object().height; ++y) {
+    for (int x = 0; x < light.object().width; ++x) {
+      if (!circle.contains(x, y)) continue;
+      for (int k = 0; k < slices; ++k) {
+        sum += static_cast<double>(dose[static_cast<std::size_t>(k / lanes)].at(x, y)[k % lanes]);
+      }
+      voxels += slices;
+    }
+  }
+  return sum / static_cast<double>(voxels);
+}
+
 /// One pass after the other.
 class Run {
  public:
@@ -54,6 +77,7 @@ class Run {
     for (const Digest& slice : digests) {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
+    settle_limit();
     schedule_ = scheduled(task, digests, light.image(), halo_ == 0 && !whole_);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (const int job : schedule_.job_of_slice) ++times_[static_cast<std::size_t>(job)];
@@ -70,6 +94,9 @@ class Run {
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
     outcome.jobs = jobs();
     outcome.efficiency = finished_.efficiency();
+    outcome.peak_intensity = finished_.peak();
+    outcome.max_intensity = max_intensity_;
+    outcome.even_intensity = even_intensity_;
     return outcome;
   }
 
@@ -90,6 +117,20 @@ class Run {
     return {first, last, std::max(0, first - halo_), std::min(jobs(), last + halo_)};
   }
 
+  void settle_limit() {
+    const IntensityLimit& limit = task_.limit;
+    if (limit.most <= 0 && limit.of_even <= 0) return;
+    const double threshold = task_.demands.window.threshold();
+    even_intensity_ = threshold / even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
+    max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * even_intensity_;
+    if (max_intensity_ >= even_intensity_) return;
+    throw Error{Fault::usage, "--max-intensity " + format_number(max_intensity_) + ": gives a mean dose of " +
+                                  format_number(threshold * max_intensity_ / even_intensity_) +
+                                  " where everything is lit from all sides, and the threshold is " +
+                                  format_number(threshold) + "; at least " + format_number(even_intensity_) +
+                                  " is needed, and some 1.5 times that to print"};
+  }
+
   /// False when the pass was broken off.
   bool optimise(const Pass& pass, Work& work) {
     auto [problem, inserts] = read_pass(
@@ -103,7 +144,7 @@ class Run {
     if (task_.blur_px > 0)
       light = (blurred = std::make_unique<light::BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
     if (!work.method) {
-      work.method = task_.make();
+      work.method = task_.make(max_intensity_);
       if (task_.initial) {
         work.state.g = collapse_images(
             pass, [&](int job) { return task_.initial(slice(job)); }, sharp);
@@ -150,10 +191,10 @@ class Run {
     if (halo_ > 0) return;  // slices that share dose are to scale already
     PerSlice factor =
         whole_ ? to_shared_threshold(state.dose, problem) : to_common_threshold(metrics(state.dose, problem), problem);
-    if (task_.max_intensity > 0) {
+    if (max_intensity_ > 0) {
       PerSlice brightest = largest(state.g);
       if (whole_) brightest = together(brightest);
-      const auto most = static_cast<float>(task_.max_intensity * light.row_angle_rad());
+      const auto most = static_cast<float>(max_intensity_ * light.row_angle_rad());
       for (std::size_t s = 0; s < factor.size(); ++s) {
         for (std::size_t lane = 0; lane < lanes; ++lane) {
           if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
@@ -203,7 +244,7 @@ class Run {
       finished_.take(std::move(*images));
     }
     ledger_.exchange(from);
-    work.method = task_.make();
+    work.method = task_.make(max_intensity_);
     work.exchange(from);
     from.seal();
   }
@@ -213,6 +254,7 @@ class Run {
   SliceReader reader_;
   bool whole_;  // rows light other slices than their own: all of them are one pass
   int halo_;
+  double max_intensity_ = 0, even_intensity_ = 0;
   RunMark mark_;
   Schedule schedule_;
   std::vector<int> times_;  // slices that a job stands for
@@ -223,7 +265,7 @@ class Run {
 }  // namespace
 
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
-  if (task.blur_px > 0 && !light.couples_slices() && !task.make()->keeps_scale()) {
+  if (task.blur_px > 0 && !light.couples_slices() && !task.make(0)->keeps_scale()) {
     const auto able = method_names([](const MethodEntry& entry) { return entry.make({})->keeps_scale(); });
     throw Error{Fault::usage,
                 "this method scales each slice separately and cannot compensate a blur between slices; use " +

@@ -15,19 +15,28 @@
 
 namespace vam::optimize {
 
+/// Upper bound on projected intensity. Even intensity is the one that, projected everywhere from all sides, gives the
+/// threshold dose on average: no part is printed by less.
+struct IntensityLimit {
+  double most = 0;     // 0: none
+  double of_even = 0;  // else so many times the even intensity
+};
+/// Every part of tests/bench/printability prints with 1.5 times; 3 times leaves most of the unlimited process window.
+inline constexpr double usual_of_even = 3;
+
 struct VolumeTask {
   VolumeSource source;
   Circle circle;
   Demands demands;
   Limits limits;
-  double max_intensity = 0;  // upper bound on projected intensity; 0: none
+  IntensityLimit limit;
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
       around;                           // the operator of a pass with these inserts
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
-  std::function<std::unique_ptr<Method>()> make;
+  std::function<std::unique_ptr<Method>(double max_intensity)> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
   Interruption interruption;
 };
@@ -39,6 +48,9 @@ struct VolumeOutcome {
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
   double efficiency = 0;
+  double max_intensity = 0;           // the limit; 0: none
+  double even_intensity = 0;          // 0: not asked for
+  double peak_intensity = 0;          // of the result
   std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere
 };
 

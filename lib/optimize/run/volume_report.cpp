@@ -21,6 +21,9 @@ Json report(const VolumeOutcome& outcome) {
   json["stopped_by"] = outcome.reason;
   for (const auto& name : model::figure_names()) json[name] = model::figure(outcome.metrics, name);
   json["efficiency"] = outcome.efficiency;
+  json["peak_intensity"] = outcome.peak_intensity;
+  if (outcome.max_intensity > 0) json["max_intensity"] = outcome.max_intensity;
+  if (outcome.even_intensity > 0) json["even_intensity"] = outcome.even_intensity;
   json["dark_part_voxels"] = outcome.dark_part_voxels;
   return json;
 }

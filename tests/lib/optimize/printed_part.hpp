@@ -71,7 +71,12 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   VolumeTask task;
   task.source.slices = part.grid.nz;
   task.circle = vam::model::writable_circle(part.grid, printer);
-  task.make = [&] { return make_method(name, {}); };
+  task.make = [&](double max_intensity) {
+    MethodOptions options;
+    options.max_intensity = max_intensity;
+    return make_method(name, options);
+  };
+  if (automatic) task.limit.of_even = usual_of_even;
   task.limits.iterations = method_entry(name).iterations;
   if (automatic) {
     task.limits.until = vam::model::parse_conditions(automatic_until, SliceFigures::names());

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/shadowed.hpp"
+#include "optimize/methods/metrics.hpp"
 #include "optimize/target/schedule.hpp"
 #include "oracle/part_2d.hpp"
 
@@ -37,7 +39,7 @@ Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {})
       out = std::copy(slices[static_cast<std::size_t>(k + i)].begin(), slices[static_cast<std::size_t>(k + i)].end(),
                       out);
   };
-  if (!task.make) task.make = [] { return make_method("dose-norm", {}); };
+  if (!task.make) task.make = [](double) { return make_method("dose-norm", {}); };
   task.write = [&](int k, const vam::Image& image) {
     CHECK(k == static_cast<int>(result.images.size()));
     result.images.push_back(image);
@@ -56,6 +58,19 @@ std::vector<float> dose_of(const vam::Image& image) {
   unpack(dose, 1, values.data());
   for (float& v : values) v *= static_cast<float>(turn.angle_step_rad);
   return values;
+}
+
+/// Mean of IoU + PW over the slices, PW in parts of the threshold at which a slice prints best.
+double quality(const std::vector<std::vector<float>>& slices, const std::vector<vam::Image>& images) {
+  double sum = 0;
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    const auto problem = make_problem(slices[k].data(), 1, size, size, parts::circle(size), {});
+    Slab dose(size, size);
+    pack(dose_of(images[k]).data(), 1, dose);
+    const auto m = metrics({&dose, 1}, problem)[0];
+    sum += m.iou + m.pw / m.iou_threshold;
+  }
+  return sum / static_cast<double>(slices.size());
 }
 
 }  // namespace
@@ -78,7 +93,7 @@ TEST_CASE("one threshold dose prints all slices: the middle of the window, in ev
   };
   const std::vector<std::vector<float>> slices{disc(4), disc(12), disc(24), vam::oracle::wheel(size)};
   VolumeTask task;
-  task.make = [] { return make_method("fbp", {}); };  // clipping alone gives each of them another scale
+  task.make = [](double) { return make_method("fbp", {}); };  // clipping alone gives each of them another scale
   const auto result = run(slices, task);
   for (std::size_t s = 0; s < slices.size(); ++s) {
     CAPTURE(s);
@@ -176,7 +191,7 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.watch = true;
-  task.make = [] { return make_method("cal", {}); };
+  task.make = [](double) { return make_method("cal", {}); };
   task.limits.iterations = 500;
   task.limits.until = vam::model::parse_conditions("iou>=0.9", {"ver", "pw", "ipdr", "cv", "iou"});
   const auto goal = run(slices, task);
@@ -193,7 +208,7 @@ TEST_CASE("initial projections are used") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.limits.iterations = 20;
-  task.make = [] { return make_method("cal", {}); };
+  task.make = [](double) { return make_method("cal", {}); };
   const auto first = run(slices, task);
   task.limits.iterations = 0;
   task.initial = [&](int k) { return first.images[static_cast<std::size_t>(k)]; };
@@ -265,7 +280,7 @@ TEST_CASE("a run interrupted repeatedly gives the bytes of an uninterrupted one,
     VolumeTask task;
     task.watch = true;
     task.limits = {.iterations = 7, .until = {}, .patience = 3};
-    task.make = [&] { return make_method(name, {}); };
+    task.make = [&](double) { return make_method(name, {}); };
     const auto whole = run(slices, task);
     const auto broken = run_in_pieces(slices, task, 2);
     if (name != "fbp") CHECK(broken.times >= 2);
@@ -288,7 +303,7 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   VolumeTask task;
   task.blur_px = 0.8;
   task.limits = {.iterations = 4, .until = {}, .patience = 0};
-  task.make = [] { return make_method("apg", {}); };
+  task.make = [](double) { return make_method("apg", {}); };
   const auto whole = run(slices, task);
   const auto broken = run_in_pieces(slices, task, 3);
   REQUIRE(whole.images.size() == 70);
@@ -297,7 +312,7 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   bool same = true;
   for (std::size_t k = 0; k < 70; ++k) same = same && broken.result.images[k].values == whole.images[k].values;
   CHECK(same);
-  task.make = [] { return make_method("osmo", {}); };
+  task.make = [](double) { return make_method("osmo", {}); };
   CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("--no-blur"), vam::Error);
 }
 
@@ -305,7 +320,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
   task.limits.iterations = 5;
-  task.make = [] { return make_method("apg", {}); };
+  task.make = [](double) { return make_method("apg", {}); };
   std::string state;
   Archive to(Archive::Way::out, "state",
              [&](void* bytes, std::size_t n) { state.append(static_cast<const char*>(bytes), n); });
@@ -340,9 +355,9 @@ TEST_CASE("intensity never exceeds its bound, whatever the final scale") {
     CAPTURE(name);
     VolumeTask task;
     MethodOptions options;
-    options.max_intensity = task.max_intensity = 2;
+    options.max_intensity = task.limit.most = 2;
     task.limits = {.iterations = 12, .until = {}, .patience = 0};
-    task.make = [&] { return make_method(name, options); };
+    task.make = [&](double) { return make_method(name, options); };
     const auto result = run(slices, task);
     float most = 0;
     for (const auto& image : result.images) {
@@ -351,4 +366,48 @@ TEST_CASE("intensity never exceeds its bound, whatever the final scale") {
     CHECK(most <= 2.00001F);
     CHECK(most > 1.0F);
   }
+}
+
+TEST_CASE("limited intensity prints no worse than the unlimited answer, clipped") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
+  const auto made = [&](const std::string& name, double limit) {
+    VolumeTask task;
+    MethodOptions options;
+    options.max_intensity = task.limit.most = limit;
+    task.limits = {.iterations = 30, .until = {}, .patience = 0};
+    task.make = [name, options](double) { return make_method(name, options); };
+    return run(slices, task);
+  };
+  for (const std::string name : {"cal", "osmo", "pm", "bclp", "apg"}) {
+    CAPTURE(name);
+    const auto unlimited = made(name, 0);
+    for (const double limit : {4.0, 2.0, 1.0, 0.5, 0.35}) {
+      CAPTURE(limit);
+      auto clipped = unlimited.images;
+      for (auto& image : clipped) {
+        for (float& v : image.values) v = std::min(v, static_cast<float>(limit));
+      }
+      const auto limited = made(name, limit);
+      for (const auto& image : limited.images) {
+        CHECK(std::all_of(image.values.begin(), image.values.end(), [](float v) { return std::isfinite(v); }));
+      }
+      CHECK(quality(slices, limited.images) >= quality(slices, clipped) - 0.005);
+    }
+  }
+}
+
+TEST_CASE("an intensity limit that cannot print is refused with the least that can") {
+  VolumeTask task;
+  task.limit.most = 0.01;
+  CHECK_THROWS_WITH_AS(run({vam::oracle::wheel(size)}, task),
+                       doctest::Contains("where everything is lit from all sides, and the threshold is 0.8"), Error);
+}
+
+TEST_CASE("the even intensity gives the threshold dose on average") {
+  VolumeTask task;
+  task.limit.of_even = 2;
+  const auto result = run({vam::oracle::wheel(size)}, task);
+  // Parallel light from all sides: a dose of 2 pi times the intensity.
+  CHECK(result.outcome.even_intensity == doctest::Approx(0.8 / (2 * std::numbers::pi)).epsilon(0.01));
+  CHECK(result.outcome.max_intensity == doctest::Approx(2 * result.outcome.even_intensity));
 }

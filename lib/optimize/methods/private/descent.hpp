@@ -23,7 +23,7 @@ class Descent : public Method {
   [[nodiscard]] virtual float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const = 0;
 
  private:
-  void prepare(const Problem& problem, const light::Operator& light, const Iterate& iterate);
+  void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate);
   /// gradient = A (slopes at the iterate); the dose before is used up.
   void differentiate(const Problem& problem, const light::Operator& light, const Iterate& iterate);
   [[nodiscard]] PerSlice losses(const Problem& problem, const light::Operator& light,

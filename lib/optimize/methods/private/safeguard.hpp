@@ -18,6 +18,10 @@ PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerS
 /// The same number for every slice of so many slabs.
 [[nodiscard]] PerSlice constant(std::size_t slabs, float value);
 
+/// Clips the light to [0, peak]; its dose follows. Losses are compared with that of the start, so it must be allowed
+/// itself.
+void enter_bounds(const light::Operator& light, float peak, Iterate& iterate);
+
 /// Largest value that light may take: options.max_intensity as a sinogram value, or no limit when that is 0.
 [[nodiscard]] float largest_light(const MethodOptions& options, const light::Operator& light);
 

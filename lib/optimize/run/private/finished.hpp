@@ -19,11 +19,13 @@ class Finished {
   Finished(const Schedule& schedule, const Write& write) : schedule_(schedule), write_(write) {}
 
   /// The projections of the jobs that follow those already taken; every slice whose turn has come is written.
+  /// Throws Fault::data for values that are not finite.
   void take(std::vector<Image> images);
   /// How many have been taken.
   [[nodiscard]] int jobs() const { return jobs_; }
   /// Of all that has been written.
   [[nodiscard]] double efficiency() const { return efficiency_.value(); }
+  [[nodiscard]] double peak() const { return efficiency_.max; }
 
  private:
   const Schedule& schedule_;
