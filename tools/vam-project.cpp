@@ -2,7 +2,7 @@
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "io/stream/stream.hpp"
 #include "printer.hpp"
 #include "vam-project/files.hpp"

@@ -10,7 +10,7 @@
 #include "cli/app.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/port/lines.hpp"
-#include "io/picture/any_frames.hpp"
+#include "io/image/any_frames.hpp"
 #include "optics/patterns.hpp"
 #include "printer.hpp"
 #include "sim/cameras/gv_camera.hpp"

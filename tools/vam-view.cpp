@@ -2,7 +2,7 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "model/circle.hpp"
@@ -15,7 +15,7 @@ namespace {
 using namespace vam;
 using view_tool::Options;
 
-void write_figure(const Options& options, const plot::ImageFigure& figure, const io::PictureText& text) {
+void write_figure(const Options& options, const plot::ImageFigure& figure, const io::ImageText& text) {
   if (!options.plain) return io::write_png(options.output, plot::draw(figure), text);
   io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.colours, figure.low, figure.high),
                 text);
@@ -25,7 +25,7 @@ io::SparseVolume target_for(const Options& options) {
   return io::read_volume(options.target.empty() ? options.input : options.target, "target");
 }
 
-void show_volume(const Options& options, const io::PictureText& text) {
+void show_volume(const Options& options, const io::ImageText& text) {
   const std::string grid = options.histogram && options.grid.empty() ? "dose" : options.grid;
   const io::SparseVolume volume = io::read_volume(options.input, grid);
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
@@ -40,7 +40,7 @@ void show_volume(const Options& options, const io::PictureText& text) {
   write_figure(options, plot::view_volume(volume, &target, options.view), text);
 }
 
-void show_images(const Options& options, io::FileType type, const io::PictureText& text) {
+void show_images(const Options& options, io::FileType type, const io::ImageText& text) {
   if (options.histogram || !options.target.empty()) {
     throw Error{Fault::data, options.input + ": --histogram and --target need a volume (VDB), but this holds images"};
   }
@@ -60,7 +60,7 @@ void run(const cli::App& app, Options& options) {
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
-  const io::PictureText text{{"Comment", app.history()}};
+  const io::ImageText text{{"Comment", app.history()}};
   const io::FileType type = io::file_type(options.input);
   if (type == io::FileType::volume) return show_volume(options, text);
   show_images(options, type, text);

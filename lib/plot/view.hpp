@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "io/picture/any_frames.hpp"
+#include "io/image/any_frames.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/circle.hpp"
 #include "plot/image_figure.hpp"

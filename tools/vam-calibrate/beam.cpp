@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 #include "metrology/calibrate/flat.hpp"
 #include "vam-calibrate/scan.hpp"
 

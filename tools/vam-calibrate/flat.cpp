@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/exr/stack.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -27,7 +27,7 @@ Finding scan_flat(const ScanOptions& options, const model::Printer& printer) {
   Image dark;
   double dark_sigma = 0;  // of one image it is not known
   if (!options.dark.empty()) {
-    const bool image = io::is_picture(options.dark);
+    const bool image = io::is_image_file(options.dark);
     if (!image) darkness = frames_of(options.dark);
     dark = image ? io::read_field(options.dark) : darkness.mean();
     if (darkness.count() > 1) dark_sigma = darkness.noise() / std::sqrt(darkness.count());

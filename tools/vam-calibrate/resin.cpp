@@ -1,7 +1,7 @@
 // vam-calibrate resin: the scattered intensity at which the resin gels, from the volume of a printed standard.
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/threshold.hpp"

@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
 

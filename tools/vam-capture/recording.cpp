@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "io/exr/stack.hpp"
-#include "io/picture/capture_folder.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/capture_folder.hpp"
+#include "io/image/image_file.hpp"
 
 namespace vam::capture_tool {
 
@@ -22,7 +22,7 @@ device::CameraFeed folder_feed(const std::string& place) {
   return [manifest, place, next = manifest->frames.begin()](CapturedFrame& frame) mutable {
     if (next == manifest->frames.end()) return false;
     const io::CaptureRecord& record = next->second;
-    frame.levels = io::read_picture((std::filesystem::path(place) / io::capture_file_name(record.place)).string());
+    frame.levels = io::read_image((std::filesystem::path(place) / io::capture_file_name(record.place)).string());
     frame.number = record.number;
     frame.time_s = record.t_monotonic_s;
     frame.device_s = record.device_s;
@@ -34,7 +34,7 @@ device::CameraFeed folder_feed(const std::string& place) {
 }
 
 device::CameraFeed image_feed(const std::string& place) {
-  auto folder = std::make_shared<io::PictureFolder>(place);
+  auto folder = std::make_shared<io::ImageFolder>(place);
   return [folder, next = 0](CapturedFrame& frame) mutable {
     if (next == folder->count()) return false;
     frame = {};

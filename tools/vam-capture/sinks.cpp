@@ -1,7 +1,7 @@
 #include "vam-capture/sinks.hpp"
 
 #include "base/json.hpp"
-#include "io/picture/capture_folder.hpp"
+#include "io/image/capture_folder.hpp"
 #include "sim/cameras/camera.hpp"
 
 namespace vam::capture_tool {

@@ -5,7 +5,7 @@
 
 #include "base/stats/student.hpp"
 #include "base/text.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "plot/canvas.hpp"
 #include "plot/plot.hpp"
 #include "vam-curethrough/figures.hpp"

@@ -6,14 +6,14 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "io/exr/stack.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 
 namespace vam::curethrough {
 
 namespace {
 
 Slices from_folder(const std::string& path, const resin::Response& response) {
-  auto folder = std::make_shared<io::PictureFolder>(path);
+  auto folder = std::make_shared<io::ImageFolder>(path);
   const GreyImage first = folder->read(0);
   std::vector<float> light;
   for (int v = 0; v <= first.full(); ++v) {

@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "io/picture/view_queue.hpp"
+#include "io/image/view_queue.hpp"
 #include "io/settings/json_log.hpp"
 #include "io/stream/stream.hpp"
 #include "metrology/ost/sliding_turn.hpp"

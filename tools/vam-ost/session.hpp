@@ -9,7 +9,7 @@
 
 #include "base/json_fwd.hpp"
 #include "cli/app.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/cured.hpp"
 #include "metrology/ost/ost.hpp"

@@ -1,7 +1,7 @@
 #include "vam-project/files.hpp"
 
 #include "base/json.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "io/settings/report.hpp"
 #include "optics/frames.hpp"
 #include "vam-project/show.hpp"

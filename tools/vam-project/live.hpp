@@ -9,7 +9,7 @@
 
 #include "device/os/event_log.hpp"
 #include "device/projector/player.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "vam-project/options.hpp"
 
 namespace vam::project {

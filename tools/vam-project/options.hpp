@@ -7,7 +7,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "device/projector/player.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "optics/patterns.hpp"
 

@@ -5,7 +5,7 @@
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "optics/frames.hpp"
 #include "optics/patterns.hpp"
 #include "vam-project/live.hpp"

@@ -5,7 +5,7 @@
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "resin/response.hpp"
 

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "io/picture/any_frames.hpp"
+#include "io/image/any_frames.hpp"
 #include "optics/slice_place.hpp"
 
 namespace vam::project {
@@ -81,7 +81,7 @@ SliceStack slices_of(const std::string& path, io::StackReader& reader) {
 }
 
 SliceStack slice_folder(const std::string& path) {
-  const std::shared_ptr<io::ImageSource> source = io::open_images(path, io::FileType::pictures);
+  const std::shared_ptr<io::ImageSource> source = io::open_images(path, io::FileType::images);
   SliceStack stack{path, source->info(), source->about(), [source](Image& slice) {
                      model::ImageInfo about;
                      return source->next(slice, about);

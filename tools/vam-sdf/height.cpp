@@ -6,8 +6,8 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/picture/picture.hpp"
-#include "io/picture/view_source.hpp"
+#include "io/image/image_file.hpp"
+#include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
 #include "metrology/compare/emboss.hpp"
 #include "model/conditions.hpp"
@@ -24,7 +24,7 @@ constexpr double um_per_mm = 1000;
 
 // Heights in mm, not a number where there was no reading; of a mesh or volume what is seen from above.
 Image read_heights(const HeightOptions& options) {
-  const bool levels = io::is_picture(options.image);
+  const bool levels = io::is_image_file(options.image);
   const bool stack = options.image == "-" || options.image.ends_with(".exr");
   const double unit_mm = levels || stack ? options.full_mm : 1.0;
   Image heights =

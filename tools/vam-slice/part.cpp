@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
-#include "io/picture/picture.hpp"
 
 namespace vam::slice_tool {
 
@@ -17,7 +17,7 @@ solid::FillMode fill_mode(const Options& options) {
 }
 
 solid::Part image_part(const Options& options) {
-  const auto folder = std::make_shared<io::PictureFolder>(options.input);
+  const auto folder = std::make_shared<io::ImageFolder>(options.input);
   const GreyImage first = folder->read(0);
   solid::ImageStack stack{first.width, first.height, folder->count(), [folder](int index) {
                             const GreyImage grey = folder->read(index);

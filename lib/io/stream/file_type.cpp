@@ -66,7 +66,7 @@ bool is_volume(const std::string& path) { return begins_a_volume(head_of(path));
 
 FileType file_type(const std::string& path) {
   std::error_code ignored;
-  if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::pictures;
+  if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::images;
   const std::string head = head_of(path);
   if (begins_a_volume(head)) return FileType::volume;
   if (head.starts_with("\x76\x2f\x31\x01")) return FileType::stack;

@@ -6,10 +6,10 @@
 namespace vam::io {
 
 enum class FileType {
-  volume,    // OpenVDB
-  stack,     // OpenEXR
-  video,     // Matroska or MP4
-  pictures,  // a folder
+  volume,  // OpenVDB
+  stack,   // OpenEXR
+  video,   // Matroska or MP4
+  images,  // a folder
 };
 
 /// Peeks without consuming, so that the next reader receives every byte; "-" is stdin, a file or a pipe.

@@ -1,4 +1,4 @@
-#include "io/picture/private/video.hpp"
+#include "io/image/private/video.hpp"
 
 #include <doctest/doctest.h>
 

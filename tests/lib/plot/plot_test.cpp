@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;

@@ -10,7 +10,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
 
@@ -233,7 +233,7 @@ TEST_CASE("file types are determined by content") {
   CHECK(file_type(written(std::string("\0\0\0\x20"
                                       "ftypisom",
                                       12))) == FileType::video);
-  CHECK(file_type(folder.path.string()) == FileType::pictures);
+  CHECK(file_type(folder.path.string()) == FileType::images);
   CHECK(has(error_of([&] { (void)file_type(written("solid part")); }, vam::Fault::data), "neither a volume (VDB)"));
   CHECK(has(error_of([&] { (void)file_type(written("")); }, vam::Fault::data), "is empty"));
 }

@@ -2,8 +2,8 @@
 #include <cstring>
 #include <exception>
 
-#include "io/picture/private/av_handles.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/private/av_handles.hpp"
+#include "io/image/private/video.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -1,6 +1,6 @@
 // In the place of video_reader.cpp and video_writer.cpp where the tools are built with -DVAM_VIDEO=OFF.
 #include "base/error.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/private/video.hpp"
 
 namespace vam::io {
 

@@ -1,4 +1,4 @@
-#include "io/picture/frame_folder.hpp"
+#include "io/image/frame_folder.hpp"
 
 #include <cstdio>
 
@@ -26,7 +26,7 @@ std::string number_name(int number) {
 
 FrameFolder::FrameFolder(const std::string& path) : folder_(path, is_frame) {}
 
-void FrameFolder::write(int number, const GreyImage& frame, const PictureText& text) const {
+void FrameFolder::write(int number, const GreyImage& frame, const ImageText& text) const {
   folder_.write(number_name(number), encode_png(frame, text));
 }
 

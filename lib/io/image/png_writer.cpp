@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -62,7 +62,7 @@ struct Layout {
   std::size_t row_bytes;
 };
 
-Bytes assemble(const Layout& layout, const Bytes& significant_bits, const Bytes& rows, const PictureText& text) {
+Bytes assemble(const Layout& layout, const Bytes& significant_bits, const Bytes& rows, const ImageText& text) {
   Bytes png("\x89PNG\r\n\x1a\n", 8);
   Bytes header;
   put32(header, static_cast<std::uint32_t>(layout.width));
@@ -111,7 +111,7 @@ Bytes wide_rows(const GreyImage& image) {
 }
 
 template <class Pixels>
-void write(const std::string& path, const Pixels& image, const PictureText& text) {
+void write(const std::string& path, const Pixels& image, const ImageText& text) {
   OutputFile file(path);
   file.write(encode_png(image, text));
   file.commit();
@@ -119,7 +119,7 @@ void write(const std::string& path, const Pixels& image, const PictureText& text
 
 }  // namespace
 
-std::string encode_png(const GreyImage& image, const PictureText& text) {
+std::string encode_png(const GreyImage& image, const ImageText& text) {
   const int depth = image.bits > 8 ? 16 : image.bits;
   const auto bits = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(depth);
   const Layout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
@@ -128,13 +128,13 @@ std::string encode_png(const GreyImage& image, const PictureText& text) {
   return assemble(layout, significant, depth == 8 ? byte_rows(image) : packed_rows(image, layout.row_bytes), text);
 }
 
-std::string encode_png(const RgbImage& image, const PictureText& text) {
+std::string encode_png(const RgbImage& image, const ImageText& text) {
   const Layout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
   const Bytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
   return assemble(layout, "", rows, text);
 }
 
-void write_png(const std::string& path, const GreyImage& image, const PictureText& text) { write(path, image, text); }
-void write_png(const std::string& path, const RgbImage& image, const PictureText& text) { write(path, image, text); }
+void write_png(const std::string& path, const GreyImage& image, const ImageText& text) { write(path, image, text); }
+void write_png(const std::string& path, const RgbImage& image, const ImageText& text) { write(path, image, text); }
 
 }  // namespace vam::io

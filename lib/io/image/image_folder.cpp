@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 
 namespace vam::io {
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_picture(const fs::path& path) {
+bool is_image_file(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension == ".png" || extension == ".tif" || extension == ".tiff";
@@ -58,11 +58,11 @@ void check_gaps(const std::vector<Numbered>& images) {
 
 }  // namespace
 
-PictureFolder::PictureFolder(const std::string& folder) {
+ImageFolder::ImageFolder(const std::string& folder) {
   std::error_code problem;
   std::vector<Numbered> images;
   for (fs::directory_iterator entry(folder, problem), end; !problem && entry != end; entry.increment(problem)) {
-    if (is_picture(entry->path())) images.push_back({number_of(entry->path()), entry->path()});
+    if (is_image_file(entry->path())) images.push_back({number_of(entry->path()), entry->path()});
   }
   if (problem) throw Error{Fault::no_input, folder + ": cannot read the folder: " + problem.message()};
   if (images.empty()) throw Error{Fault::data, folder + ": no PNG or TIFF image in the folder"};
@@ -73,8 +73,8 @@ PictureFolder::PictureFolder(const std::string& folder) {
   for (const auto& image : images) paths_.push_back(image.path.string());
 }
 
-GreyImage PictureFolder::read(int index) {
-  GreyImage image = read_picture(path(index));
+GreyImage ImageFolder::read(int index) {
+  GreyImage image = read_image(path(index));
   if (width_ == 0) {
     width_ = image.width;
     height_ = image.height;

@@ -1,4 +1,4 @@
-#include "io/picture/capture_folder.hpp"
+#include "io/image/capture_folder.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {

@@ -1,12 +1,12 @@
-#include "io/picture/any_frames.hpp"
+#include "io/image/any_frames.hpp"
 
 #include <fstream>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/picture/picture.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/image_file.hpp"
+#include "io/image/private/video.hpp"
 
 namespace vam::io {
 
@@ -104,7 +104,7 @@ class FolderSource : public ImageSource {
   }
 
  private:
-  PictureFolder folder_;
+  ImageFolder folder_;
   std::vector<model::ImageInfo> index_;
   model::StackInfo info_;
   int taken_ = 0;
@@ -116,7 +116,7 @@ std::unique_ptr<ImageSource> open_images(const std::string& path, FileType type)
   if (type == FileType::video && path == "-")
     throw Error{Fault::usage, "stdin: a video is read from a file only; name it"};
   if (type == FileType::video) return std::make_unique<VideoSource>(path);
-  if (type == FileType::pictures) return std::make_unique<FolderSource>(path);
+  if (type == FileType::images) return std::make_unique<FolderSource>(path);
   return std::make_unique<StackSource>(path);
 }
 

@@ -1,4 +1,4 @@
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 
 #include <doctest/doctest.h>
 
@@ -33,7 +33,7 @@ TEST_CASE("PNG of every depth comes back through OpenCV's decoder: level / full 
   for (const int bits : {1, 2, 4, 8, 10, 16}) {
     const GreyImage image = all_levels(bits);
     write_png(folder / "a.png", image);
-    const GreyImage back = read_picture(folder / "a.png");
+    const GreyImage back = read_image(folder / "a.png");
     REQUIRE(back.values.size() == image.values.size());
     CHECK(back.bits == (bits > 8 ? 16 : 8));
     int wrong = 0;
@@ -60,7 +60,7 @@ TEST_CASE("TIFF of 8 and 16 bits comes back") {
   const scratch::Folder folder;
   for (const int bits : {8, 16}) {
     write_tiff(folder / "a.tif", all_levels(bits));
-    CHECK(read_picture(folder / "a.tif") == all_levels(bits));
+    CHECK(read_image(folder / "a.tif") == all_levels(bits));
   }
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("colours are written unchanged and read as luma") {
   image(1, 0) = {0, 255, 0};
   image(2, 0) = {80, 80, 80};
   write_png(folder / "c.png", image);
-  const GreyImage grey = read_picture(folder / "c.png");
+  const GreyImage grey = read_image(folder / "c.png");
   CHECK(std::abs(grey(0, 0) - 76) <= 1);  // BT.601: 0.299 R + 0.587 G + 0.114 B, rounded either way
   CHECK(std::abs(grey(1, 0) - 150) <= 1);
   CHECK(grey(2, 0) == 80);
@@ -82,7 +82,7 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   const std::string png = encode_png(all_levels(8));
   const auto refused = [&](const std::string& bytes) {
     const std::string path = folder.write("bad.png", bytes);
-    return error_of([&] { (void)read_picture(path); }, vam::Fault::data);
+    return error_of([&] { (void)read_image(path); }, vam::Fault::data);
   };
   for (std::size_t size = 8; size < png.size(); size += 5) CHECK(has(refused(png.substr(0, size)), "truncated"));
   std::string flipped = png;
@@ -94,7 +94,7 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   std::ifstream stream(folder / "a.tif", std::ios::binary);
   const std::string tiff{std::istreambuf_iterator<char>(stream), {}};
   CHECK(refused(tiff.substr(0, tiff.size() / 2)) != "no error");
-  error_of([&] { (void)read_picture(folder / "none.png"); }, vam::Fault::no_input);
+  error_of([&] { (void)read_image(folder / "none.png"); }, vam::Fault::no_input);
 }
 
 TEST_CASE("a folder is read in numerical order; gaps and differing sizes are errors") {
@@ -104,21 +104,21 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
     image(0, 0) = static_cast<std::uint16_t>(i);
     write_png((folder / "part2_" + std::to_string(i) + ".png"), image);
   }
-  PictureFolder images(folder.path.string());
+  ImageFolder images(folder.path.string());
   REQUIRE(images.count() == 12);
   for (int i = 0; i < 12; ++i) CHECK(images.read(i)(0, 0) == i + 1);
 
   write_png(folder / "part2_13.png", GreyImage(5, 3, 8));
-  PictureFolder uneven(folder.path.string());
+  ImageFolder uneven(folder.path.string());
   (void)uneven.read(0);
   CHECK(has(error_of([&] { (void)uneven.read(12); }, vam::Fault::data), "5 x 3 pixels, but those before have 4 x 3"));
 
   std::filesystem::remove(folder / "part2_5.png");
-  CHECK(has(error_of([&] { PictureFolder{folder.path.string()}; }, vam::Fault::data), "follows number 4"));
+  CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "follows number 4"));
   write_png(folder / "other_05.png", GreyImage(4, 3, 8));
   write_png(folder / "part2_5.png", GreyImage(4, 3, 8));
-  CHECK(has(error_of([&] { PictureFolder{folder.path.string()}; }, vam::Fault::data), "same number"));
-  error_of([&] { PictureFolder{(folder / "none")}; }, vam::Fault::no_input);
+  CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "same number"));
+  error_of([&] { ImageFolder{(folder / "none")}; }, vam::Fault::no_input);
   std::filesystem::create_directory(folder / "empty");
-  CHECK(has(error_of([&] { PictureFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));
+  CHECK(has(error_of([&] { ImageFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));
 }

@@ -13,34 +13,34 @@ namespace vam::io {
 /// Reads PNG or TIFF, recognised by their content, as 8 or 16 grey bits; colours become their luma, transparency is
 /// ignored, fewer bits are spread over 8. "-" is stdin.
 /// Throws Error: no_input, io, data (neither PNG nor TIFF, truncated, damaged).
-[[nodiscard]] GreyImage read_picture(const std::string& path);
+[[nodiscard]] GreyImage read_image(const std::string& path);
 
 /// Text that goes into a PNG beside the pixels (tEXt chunks): keyword to text.
-using PictureText = std::map<std::string, std::string>;
+using ImageText = std::map<std::string, std::string>;
 
 /// The bytes of a PNG. Grey of 1, 2, 4, 8 and 16 bits is stored at that depth. 10 bits are stored in 16, spread over
 /// the full range as the PNG specification asks (section 12.5: v << 6 | v >> 4) and marked by an sBIT chunk, so that
 /// viewers show the right brightness and `>> 6` gives the level back.
-[[nodiscard]] std::string encode_png(const GreyImage& image, const PictureText& text = {});
-[[nodiscard]] std::string encode_png(const RgbImage& image, const PictureText& text = {});
+[[nodiscard]] std::string encode_png(const GreyImage& image, const ImageText& text = {});
+[[nodiscard]] std::string encode_png(const RgbImage& image, const ImageText& text = {});
 
 /// Writes a PNG; "-" is stdout. Throws Error: no_output, io.
-void write_png(const std::string& path, const GreyImage& image, const PictureText& text = {});
-void write_png(const std::string& path, const RgbImage& image, const PictureText& text = {});
+void write_png(const std::string& path, const GreyImage& image, const ImageText& text = {});
+void write_png(const std::string& path, const RgbImage& image, const ImageText& text = {});
 
 /// Writes a grey TIFF, 8 bits where 8 are enough and 16 otherwise (10 bits spread over 16). "-" is stdout.
 void write_tiff(const std::string& path, const GreyImage& image);
 
 /// The numbered images of a folder (.png, .tif, .tiff) in the order of their numbers, so that 2 comes before 10.
-class PictureFolder {
+class ImageFolder {
  public:
   /// Throws Error: no_input (no such folder), data (no image in it, a number missing or twice).
-  explicit PictureFolder(const std::string& folder);
+  explicit ImageFolder(const std::string& folder);
 
   [[nodiscard]] int count() const { return static_cast<int>(paths_.size()); }
   [[nodiscard]] const std::string& path(int index) const { return paths_[static_cast<std::size_t>(index)]; }
 
-  /// Throws as read_picture does, and Fault::data when the image has not the size of the first one. One thread at a
+  /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.
   [[nodiscard]] GreyImage read(int index);
 

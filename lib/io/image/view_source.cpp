@@ -1,4 +1,4 @@
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 
 #include <filesystem>
 #include <map>
@@ -7,9 +7,9 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "io/exr/stack.hpp"
-#include "io/picture/capture_folder.hpp"
-#include "io/picture/picture.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/capture_folder.hpp"
+#include "io/image/image_file.hpp"
+#include "io/image/private/video.hpp"
 
 namespace vam::io {
 
@@ -32,7 +32,7 @@ bool is_video(const std::string& path) {
 
 }  // namespace
 
-bool is_picture(const std::string& path) {
+bool is_image_file(const std::string& path) {
   return ends_in(path, ".png") || ends_in(path, ".tif") || ends_in(path, ".tiff");
 }
 
@@ -41,7 +41,7 @@ struct ViewSource::State {
   double step_deg = 0;
   int index = 0;
   std::unique_ptr<StackReader> stack;
-  std::unique_ptr<PictureFolder> folder;
+  std::unique_ptr<ImageFolder> folder;
   std::unique_ptr<VideoReader> video;
   std::optional<CaptureManifest> capture;
   std::map<long, CaptureRecord>::const_iterator recorded;
@@ -70,7 +70,7 @@ struct ViewSource::State {
     if (recorded == capture->frames.end()) return false;
     const CaptureRecord& record = recorded++->second;
     frame.name = path + "/" + capture_file_name(record.place);
-    frame.image = to_image(read_picture(frame.name));
+    frame.image = to_image(read_image(frame.name));
     frame.time_s = record.t_monotonic_s;
     frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
     return true;
@@ -89,7 +89,7 @@ ViewSource::ViewSource(const std::string& path, double step_deg) : state_(std::m
     state_->capture = read_manifest(path);
     state_->recorded = state_->capture->frames.begin();
   } else if (path != "-" && std::filesystem::is_directory(path)) {
-    state_->folder = std::make_unique<PictureFolder>(path);
+    state_->folder = std::make_unique<ImageFolder>(path);
     (void)state_->needed_step();
   } else if (is_video(path)) {
     state_->video = std::make_unique<VideoReader>(path);
@@ -134,7 +134,7 @@ std::vector<std::string> ViewSource::history() const {
 }
 
 Image read_field(const std::string& path) {
-  if (is_picture(path)) return to_image(read_picture(path));
+  if (is_image_file(path)) return to_image(read_image(path));
   StackReader reader(path);
   Image sum;
   Image image;

@@ -1,4 +1,4 @@
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 
 #include <zlib.h>
 
@@ -63,7 +63,7 @@ cv::Mat decode(const std::string& bytes, const std::string& name) {
 
 }  // namespace
 
-GreyImage read_picture(const std::string& path) {
+GreyImage read_image(const std::string& path) {
   const std::string bytes = read_all(path, Content::binary, std::uint64_t{1} << 30);
   const std::string name = path == "-" ? "stdin" : path;
   check_magic(bytes, name);

@@ -1,4 +1,4 @@
-#include "io/picture/view_queue.hpp"
+#include "io/image/view_queue.hpp"
 
 #include <algorithm>
 #include <utility>

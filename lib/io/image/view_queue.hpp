@@ -8,7 +8,7 @@
 #include <mutex>
 #include <thread>
 
-#include "io/picture/view_source.hpp"
+#include "io/image/view_source.hpp"
 
 namespace vam::io {
 

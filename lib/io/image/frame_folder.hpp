@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/pixels.hpp"
-#include "io/picture/picture.hpp"
+#include "io/image/image_file.hpp"
 #include "io/stream/output_folder.hpp"
 #include "model/stack.hpp"
 
@@ -17,7 +17,7 @@ class FrameFolder {
  public:
   explicit FrameFolder(const std::string& path);
   /// Frame `number` from 0, in any order, from any thread.
-  void write(int number, const GreyImage& frame, const PictureText& text) const;
+  void write(int number, const GreyImage& frame, const ImageText& text) const;
   /// After all: when and at which angle frame i is shown.
   void commit(std::span<const model::ImageInfo> frames);
 

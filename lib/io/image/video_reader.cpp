@@ -4,8 +4,8 @@
 #include <fstream>
 #include <optional>
 
-#include "io/picture/private/av_handles.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/private/av_handles.hpp"
+#include "io/image/private/video.hpp"
 
 namespace vam::io {
 

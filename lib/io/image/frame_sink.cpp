@@ -1,4 +1,4 @@
-#include "io/picture/frame_sink.hpp"
+#include "io/image/frame_sink.hpp"
 
 #include <filesystem>
 #include <vector>
@@ -6,8 +6,8 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "io/picture/frame_folder.hpp"
-#include "io/picture/private/video.hpp"
+#include "io/image/frame_folder.hpp"
+#include "io/image/private/video.hpp"
 
 namespace vam::io {
 
@@ -37,7 +37,7 @@ class FolderSink : public FrameSink {
 
  private:
   FrameFolder folder_;
-  PictureText text_;
+  ImageText text_;
   std::vector<model::ImageInfo> shown_;
 };
 

@@ -37,7 +37,7 @@ class ViewSource {
 };
 
 /// By its name: a PNG or TIFF.
-[[nodiscard]] bool is_picture(const std::string& path);
+[[nodiscard]] bool is_image_file(const std::string& path);
 
 /// One image or the mean of all images of a stack, for dark and flat fields.
 [[nodiscard]] Image read_field(const std::string& path);
