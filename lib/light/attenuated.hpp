@@ -11,8 +11,8 @@
 namespace vam::light {
 
 /// How the first projections make up for absorption: by the exact inverse of the exponential Radon transform [TM80], or
-/// by dividing the target by the dose that a uniform disc gets [OST22 Methods], which is cheap and nearly as good where
-/// little is absorbed. A and A* are exact in both cases.
+/// by dividing the target by the dose that a uniform disc receives [OST22 Methods], which is cheap and nearly as good
+/// where little is absorbed. A and A* are exact in both cases.
 enum class Correction { exact, disc };
 
 /// Light enters at the resin's radius R and has lost e^{-mu s}, s = sqrt(R^2 - t^2) + u, at the point (t, u) [CAL19 eq

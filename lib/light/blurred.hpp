@@ -1,4 +1,4 @@
-// What beam and resin smear, inside the operator: light is then found that makes up for it.
+// The blur of beam and resin, inside the operator: the projections then compensate for it.
 #pragma once
 
 #include "light/operator.hpp"

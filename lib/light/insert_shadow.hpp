@@ -1,4 +1,4 @@
-// Opaque inserts in the light (overprinting) [CAL19 fig 4]: how far along its ray the light of a pixel gets.
+// Opaque inserts in the light (overprinting) [CAL19 fig 4]: how far along its ray the light of a pixel reaches.
 #pragma once
 
 #include <functional>

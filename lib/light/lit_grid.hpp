@@ -1,4 +1,4 @@
-// All resin that the light of a part reaches: what must be asked and judged around it.
+// All resin that the light of a part reaches: the voxels around it to constrain and judge.
 #pragma once
 
 #include "model/grid.hpp"

@@ -32,7 +32,7 @@ enum class Climb { follow, flat };
 /// of the sinograms (A*, light/operator.hpp); zero outside the resin. A projector's stack: chief rays, which climb
 /// unless the projector is telecentric along the rows. A virtual stack: back-projection, light entering at the resin's
 /// wall. Around an opaque insert (coverage nx x ny, one a slice, or none at all) light ends where its ray meets it
-/// [CAL19 fig 4]; the insert gets no dose.
+/// [CAL19 fig 4]; the insert receives no dose.
 class Simulation {
  public:
   /// Throws Fault::data: angles that are not one turn, a camera stack, columns that are not the printer's, or voxels

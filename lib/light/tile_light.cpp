@@ -179,7 +179,7 @@ bool TileLight::shadowed(int angle) const {
   return false;
 }
 
-/// How far the light of the tile's pixels gets, and how far in the voxels are on the rays of their columns.
+/// How far the light of the tile's pixels reaches, and how far in the voxels are on the rays of their columns.
 void TileLight::cast_shadow(int angle) {
   ends_.assign(product(columns_, rows_), InsertShadow::unhindered);
   each_piece(angle, shadow_.ends(), [&](const float* from, std::size_t at, int columns, int rows) {

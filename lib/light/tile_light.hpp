@@ -18,7 +18,7 @@ struct Chunk {
   [[nodiscard]] int width() const { return static_cast<int>(slabs) * lanes; }
 };
 
-/// The rays of a tile's voxels, in whole blocks; those that fill up the last block are nobody's.
+/// The rays of a tile's voxels, in whole blocks; those that fill up the last block belong to no voxel.
 struct Tile {
   int chunk = 0;  // slices that may share the rays
   std::vector<RaySource> rays;

@@ -72,7 +72,7 @@ void FlatlandSlice::check() const {
     throw Error{Fault::data, subject_ + ": has a value of " + format_number(static_cast<double>(least)) + " at " + z +
                                  "; light cannot be negative: clip or offset it in vam-sinogram"};
   }
-  if (!(peak() > 0)) throw Error{Fault::data, subject_ + ": is dark at " + z + "; there is nothing to project"};
+  if (!(peak() > 0)) throw Error{Fault::data, subject_ + ": is dark at " + z + "; nothing to project"};
 }
 
 float FlatlandSlice::peak() const { return *std::max_element(nearest_.values.begin(), nearest_.values.end()); }

@@ -1,6 +1,6 @@
 // A graphics card for LD_PRELOAD: answers what the kernel would, so that the unmodified libdrm finds /dev/dri/card0 with
 // the screens eDP-1 (on, by CRTC 31), HDMI-A-1 (64 x 48 at 60 Hz, off) and HDMI-A-2 (nothing plugged in).
-// $FAKE_DRM is a folder: "log" gets a JSON line for every image with the vertical blank at which it is on, "memory"
+// $FAKE_DRM is a folder: "log" receives a JSON line for every image with the vertical blank at which it is on, "memory"
 // is the card's. $FAKE_DRM_FAULT=KIND[:N] spoils something, at the N-th page flip (buffer for no-memory) and after it:
 // not-master, no-memory, no-mode, gamma (stays as it is), busy, lost (to another master), gone, silent (no event), late
 // (the event comes after 0.3 s), skip (every N-th flip is one blank late).
@@ -29,7 +29,7 @@ static const double period_s = 1.0 / 60;
 
 // Shared by the tool and its guardian, which inherits it.
 static struct Card {
-  ino_t socket;  // what the guardian gets a copy of is the same socket
+  ino_t socket;  // the guardian's copy is the same socket
   double origin_s, flip_due_s;
   unsigned buffers, flips;
   unsigned handle_of[BUFFERS];  // framebuffer numbers begin at 100

@@ -32,7 +32,7 @@ aborted() {  # aborted STATUS OUTCOME REGEX: that print
   is "$run: status" $status "$1"
   [ $status -eq "$1" ] || sed 's/^/# /' errors
   [ -z "$2" ] || is "$run: the summary" "$(json "$run/summary.json" outcome)" "$2"
-  [ -z "$3" ] || { grep -Eq -- "$3" errors; report $? "$run: says '$3'"; }
+  [ -z "$3" ] || { grep -Eq -- "$3" errors; report $? "$run: reports '$3'"; }
   [ $run = unplugged ] || { await stood; ok "$run: the table stands" stood; }  # a pulled cable leaves it to its last order
   is "$run: black" "$($screen now)" black
   # The simulated light engine is a part of vam-project and dies with it; usb-safety.t kills it beside a real one.

@@ -12,7 +12,7 @@ begin() {  # begin NAME DEVICE PROGRAM...: on a bus and with a lock of its own
 }
 ended() {  # ended NAME STATUS REGEX: with that status, and such a line on stderr, or none
   is "$1: status" "$(cat "$1/status")" "$2"
-  if [ -n "$3" ]; then ok "$1: says '$3'" grep -Eq -- "$3" "$1/err"; else is "$1: silent" "$(cat "$1/err")" ''; fi
+  if [ -n "$3" ]; then ok "$1: reports '$3'" grep -Eq -- "$3" "$1/err"; else is "$1: silent" "$(cat "$1/err")" ''; fi
 }
 bits() { grep -o '"bits":[0-9]*' "$1/truth" | tr '\n' ' '; }
 asleep() { tail -n 1 "$1/truth" | grep -c '"event":"asleep"'; }

@@ -34,7 +34,7 @@ valid_hours = 1
 TOML
 value() { json "cal/current-$1.json" "values.$2.value"; }
 sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
-within() { near "$1 is as well known as it says" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
+within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
 near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
 
 fails 64 'no --screen' vam-calibrate-all
@@ -57,7 +57,7 @@ camera_down
 is 'every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' events)" 0
 is 'in the order of dependence' "$(grep -o '"event":"end","scan":"[a-z]*"' events | cut -d'"' -f8 | tr '\n' ' ')" 'latency response axis beam edges '
 $judge latency seen keep/latency.exr >delay
-# The flips' own times are exact, and the frames are late by what the camera's log says: 0.1 ms is a 25th of an
+# The flips' own times are exact, and the frames are late by the delay in the camera's log: 0.1 ms is a 25th of an
 # exposure. On a busy machine the shortest way from the camera is found anew now and then; so much is added.
 read -r late wander <delay
 near 'latency: the delay of the frames' "$(value latency latency)" "$late" "(0.1 + $wander)"

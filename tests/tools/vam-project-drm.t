@@ -29,7 +29,7 @@ fails 69 'connectors: eDP-1, HDMI-A-1, HDMI-A-2 \(nothing connected\)' env LD_PR
 fails 64 'unknown option' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?hz=60'
 fails 65 'do not match the screen' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1 --set projector.rows=44
 
-# Each answer of the GPU wrong in turn. Without the GPU the screen cannot be blackened: the light engine goes dark.
+# Each answer of the GPU wrong in turn. Without the GPU the screen cannot be blackened: the light engine switches off.
 dark_after() {  # seconds from the last image until the last black, by the card's log
   python3 -c 'import json
 shown = [line for line in map(json.loads, open("card/log")) if "shade" in line]

@@ -31,7 +31,7 @@ ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o nu
 is 'each in its turn' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' ')" '"frame":0 "frame":1 "frame":2 "frame":-1 '
 
 # Three dry runs at a time by the stage's angles: a good one, one whose stage ends too early, and one that is too fast.
-follow() {  # follow LEDS FLIPS OPTIONS...: what a stage says, to no screen
+follow() {  # follow LEDS FLIPS OPTIONS...: the lines of a stage, without a screen
   leds=$1; flips=$2; shift 2
   vam-project part.exr -o null: --follow - --light "sim:?log=$leds" --log $flips --missed 0.9 "$@"
 }

@@ -24,7 +24,7 @@ struct Inputs {
 /// Fault::data when there is no target, or another volume is on another grid.
 [[nodiscard]] Inputs read(const Options& options);
 
-/// Reads a stack slice after slice, the last 64 of which may be asked for again; slices in between are skipped.
+/// Reads a stack slice after slice, the last 64 of which may be read again; slices in between are skipped.
 class Initial {
  public:
   /// Throws Fault::data unless the stack has the size of `want`.

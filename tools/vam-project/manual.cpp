@@ -17,7 +17,7 @@ cli::Manual manual() {
        "Live: the output sdl:N is a window over screen N of the desktop, drm:HDMI-A-1 the connector itself by page "
        "flips (without a desktop), null: a dry run. One turn of frames is preloaded; at every vertical blank the frame "
        "for the stage angle in the middle of its display time is shown. With --follow the angle is predicted from the "
-       "lines of vam-stage spin: black before angle 0, black again after the last turn. Without it the angle is the "
+       "lines of vam-stage spin: black before angle 0, black again after the last turn. By default the angle is the "
        "speed times the time since the first frame. The run-up turn is a dry run: if vertical blanks are missed in it, "
        "the print does not start. Frame size and screen size must be equal.",
        "Time: frame n is centred on time n / fps, at the stage angle n x speed / fps; it is shown for one frame period "
@@ -29,7 +29,7 @@ cli::Manual manual() {
        "the axis at projector.axis_column; --column-offset shifts them. Intensity outside the projector's columns or "
        "rows is an error. The orientation is applied last.",
        "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times --gain. "
-       "Each pixel gets the grey level whose intensity, by the measured response (projector.response) or else the "
+       "Each pixel is set to the grey level whose intensity, by the measured response (projector.response) or else the "
        "linear response from min_intensity to max_intensity, is nearest to the required one.",
        "Slices of continuous stereolithography (vam-curethrough correct) are shown one after the other, each once, "
        "slice n from n / fps on, with fps = print speed / slice height: both are in the EXR stack, --print-speed or "

@@ -1,4 +1,4 @@
-// From the light that is wanted to the frames that a device gets.
+// From the required intensity to the frames of a device.
 #pragma once
 
 #include <functional>

@@ -161,8 +161,8 @@ class Apg final : public Method {
     return {middle - half, middle + half};
   }
 
-  /// A slice that has nearly what was asked of it, is asked for more: its window grows about the threshold, so that
-  /// easy parts get the widest process window they can and hard ones are not asked for what they cannot reach.
+  /// A slice that has nearly met its thresholds is given wider ones: its window grows about the threshold, so that
+  /// easy parts reach the widest process window they can and hard ones are not given thresholds they cannot reach.
   bool widen(const Problem& problem) {
     if (problem.demands.grey) return false;
     bool any = false;

@@ -1,5 +1,5 @@
 // What --method auto stands for: the method that measures best in tests/bench/printability, until the part prints with
-// room to spare, and a few iterations at least: what prints from the start gets a wider window than simpler methods
+// room to spare, and a few iterations at least: what prints from the start has a wider window than simpler methods
 // give.
 #pragma once
 

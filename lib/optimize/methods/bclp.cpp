@@ -10,7 +10,7 @@ namespace vam::optimize {
 namespace {
 
 /// Sum of w (|M(D) - f| - epsilon)_+^p [BCLP24, the general band-constraint loss], M the response curve, weight w and
-/// tolerance epsilon those of the voxel. Within the band nothing is asked. A step has no slope to follow; there D
+/// tolerance epsilon those of the voxel. Within the band there is no penalty. A step has no slope to follow; there D
 /// itself is measured from the doses with the right response.
 class Bclp final : public Descent {
  public:

@@ -9,7 +9,7 @@ namespace vam::optimize {
 
 namespace {
 
-// Dose below this part of what is asked for is taken as this: a void that gets no light at all would otherwise ask for
+// Dose below this fraction of I_0 is taken as this fraction: a void that receives no light at all would otherwise need
 // an infinite correction.
 constexpr float least_ratio = 0.05F;
 

@@ -1,4 +1,4 @@
-// How a run is broken off and goes on: the projections of finished passes, one record each, then the open pass.
+// How a run is interrupted and resumes: the projections of finished passes, one record each, then the open pass.
 #pragma once
 
 #include <functional>

@@ -41,7 +41,7 @@ bool lost_patience(Course& course, const Limits& limits, double reached) {
 std::string look(const Problem& problem, const light::Operator& light, const Limits& limits, const Iterate& state,
                  Course& course, const Watch& watch) {
   const bool last = course.iteration == limits.iterations;
-  if (watch || !last) {  // looking costs little, but a plain fbp need not be looked at
+  if (watch || !last) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
     if (watch) watch(course.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all

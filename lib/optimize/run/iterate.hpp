@@ -37,7 +37,7 @@ struct Course {
 };
 
 /// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a course that has begun
-/// goes on from where it was broken off (method and iterate as they were), as if it never had been.
+/// resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                 Iterate& iterate, Course& course, const Watch& watch = {}, const Pause& pause = {});
 /// From the start to the end.

@@ -131,7 +131,7 @@ class Run {
                                   " is needed, and some 1.5 times that to print"};
   }
 
-  /// False when the pass was broken off.
+  /// False when the pass was interrupted.
   bool optimise(const Pass& pass, Work& work) {
     auto [problem, inserts] = read_pass(
         pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
@@ -171,7 +171,7 @@ class Run {
     exclude(problem, inserts);
     auto light = task_.around(inserts);
     const auto dark = exclude_dark(problem, *light);
-    for (int job = pass.first; job < pass.last && !work.method; ++job) {  // once, also when broken off
+    for (int job = pass.first; job < pass.last && !work.method; ++job) {  // once, also when interrupted
       ledger_.add_dark(dark[static_cast<std::size_t>(job - pass.low)] * times_[static_cast<std::size_t>(job)]);
     }
     return light;

@@ -1,4 +1,5 @@
-// What the resin makes of a dose: the response curve M of the losses [BCLP24].
+// Response curve M of the resin, degree of cure against dose, in the losses of cal and of the band-constraint norm
+// [BCLP24].
 #pragma once
 
 #include <utility>
@@ -18,7 +19,7 @@ class CureCurve {
  public:
   /// M(D) = D: the response is the dose.
   [[nodiscard]] static CureCurve linear();
-  /// 0 up to low, 1 from high on. In between nobody knows, so it has no slope to follow; taken as straight.
+  /// 0 up to low, 1 from high on. In between it is unknown, so it has no slope to follow; taken as straight.
   [[nodiscard]] static CureCurve step(double low, double high);
   /// M(D) = 1 / (1 + e^{(T - D)/gamma}): T the dose of response 1/2, gamma the softness, above 0.
   [[nodiscard]] static CureCurve logistic(double threshold, double softness);

@@ -54,7 +54,7 @@ std::vector<Label> labelled(Slab& slab, int used, const Circle& circle, const De
   return labels;
 }
 
-/// Weights relative to the slice's largest; voxels without any are asked for nothing.
+/// Weights relative to the slice's largest; voxels of weight 0 are unconstrained.
 void free_weightless(Slab& weight, std::vector<Label>& labels) {
   std::array<float, lanes> most{};
   for (std::size_t i = 0; i < labels.size(); ++i) {

@@ -22,10 +22,10 @@ struct Window {
   [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
 };
 
-/// What is asked of all slices.
+/// The demands on all slices.
 struct Demands {
   Window window;
-  bool surface = false;  // voxels that the part's surface cuts are asked too: part from half coverage on, else void
+  bool surface = false;  // voxels on the surface are constrained too: part from half coverage on, else void
   bool grey = false;     // the target is a response for every voxel, to be met within its tolerance
   CureCurve curve = CureCurve::logistic(Window{}.threshold(), 0.05);  // of the losses that look at the response
   double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
@@ -34,7 +34,7 @@ struct Demands {
 /// Throws Fault::usage for contradictory thresholds.
 void check(const Demands& demands);
 
-/// Whether anything is asked of such a voxel.
+/// Whether such a voxel is constrained.
 [[nodiscard]] constexpr bool asked(Label label) { return label == Label::part || label == Label::void_; }
 
 struct Problem {
@@ -56,7 +56,7 @@ struct Problem {
 /// Row-major slices, one after the other, in every array. Nullptr: none.
 struct Slices {
   const float* target;
-  const float* weight = nullptr;     // >= 0, relative to each other; a voxel of weight 0 is asked for nothing
+  const float* weight = nullptr;     // >= 0, relative to each other; a voxel of weight 0 is unconstrained
   const float* tolerance = nullptr;  // >= 0
 };
 

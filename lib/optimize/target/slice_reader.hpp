@@ -20,7 +20,7 @@ struct VolumeSource {
   Read insert;         // coverage of an opaque insert; may be empty
   Read weight;         // what a voxel's error costs, >= 0; may be empty
   Read tolerance;      // how far a voxel's response may be from the target, >= 0; may be empty
-  double band_px = 0;  // half width of the band around the surface where nothing is asked
+  double band_px = 0;  // half width of the unconstrained band around the surface
 };
 
 /// What one slice holds.

@@ -1,4 +1,4 @@
-// The band around a part's surface where nothing is asked.
+// The unconstrained band around a part's surface.
 #pragma once
 
 #include <functional>

@@ -128,7 +128,8 @@ TEST_CASE("Each protocol answer wrong in turn: the right fault, in time, and the
         CHECK(lab.clock.now_s() - spoiled_s < 0.55);
         lab.stage.reset();
         lab.clock.sleep_until(lab.clock.now_s() + 0.5);
-        // A pulled cable leaves the controller to its last order, as the manual says; all else must stand.
+        // A pulled cable leaves the controller to its last order, as in the manual; in all other cases the stage must
+        // be at rest.
         if (std::string(kind) != "unplug") CHECK_FALSE(lab.truly_moves());
         ++cases;
       }

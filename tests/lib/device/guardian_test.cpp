@@ -25,7 +25,7 @@ struct Outcome {
 };
 
 // A tool in a child process: its guardian holds orders for a pipe that stands for the device; then `cause` ends it.
-// `cause` gets the guardian and runs in the tool; `outside` gets the tool's pid and runs in the test.
+// `cause` receives the guardian and runs in the tool; `outside` receives the tool's pid and runs in the test.
 Outcome outcome(const std::function<void(Guardian&, int)>& cause, const std::function<void(pid_t)>& outside = {}) {
   std::array<int, 2> line{};
   std::array<int, 2> ready{};

@@ -216,7 +216,7 @@ TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
     for (int i = 0; i < 20; ++i) scan.lit_s.emplace_back(100 + 0.274 * i, 100 + 0.274 * i + 0.137);
     for (int n = 0; n < 54; ++n) {
       scan.begin_s.push_back(100.003 + 0.1 * n);
-      double lit = 0;  // looked at 2000 times during the exposure
+      double lit = 0;  // sampled 2000 times during the exposure
       for (int k = 0; k < 2000; ++k) {
         const double seen_s = scan.begin_s.back() + scan.exposure_s * (k + 0.5) / 2000 - delay_s - 100;
         const double into_s = std::fmod(seen_s + 274, 0.274);

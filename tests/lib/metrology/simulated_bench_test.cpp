@@ -80,8 +80,8 @@ TEST_CASE("Edges in a bath on the simulated bench: no bias, telecentric or throu
   }
 }
 
-// Near grazing the light turns by up to 49 degrees, and the camera gets most of it where its lines of sight cross each
-// other. What is left is the sweep's pitch of 4 pixels.
+// Near grazing the light turns by up to 49 degrees, and the camera receives most of it where its lines of sight cross
+// each other. What is left is the sweep's pitch of 4 pixels.
 TEST_CASE("Edges in air on the simulated bench: no bias, telecentric or not") {
   sim::SimBench bench;  // the printer of [RAY21]
   bench.printer.camera.binning = 1;

@@ -94,7 +94,7 @@ TEST_CASE("a print at a given threshold is counted exactly") {
   CHECK(!gathered(sample).at_threshold());
 }
 
-TEST_CASE("merging is adding, as often as asked") {
+TEST_CASE("merging adds, also repeatedly") {
   const Sample a = overlapping(3);
   const Sample b = overlapping(4);
   DoseStatistics merged = gathered(a);

@@ -37,7 +37,7 @@ Iterate solve(const Problem& problem, const std::string& name, int iterations) {
   return state;
 }
 
-/// Sum over the asked voxels of a half plane of the squared distance to the window.
+/// Sum over the constrained voxels of a half plane of the squared distance to the window.
 double cost(const Iterate& state, const Problem& problem, bool right) {
   double sum = 0;
   for (int y = 0; y < size; ++y) {
@@ -137,7 +137,7 @@ TEST_CASE("weights: voxels of weight 0 are unconstrained, and errors move to whe
 }
 
 TEST_CASE("a grey target: each voxel's dose within its own tolerance") {
-  // A ring, hard on one side and soft on the other, in a void that may have up to 0.6; nothing is asked at the edges.
+  // A ring, hard on one side and soft on the other, in a void that may have up to 0.6; the edges are unconstrained.
   std::vector<float> target(static_cast<std::size_t>(size * size), 0.3F);
   std::vector<float> tolerance(target.size(), 0.3F);
   std::vector<float> weight(target.size(), 1.0F);

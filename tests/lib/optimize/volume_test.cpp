@@ -237,7 +237,7 @@ TEST_CASE("digests differ for one bit and for another order") {
 
 namespace {
 
-/// Runs a task that is broken off after every `steps` iterates until it is through.
+/// Runs a task that is interrupted after every `steps` iterates until it is complete.
 struct Broken {
   Written result;
   int times = 0;

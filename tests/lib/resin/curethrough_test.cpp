@@ -71,7 +71,7 @@ TEST_CASE("the dose half way through a slice and the cured thickness agree with 
     const auto i = static_cast<std::size_t>(n);
     const double centre = vam::oracle::continuous_dose_mj_cm3(print, (n + 0.5) * 0.05) / 576;
     CHECK(resin::dose_at_centre(phi[i], omega[i + 1], limits) == doctest::Approx(centre).epsilon(1e-6));
-    // A threshold between the doses of both planes is crossed where the fraction says: the oracle's dose there is it.
+    // A threshold between the doses of both planes is crossed at the fraction: the oracle's dose there equals it.
     const double threshold = 0.3 * omega[i] + 0.7 * omega[i + 1];
     const double fraction = resin::cured_fraction(phi[i], omega[i + 1], threshold, limits);
     const double depth = omega[i] > omega[i + 1] ? fraction : 1 - fraction;  // from the platform side

@@ -115,7 +115,7 @@ TEST_CASE("height errors are attributed to the feature whose light cures the gap
   CHECK(totals.through == 3);
   CHECK(totals.under == 1);
   // A tenth of a layer's thickness receives ten times more; layers reach at most log10(2 / q) = 10.3 heights of 0.1 mm
-  // up, so the layer above gets 0.03 of its thickness.
+  // up, so 0.03 of the layer above is cured.
   CHECK(totals.by_height[2].under == doctest::Approx(1).epsilon(0.04));
   CHECK(totals.by_height[2].through == doctest::Approx(1).epsilon(0.1));
   CHECK(totals.by_height[1].under == 0);

@@ -36,7 +36,7 @@ TEST_CASE("void outside the writable circle and surface voxels are not judged") 
   CHECK(std::isnan(score.figure("cured_iou")));
 }
 
-TEST_CASE("surface voxels count when asked, by their half") {
+TEST_CASE("surface voxels count on request, from half coverage on") {
   auto o = options();
   o.surface = true;
   Score score(o, 3, 3);

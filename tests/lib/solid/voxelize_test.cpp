@@ -275,7 +275,7 @@ TEST_CASE("what lies below or above the grid is cut off") {
   }
 }
 
-TEST_CASE("a cup without its lid is full, an open sheet is nothing") {
+TEST_CASE("a cup without its lid is full, an open sheet is empty") {
   const model::Grid grid = cube_grid(20);
   TriangleSoup cup = vam::oracle::box({-5, -5, -5}, {5, 5, 5});
   cup.triangles.erase(cup.triangles.begin() + 2, cup.triangles.begin() + 4);  // the face z = 5

@@ -1,4 +1,4 @@
-// The one-sided loss: every voxel's dose should stay within bounds, and nothing else is asked [physics §6].
+// The one-sided loss: every voxel's dose should stay within bounds; inside them there is no penalty [physics §6].
 #pragma once
 
 #include <limits>
@@ -7,7 +7,7 @@
 
 namespace vam::optimize {
 
-/// How much of its band a grey voxel is asked to stay in: a penalty leaves most misses just outside of what it asks.
+/// The fraction of its band that a grey voxel is constrained to: a penalty leaves most misses just outside its bounds.
 inline constexpr float aim = 0.8F;
 
 /// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose

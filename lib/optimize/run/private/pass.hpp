@@ -17,7 +17,7 @@ struct Pass {
   [[nodiscard]] int slices() const { return high - low; }
 };
 
-/// What is asked of a pass, and what stands in its light.
+/// The demands on a pass, and the inserts in its light.
 struct PassInput {
   Problem problem;
   std::vector<Slab> inserts;  // coverage, a slab for every slab of the problem; empty without any
