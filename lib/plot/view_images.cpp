@@ -102,7 +102,7 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   if (info.units.starts_with("fraction")) found.high = 1;
   views::choose_colours(figure, options, found, !sinogram);
   set_axes(figure, info);
-  figure.value_label = views::with_unit(sinogram ? "sinogram" : "light", info.units);
+  figure.value_label = views::with_unit(sinogram ? "sinogram" : "intensity", info.units);
   figure.size = options.size;
   figure.title = options.name + (sinogram ? ": sinogram" : ": frame");
   figure.title += figure.panels.size() == 1

@@ -23,7 +23,7 @@ void require_monotone(const model::ResponseTable& table) {
                                    " and " + format_number(grey[i]) + "; measure again or smooth it"};
     }
   }
-  if (intensity.back() <= 0) throw Error{Fault::data, table.source + ": there is no light at full grey"};
+  if (intensity.back() <= 0) throw Error{Fault::data, table.source + ": zero intensity at full grey"};
 }
 
 // Slope at an inner point from its two secants a, b over widths h, k: their weighted harmonic mean, which keeps the

@@ -55,7 +55,8 @@ void check(const std::vector<Level>& levels, double noise, const std::string& so
                                    ", beyond the noise; a response must rise, measure again"};
     }
   }
-  if (!(levels.back().mean > 0)) throw Error{Fault::data, source + ": no light at full grey; check the dark reading"};
+  if (!(levels.back().mean > 0))
+    throw Error{Fault::data, source + ": zero intensity at full grey; check the dark reading"};
 }
 
 // Pool adjacent violators: the non-decreasing means with the least weighted squared distance.

@@ -20,9 +20,9 @@ ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer) 
   const double critical = *printer.resin.critical_dose_mj_cm3;
   const double full_turns = critical / middle_mj_cm3;
   if (!(middle_mj_cm3 > 0) || !(full_turns <= most_turns)) {
-    throw Error{Fault::data, "exposure: a turn in full light gives the middle of the process window " +
+    throw Error{Fault::data, "exposure: a turn at full intensity gives the middle of the process window " +
                                  format_number(middle_mj_cm3) + " mJ/cm3 of the critical " + format_number(critical) +
-                                 "; the part cannot be printed with this light"};
+                                 "; the part cannot be printed at this intensity"};
   }
   ExposurePlan plan;
   plan.turns = static_cast<int>(std::max(1.0, std::ceil(full_turns * (1 - rounding))));

@@ -21,7 +21,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Sinogram value shown at full intensity; larger values are clipped, values below "
              "projector.min_intensity_mw_cm2 are raised to it.");
-  app.default_is("the largest value of the stack, with no light at grey 0");
+  app.default_is("the maximum of the stack, zero intensity at grey 0");
   app.option("--seconds", "S", options.seconds, cli::non_negative, "Time during which the dose diffuses.");
   app.default_is("the time of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,

@@ -165,7 +165,7 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
     const ImageInfo& promised = about[done];
     if (own.has_angle != promised.has_angle || own.has_time != promised.has_time ||
         own.has_number != promised.has_number || (out.is_stream() && !spool)) {
-      throw Error{Fault::bug, what + " comes with other facts than were announced"};
+      throw Error{Fault::bug, what + " has other facts than announced"};
     }
     about[done] = own;
     stale_head = true;

@@ -47,7 +47,7 @@ struct ViewSource::State {
   std::map<long, CaptureRecord>::const_iterator recorded;
 
   // What came in part is no view.
-  void leave_out(const std::string& name) { warn(name + ": came incomplete from the camera and is left out"); }
+  void leave_out(const std::string& name) { warn(name + ": was received incomplete from the camera and is skipped"); }
 
   bool next_of_stack(CameraFrame& frame) {
     model::ImageInfo about;

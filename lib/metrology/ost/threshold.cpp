@@ -96,7 +96,7 @@ Circle find_circle(const Image& image) {
                      smallest_px, largest);
   }
   if (found.empty()) {
-    throw Error{Fault::data, "no circle: nothing round with a radius of " + std::to_string(smallest_px) + " to " +
+    throw Error{Fault::data, "no circle: none with a radius of " + std::to_string(smallest_px) + " to " +
                                  std::to_string(largest) + " px stands out"};
   }
   Circle circle{static_cast<double>(found[0][0]), static_cast<double>(found[0][1]), static_cast<double>(found[0][2]),
@@ -122,7 +122,7 @@ OverheadMean overhead_mean(const model::Volume& scatter) {
   for (int k = 0; k < g.nz; ++k)
     held[static_cast<std::size_t>(k)] = std::accumulate(scatter.slice(k), scatter.slice(k) + g.slice_size(), 0.0);
   const double half = 0.5 * *std::max_element(held.begin(), held.end());
-  if (!(half > 0)) throw Error{Fault::data, "standard: the volume is empty, nothing scatters"};
+  if (!(half > 0)) throw Error{Fault::data, "standard: the volume is empty"};
   const auto full = [half](double value) { return value >= half; };
   const auto first = static_cast<int>(std::find_if(held.begin(), held.end(), full) - held.begin());
   const auto last = g.nz - 1 - static_cast<int>(std::find_if(held.rbegin(), held.rend(), full) - held.rbegin());

@@ -77,5 +77,5 @@ TEST_CASE("readings that determine no response are errors") {
       "again");
   CHECK(message({{0, 1}, {255, 50}}, 0) == "d.csv: 2 grey levels do not make a curve; measure at least 3");
   CHECK(message({{1, 1}, {100, 20}, {255, 50}}, 0).find("the lowest grey is 1") != std::string::npos);
-  CHECK(message({{0, 1}, {100, 2}, {255, 3}}, 10).find("no light") != std::string::npos);
+  CHECK(message({{0, 1}, {100, 2}, {255, 3}}, 10).find("zero intensity") != std::string::npos);
 }
