@@ -12,6 +12,7 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
+#include "optics/writable.hpp"
 #include "printer.hpp"
 #include "score/score.hpp"
 #include "vam-score/inputs.hpp"
@@ -43,7 +44,7 @@ score::Score score(const Inputs& in, const score::ScoreOptions& how) {
 
 /// A dose in mJ/cm3 has a critical dose and a duration of the print.
 void settle_exposure(score::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
-  how.circle = model::writable_circle(in.target().grid(), printer);
+  how.circle = model::writable_circle(in.target().grid(), optics::writable_radius_mm(printer));
   if (in.dose().units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
   const auto turns = in.dose().metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan

@@ -11,6 +11,7 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
+#include "optics/writable.hpp"
 #include "printer.hpp"
 #include "solid/voxel/part.hpp"
 #include "vam-slice/options.hpp"
@@ -47,9 +48,9 @@ void run(const cli::App& app, Options& options) {
     if (!input.empty()) io::refuse_same_file(input, options.output);
   }
 
-  const solid::Writable room = solid::writable(printer);
+  const solid::Writable room = solid::writable(printer, optics::writable_radius_mm(printer));
   const solid::Part part = part_of(options, room);
-  solid::require_writable(part.extent, room, part.subject);
+  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject);
   double radius_mm = options.extent == "writable" ? room.radius_mm : 0;
   const std::optional<solid::Part> insert = insert_of(options, part, room);
   if (insert) {
@@ -62,6 +63,7 @@ void run(const cli::App& app, Options& options) {
   solid::Content content;
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", part, grid, content));
+  solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);
   const Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
   for (io::SparseVolume& volume : volumes) {

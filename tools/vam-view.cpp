@@ -6,6 +6,7 @@
 #include "io/stream/file_type.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "model/circle.hpp"
+#include "optics/writable.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
 #include "vam-view/options.hpp"
@@ -31,7 +32,7 @@ void show_volume(const Options& options, const io::ImageText& text) {
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const model::Printer printer = tool::load_printer(options.printer);
-    const auto circle = model::writable_circle(volume.grid(), printer);
+    const auto circle = model::writable_circle(volume.grid(), optics::writable_radius_mm(printer));
     return io::write_png(options.output,
                          plot::draw(plot::dose_histogram(volume, target_for(options), circle, options.view)), text);
   }

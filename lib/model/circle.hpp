@@ -2,7 +2,6 @@
 #pragma once
 
 #include "model/grid.hpp"
-#include "model/printer.hpp"
 
 namespace vam::model {
 
@@ -18,8 +17,8 @@ struct Circle {
   }
 };
 
-/// The printer's writable circle, at most the circle inside the grid. Throws Fault::data when the rotation axis
-/// (x = y = 0) is not inside the grid.
-[[nodiscard]] Circle writable_circle(const Grid& grid, const Printer& printer);
+/// The circle of that radius (optics::writable_radius_mm), at most the circle inside the grid. Throws Fault::data when
+/// the rotation axis (x = y = 0) is not inside the grid.
+[[nodiscard]] Circle writable_circle(const Grid& grid, double radius_mm);
 
 }  // namespace vam::model

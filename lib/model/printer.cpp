@@ -1,7 +1,5 @@
 #include "model/printer.hpp"
 
-#include <algorithm>
-
 namespace vam::model {
 
 std::optional<double> lens_distance_mm(const Projector& projector) {
@@ -11,11 +9,6 @@ std::optional<double> lens_distance_mm(const Projector& projector) {
 }
 
 double resin_radius_mm(const Vial& vial) { return vial.radius_mm - vial.wall_mm; }
-
-double writable_radius_mm(const Printer& printer) {
-  // n b is conserved through concentric shells (Bouguer): the outermost ray, b = R, ends up at R n_0 / n_resin.
-  return std::min(resin_radius_mm(printer.vial), printer.vial.radius_mm * printer.bath.index / printer.resin.index);
-}
 
 double shortening_mm(const Printer& printer, double index_resin) {
   const Vial& vial = printer.vial;

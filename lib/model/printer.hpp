@@ -92,10 +92,6 @@ struct Printer {
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 
-/// Largest radius that light reaches from all sides: R n_outside / n_resin with R the outer radius of the vial, at most
-/// the resin's own [RAY21 section 2; a glass wall refracts but does not stop the outermost ray].
-[[nodiscard]] double writable_radius_mm(const Printer& printer);
-
 /// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when telecentric.
 [[nodiscard]] double vertical_magnification(const Printer& printer);
 

@@ -7,6 +7,7 @@
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
 #include "light/vial.hpp"
+#include "optics/writable.hpp"
 
 namespace {
 
@@ -17,7 +18,7 @@ light::VialSetup setup_of(bool climbs, int slices) {
   const double voxel_mm = 0.065;
   light::VialSetup setup =
       light::vial_setup(printer, model::centred_grid(256, 256, slices, voxel_mm, -0.5 * slices * voxel_mm), 360,
-                        model::writable_radius_mm(printer));
+                        optics::writable_radius_mm(printer));
   if (!climbs) setup.view.rows_lens_mm.reset();
   return setup;
 }

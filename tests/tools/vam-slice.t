@@ -74,7 +74,8 @@ ok "repairs are reported" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1
 ok "votes are reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 open edges remain; the inside test is a vote"'
 quiet "a closed mesh needs no warning" vam-slice cube.stl --voxel 0.5 -o out.vdb
 ok "the largest size that fits" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
-holds "it fills the circle" "($(json report.json radius_mm) - $(json report.json writable_radius_mm))^2 < 1e-12"
+holds "it fills the circle but for half a voxel's diagonal" \
+  "($(json report.json radius_mm) + 0.25 / sqrt(2) - $(json report.json writable_radius_mm))^2 < 1e-12"
 ok "the writable circle" vam-slice cube.stl --extent writable --voxel 0.25 -o out.vdb --report report.json
 is "its voxels" "$(json report.json voxels.0)" 70
 
@@ -120,7 +121,7 @@ fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
 fails 65 'no size' vam-slice point.stl -o x.vdb
 fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-center --voxel 0.3 -o x.vdb
 fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
-fails 65 'reaches .* mm from the axis, beyond the writable radius of 8.301 mm' vam-slice cube.stl --scale 5 -o x.vdb
+fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
 fails 65 'beyond the writable radius' vam-slice far.stl --no-center -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
 fails 65 'more than 4096 a side' vam-slice cube.stl --voxel 0.001 -o x.vdb

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "light/blur.hpp"
+#include "optics/writable.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -108,7 +109,7 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
   const light::Light light{projector && !options.keep_negative, options.full_scale,
                            printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
-  if (options.exposure_plan) judged = model::writable_circle(place.grid, printer);
+  if (options.exposure_plan) judged = model::writable_circle(place.grid, optics::writable_radius_mm(printer));
   Insert insert(place.insert, place.target, place.grid, info);
   Sink sink(volume, place, insert, first, judged);
 

@@ -7,6 +7,7 @@
 #include "light/parallel.hpp"
 #include "light/shadowed.hpp"
 #include "light/vial.hpp"
+#include "optics/writable.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
 
@@ -32,11 +33,10 @@ light::VialSetup vial_setup(const Scene& scene, const Options& options) {
 Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options) {
   const light::Margin margin = options.geometry == "vial" ? light::lit_margin(printer, grid) : light::Margin{};
   const model::Grid lit = light::extended(grid, margin);
-  Scene scene{lit, margin, printer, model::writable_circle(lit, printer), {}};
+  Scene scene{lit, margin, printer, model::writable_circle(lit, optics::writable_radius_mm(printer)), {}};
   const int columns = options.columns.value_or(optimize::columns_for(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
-  const double seen = options.geometry == "vial" ? vial_setup(scene, options).radius_mm / grid.voxel_mm : 0.5 * columns;
-  scene.circle.radius = std::min(scene.circle.radius, seen);
+  if (options.geometry != "vial") scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
   return scene;
 }
 

@@ -28,7 +28,8 @@ void declare(cli::App& app, Options& options) {
   app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
   app.option("--rotate", "X,Y,Z", options.rotate_deg, 3, "Rotate about x, then y, then z, in degrees, right-handed.");
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive, "Scale so that the largest dimension is MM.");
-  app.flag("--fit-writable", options.placement.fit_writable, "Scale to fill the writable cylinder.");
+  app.flag("--fit-writable", options.placement.fit_writable,
+           "Scale to fill the writable cylinder, so that all voxels are lit from all sides.");
   app.flag("--no-center", options.no_center,
            "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
@@ -77,6 +78,7 @@ void settle(Options& options, const model::Printer& printer) {
   placement.centre = !options.no_center;
   placement.stretch_z = options.stretch_z.value_or(1 / model::vertical_magnification(printer));
   if (!options.voxel_mm) options.voxel_mm = printer.projector.pixel_mm;
+  placement.voxel_mm = *options.voxel_mm;
 }
 
 }  // namespace vam::slice_tool

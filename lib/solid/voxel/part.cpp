@@ -1,11 +1,14 @@
 #include "solid/voxel/part.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "model/dose_metrics.hpp"
 #include "solid/shapes/shapes.hpp"
 
 namespace vam::solid {
@@ -65,6 +68,22 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
   return part;
 }
 
+namespace {
+
+/// Distance from the axis to the farthest voxel centre with coverage in these slices.
+double farthest_mm(const model::Grid& grid, int count, const float* slices) {
+  double farthest = 0;
+  for (int line = 0; line < count * grid.ny; ++line) {
+    const double y = grid.y_mm(line % grid.ny);
+    for (int i = 0; i < grid.nx; ++i) {
+      if (*slices++ > model::coverage_rounding) farthest = std::max(farthest, std::hypot(grid.x_mm(i), y));
+    }
+  }
+  return farthest;
+}
+
+}  // namespace
+
 Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   Content content;
   double voxels = 0;
@@ -78,6 +97,7 @@ Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
         ++content.surface_voxels;
       }
     }
+    content.radius_mm = std::max(content.radius_mm, farthest_mm(grid, count, slices));
     sink(k0, count, slices);
   });
   if (voxels == 0) {

@@ -1,6 +1,7 @@
 #include "solid/voxel/placement.hpp"
 
 #include <functional>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -11,6 +12,9 @@ namespace {
 
 constexpr int most_voxels = 4096;     // a side; 256 GiB were it dense
 constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the border
+
+// A voxel's centre may be that far beyond the surface that cuts the voxel, in voxels: half the diagonal in the plane.
+constexpr double beyond_surface = 0.5 * std::numbers::sqrt2;
 
 using ExtentUnder = std::function<Extent(const Affine&)>;
 
@@ -31,18 +35,34 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
   if (placement.fit_writable) {
     part = under(map);
     const double height = part.box.size()[2] * placement.stretch_z;
-    factor = room.radius_mm / part.radius_mm;
+    const double radius = room.radius_mm - beyond_surface * placement.voxel_mm;
+    if (!(radius > 0)) {
+      throw Error{Fault::data, subject + ": voxels of " + format_number(placement.voxel_mm) +
+                                   " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
+                                   " mm; take a smaller --voxel"};
+    }
+    factor = radius / part.radius_mm;
     if (height > 0) factor = std::min(factor, (room.high_mm - room.low_mm) / height);
   }
   return scaling({factor, factor, factor * placement.stretch_z}) * map;
 }
 
+/// `what` reaches that far from the axis.
+void require_radius(double reach_mm, const Writable& room, double voxel_mm, const std::string& what) {
+  if (reach_mm <= room.radius_mm + rounding_mm) return;
+  const auto both = [&](double mm) {
+    return format_number(mm, 4) + " mm (" + format_number(mm / voxel_mm, 4) + " voxels)";
+  };
+  throw Error{Fault::data, what + " " + both(reach_mm) + " from the axis, beyond the writable radius of " +
+                               both(room.radius_mm) + "; --fit-writable shrinks it"};
+}
+
 }  // namespace
 
-Writable writable(const model::Printer& printer) {
+Writable writable(const model::Printer& printer, double radius_mm) {
   const model::Projector& projector = printer.projector;
   // Rows are numbered downwards; z is up. Row r is centred at z = (axis_row - r) * pixel_mm.
-  return {model::writable_radius_mm(printer), (projector.axis_row - (projector.rows - 0.5)) * projector.pixel_mm,
+  return {radius_mm, (projector.axis_row - (projector.rows - 0.5)) * projector.pixel_mm,
           (projector.axis_row + 0.5) * projector.pixel_mm};
 }
 
@@ -105,12 +125,12 @@ model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, c
                              (first + lattice.z_phase + 0.5) * voxel_mm);
 }
 
-void require_writable(const Extent& part, const Writable& room, const std::string& subject) {
-  if (part.radius_mm > room.radius_mm + rounding_mm) {
-    throw Error{Fault::data, subject + ": reaches " + format_number(part.radius_mm, 4) +
-                                 " mm from the axis, beyond the writable radius of " +
-                                 format_number(room.radius_mm, 4) + " mm; --fit-writable shrinks it"};
-  }
+void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject) {
+  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach");
+}
+
+void require_writable(const Extent& part, const Writable& room, double voxel_mm, const std::string& subject) {
+  require_radius(part.radius_mm, room, voxel_mm, subject + ": reaches");
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
                                  format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +

@@ -18,6 +18,7 @@ struct Placement {
   Point rotate_deg{};            // about x, then y, then z, fixed axes
   std::optional<double> fit_mm;  // largest dimension
   bool fit_writable = false;     // as large as the writable cylinder allows; needs `centre`
+  double voxel_mm = 0;           // fit_writable keeps the centres of all voxels that the surface cuts lit
   bool centre = true;            // middle of the bounding box to the origin
   double stretch_z = 1;          // [OST22 eq S5]: 1 / M_vp undoes the projector's vertical magnification
 };
@@ -28,7 +29,8 @@ struct Writable {
   double low_mm = 0;  // z, in the stretched frame of the focal plane
   double high_mm = 0;
 };
-[[nodiscard]] Writable writable(const model::Printer& printer);
+/// Of that radius (optics::writable_radius_mm), as high as the projector's rows.
+[[nodiscard]] Writable writable(const model::Printer& printer, double radius_mm);
 
 /// Extent of a placed part.
 struct Extent {
@@ -38,7 +40,8 @@ struct Extent {
 [[nodiscard]] Extent extent(const model::TriangleSoup& soup);
 [[nodiscard]] Extent extent(const Field& field);
 
-/// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size.
+/// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size, or when
+/// voxels are too large for fit_writable.
 [[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
                            const std::string& subject);
 [[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room,
@@ -59,8 +62,11 @@ struct Lattice {
 [[nodiscard]] model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
                                       const std::string& subject);
 
-/// Throws Fault::data, with both numbers and the remedy, when the part leaves the writable cylinder.
-void require_writable(const Extent& part, const Writable& room, const std::string& subject);
+/// Throws Fault::data, with both numbers, also in voxels, and the remedy, when the part leaves the writable cylinder.
+void require_writable(const Extent& part, const Writable& room, double voxel_mm, const std::string& subject);
+
+/// The same for the centre of the farthest voxel that the part covers: what vam-optimize looks at.
+void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject);
 
 /// Throws Fault::data when an insert is wider than the vial.
 void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject);

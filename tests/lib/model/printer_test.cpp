@@ -7,7 +7,6 @@ using namespace vam::model;
 TEST_CASE("the default printer is that of RAY21") {
   const Printer printer;
   CHECK(*lens_distance_mm(printer.projector) == doctest::Approx(1.8 * 1024 * 0.065));
-  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7 / 1.53));
 }
 
 TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric lens") {
@@ -20,18 +19,4 @@ TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric
   const double shortened = 20 * (1 - 1 / 1.4) + 12.7 * (1 / 1.4 - 1 / 1.53);
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - shortened / 119.808));
   CHECK(1 / vertical_magnification(printer) == doctest::Approx(1.0572).epsilon(1e-4));
-}
-
-TEST_CASE("a glass wall does not narrow what is lit, until the resin itself ends") {
-  Printer printer;
-  printer.vial.wall_mm = 1;
-  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7 / 1.53));
-  printer.vial.wall_mm = 6;
-  CHECK(writable_radius_mm(printer) == doctest::Approx(6.7));
-}
-
-TEST_CASE("a matched bath opens the whole vial") {
-  Printer printer;
-  printer.bath.index = 1.53;
-  CHECK(writable_radius_mm(printer) == doctest::Approx(12.7));
 }

@@ -11,6 +11,7 @@
 #include "light/vial.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
+#include "optics/writable.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/run/volume.hpp"
@@ -70,7 +71,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   const std::string name = automatic ? automatic_method : method;
   VolumeTask task;
   task.source.slices = part.grid.nz;
-  task.circle = vam::model::writable_circle(part.grid, printer);
+  task.circle = vam::model::writable_circle(part.grid, vam::optics::writable_radius_mm(printer));
   task.make = [&](double max_intensity) {
     MethodOptions options;
     options.max_intensity = max_intensity;
@@ -120,7 +121,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
 /// Of the whole part, by metrology's chief rays; voxels that the surface cuts are left out.
 inline vam::model::DoseMetrics judge(const Part& part, const vam::model::Printer& printer, const Light& light) {
   const vam::light::Simulation simulation(printer, {}, light.info, part.grid);
-  const auto circle = vam::model::writable_circle(part.grid, printer);
+  const auto circle = vam::model::writable_circle(part.grid, vam::optics::writable_radius_mm(printer));
   std::vector<vam::Image> doses(light.sinograms.size());
   simulation.dose(light.sinograms, doses);
   vam::model::DoseStatistics statistics;

@@ -73,6 +73,10 @@ TEST_CASE("to fit the writable cylinder") {
   CHECK(tall.box.high[2] == doctest::Approx(20));  // bound by the rows, after stretching
   const Field shape = make_shape("hollow-cylinder");
   CHECK(transformed(shape, place(shape, placement, room, "test")).radius_mm == doctest::Approx(8).epsilon(1e-4));
+  placement.voxel_mm = 0.5;  // the centres of voxels that the surface cuts are up to half a diagonal beyond it
+  CHECK(placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement).radius_mm == doctest::Approx(8 - 0.5 / std::sqrt(2)));
+  placement.voxel_mm = 12;
+  CHECK(data_error([&] { (void)place(shape, placement, room, "test"); }).find("smaller --voxel") != std::string::npos);
 }
 
 TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
@@ -97,7 +101,7 @@ TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
 
 TEST_CASE("a part that leaves the writable cylinder is refused with both numbers") {
   const model::Printer printer;
-  const Writable real = writable(printer);
+  const Writable real = writable(printer, 12.7 / 1.53);
   CHECK(real.radius_mm == doctest::Approx(12.7 / 1.53));
   CHECK(real.high_mm - real.low_mm == doctest::Approx(768 * 0.065));
   CHECK(real.high_mm == doctest::Approx(-real.low_mm));
@@ -106,12 +110,13 @@ TEST_CASE("a part that leaves the writable cylinder is refused with both numbers
   part.box.add({9, 1, 1});
   part.radius_mm = 9.055;
   CHECK(data_error([&] {
-          require_writable(part, real, "part");
-        }).find("9.055 mm from the axis, beyond the writable radius of 8.301 mm") != std::string::npos);
+          require_writable(part, real, 0.1, "part");
+        }).find("9.055 mm (90.55 voxels) from the axis, beyond the writable radius of 8.301 mm (83.01 voxels)") !=
+        std::string::npos);
   part.radius_mm = 8;
   part.box.high[2] = 26;
   CHECK(data_error([&] {
-          require_writable(part, real, "part");
+          require_writable(part, real, 0.1, "part");
         }).find("26 mm, but the projector's rows cover -24.96 ... 24.96 mm") != std::string::npos);
 }
 

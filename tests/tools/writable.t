@@ -1,0 +1,31 @@
+# One writable radius: what vam-slice makes as large as the printer allows, vam-optimize accepts, and both refuse alike.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+few='--set projector.columns=161 --set projector.axis_column=80 --set projector.throw_ratio=11'
+accepted() {  # accepted NAME PART...: at two voxel sizes, by the default printer and by one with few columns
+  part=$1; shift
+  for voxel in 0.3 0.41; do
+    for printer in '' "$few"; do
+      vam-slice "$@" --fit-writable --voxel $voxel $printer -o fit.vdb 2>.log/slice || cat .log/slice
+      ok "$part, voxels of $voxel mm${printer:+, few columns}" \
+        vam-optimize --angles 24 --iterations 1 --method fbp $printer fit.vdb -o fit.exr
+    done
+  done
+}
+accepted "a boat" --shape boat
+accepted "a gyroid" --shape gyroid
+if [ -n "${VAM_BUNNY:-}" ]; then accepted "the bunny" "$VAM_BUNNY"; fi
+if [ -n "${VAM_SPOT:-}" ]; then accepted "the cow" "$VAM_SPOT"; fi
+
+# One number: 80 columns of 0.065 mm with 115.115 mm to the lens are 5.1947 mm in air, 3.395 mm in the resin.
+disc='--shape cylinder:diameter=8,height=2 --voxel 0.2'
+vam-slice $disc -o disc.vdb
+fails 65 'reaches 4 mm \(20 voxels\) from the axis, beyond the writable radius of 3.395 mm \(16.98 voxels\)' \
+  vam-slice $disc $few -o out.vdb
+fails 65 'light reaches only 16.98;' vam-optimize $few disc.vdb -o out.exr
+# A part that is narrower, but whose voxels are not.
+brim='--shape cylinder:diameter=16.59,height=2 --voxel 0.4'
+fails 65 'its voxels reach 8.528 mm \(21.32 voxels\) from the axis, beyond the writable radius of 8.301 mm' vam-slice $brim -o out.vdb
+fails 65 'beside its columns 0 ... 199' vam-slice $disc --set projector.columns=200 -o out.vdb
+fails 65 'beside its columns 0 ... 199' vam-optimize disc.vdb --set projector.columns=200 -o out.exr
+done_testing
