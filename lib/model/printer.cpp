@@ -2,10 +2,22 @@
 
 namespace vam::model {
 
-std::optional<double> lens_distance_mm(const Projector& projector) {
-  if (projector.telecentric) return std::nullopt;
+namespace {
+
+std::optional<double> lens_mm(const Projector& projector, bool telecentric) {
+  if (telecentric) return std::nullopt;
   if (projector.lens_distance_mm) return projector.lens_distance_mm;
   return projector.throw_ratio * projector.columns * projector.pixel_mm;
+}
+
+}  // namespace
+
+std::optional<double> columns_lens_mm(const Projector& projector) {
+  return lens_mm(projector, projector.telecentric || projector.telecentric_columns);
+}
+
+std::optional<double> rows_lens_mm(const Projector& projector) {
+  return lens_mm(projector, projector.telecentric || projector.telecentric_rows);
 }
 
 double resin_radius_mm(const Vial& vial) { return vial.radius_mm - vial.wall_mm; }
@@ -22,7 +34,7 @@ double shortening_mm(const Printer& printer, double index_resin) {
 }
 
 double vertical_magnification(const Printer& printer) {
-  const auto distance_mm = lens_distance_mm(printer.projector);
+  const auto distance_mm = rows_lens_mm(printer.projector);
   return distance_mm ? 1.0 - shortening_mm(printer, printer.resin.index) / *distance_mm : 1.0;
 }
 

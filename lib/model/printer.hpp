@@ -14,10 +14,12 @@ struct Projector {
   double pixel_mm = 0.065;                 // pitch in the plane of the rotation axis
   double throw_ratio = 1.8;                // lens distance / image width; ignored when one of the next two is given
   std::optional<double> lens_distance_mm;  // lens to rotation axis
-  bool telecentric = false;
-  double min_intensity_mw_cm2 = 0;    // at grey 0: 0 or the contrast limit
-  double max_intensity_mw_cm2 = 3.8;  // at full grey
-  std::string response;               // CSV "grey,intensity"; empty = linear
+  bool telecentric = false;                // in both directions
+  bool telecentric_columns = false;        // chief rays are parallel seen along the rotation axis
+  bool telecentric_rows = false;           // chief rays stay level
+  double min_intensity_mw_cm2 = 0;         // at grey 0: 0 or the contrast limit
+  double max_intensity_mw_cm2 = 3.8;       // at full grey
+  std::string response;                    // CSV "grey,intensity"; empty = linear
   int bits = 8;
   double fps = 16;
   double axis_column = 511.5;          // where the rotation axis appears
@@ -86,13 +88,14 @@ struct Printer {
   Calibration calibration;
 };
 
-/// Distance from lens to rotation axis in mm, empty when telecentric.
-[[nodiscard]] std::optional<double> lens_distance_mm(const Projector& projector);
+/// Distance from lens to rotation axis in mm as the columns and as the rows see it, empty when telecentric in them.
+[[nodiscard]] std::optional<double> columns_lens_mm(const Projector& projector);
+[[nodiscard]] std::optional<double> rows_lens_mm(const Projector& projector);
 
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 
-/// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when telecentric.
+/// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when rays stay level.
 [[nodiscard]] double vertical_magnification(const Printer& printer);
 
 /// Sum over the interfaces from the outside in of distance to the axis * (1 / n_before - 1 / n_after): by how much

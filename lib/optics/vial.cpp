@@ -69,22 +69,25 @@ void check(const View& view) {
     }
     outside = shell.radius_mm;
   }
-  if (!view.lens_mm) return;
-  if (!(*view.lens_mm > radius)) {
-    throw Error{Fault::data, "lens: " + mm(*view.lens_mm) + " from the axis is inside the vial of " + mm(radius) +
+  const std::optional<double> lens_mm = view.lens_mm ? view.lens_mm : view.rows_lens_mm;
+  if (!lens_mm) return;
+  if (!(*lens_mm > radius)) {
+    throw Error{Fault::data, "lens: " + mm(*lens_mm) + " from the axis is inside the vial of " + mm(radius) +
                                  "; move it or make it telecentric"};
   }
   if (view.bath_index == 1.0) return;
-  if (!(view.window_mm >= radius && view.window_mm < *view.lens_mm)) {
+  if (!(view.window_mm >= radius && view.window_mm < *lens_mm)) {
     throw Error{Fault::data, "bath: its window stands " + mm(view.window_mm) +
                                  " before the axis, but the vial ends at " + mm(radius) + " and the lens is at " +
-                                 mm(*view.lens_mm) + "; set bath.window_mm"};
+                                 mm(*lens_mm) + "; set bath.window_mm"};
   }
 }
 
-View make_view(const model::Printer& printer, std::optional<double> lens_mm, double index_resin) {
+View make_view(const model::Printer& printer, std::optional<double> columns_lens_mm, std::optional<double> rows_lens_mm,
+               double index_resin) {
   View view;
-  view.lens_mm = view.rows_lens_mm = lens_mm;
+  view.lens_mm = columns_lens_mm;
+  view.rows_lens_mm = rows_lens_mm;
   view.bath_index = printer.bath.index;
   view.window_mm = printer.bath.window_mm;
   if (printer.vial.wall_mm > 0) view.shells.push_back({printer.vial.radius_mm, printer.vial.index_glass});
@@ -96,11 +99,12 @@ View make_view(const model::Printer& printer, std::optional<double> lens_mm, dou
 }  // namespace
 
 View projector_view(const model::Printer& printer) {
-  return make_view(printer, model::lens_distance_mm(printer.projector), printer.resin.index);
+  return make_view(printer, model::columns_lens_mm(printer.projector), model::rows_lens_mm(printer.projector),
+                   printer.resin.index);
 }
 
 View camera_view(const model::Printer& printer) {
-  return make_view(printer, printer.camera.distance_mm, printer.camera.index_resin);
+  return make_view(printer, printer.camera.distance_mm, printer.camera.distance_mm, printer.camera.index_resin);
 }
 
 ChiefRay chief_ray(const View& view, double x_p_mm) {

@@ -77,7 +77,7 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   finding.facts["settings"] = {
       {"pitch_px", options.pitch_px},           {"width_px", options.width_px},
       {"positions", scan.column.size()},        {"heights", options.bands},
-      {"pixel_mm", printer.projector.pixel_mm}, {"throw_mm", model::lens_distance_mm(printer.projector).value_or(0)}};
+      {"pixel_mm", printer.projector.pixel_mm}, {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
   if (found.axis_column.sigma > wanted_axis_sigma_px) {
     finding.fail_because("the standard deviation of the centre is " + format_number(found.axis_column.sigma, 3) +
                          " px, above " + format_number(wanted_axis_sigma_px));

@@ -25,6 +25,8 @@ const std::vector<PrinterField> fields{
     {"projector", "throw_ratio", at<&Printer::projector, &Projector::throw_ratio>, "lens distance / image width", 0, 1e6, true},
     {"projector", "lens_distance_mm", at<&Printer::projector, &Projector::lens_distance_mm>, "lens to rotation axis; replaces throw_ratio", 0, 1e9, true},
     {"projector", "telecentric", at<&Printer::projector, &Projector::telecentric>, "parallel chief rays; replaces throw_ratio"},
+    {"projector", "telecentric_columns", at<&Printer::projector, &Projector::telecentric_columns>, "parallel chief rays seen along the rotation axis only"},
+    {"projector", "telecentric_rows", at<&Printer::projector, &Projector::telecentric_rows>, "level chief rays: parallel seen from the side only"},
     {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "at grey 0: what leaks when black", 0, huge},
     {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "at full grey", 0, huge, true},
     {"projector", "response", at<&Printer::projector, &Projector::response>, "CSV file \"grey,intensity\", relative to this file; empty: linear"},
@@ -119,7 +121,7 @@ std::string contradiction(const Printer& printer) {
   if (bath.window_mm > 0 && bath.window_mm < vial.radius_mm) {
     return "bath.window_mm " + mm(bath.window_mm) + " cuts into vial.radius_mm " + mm(vial.radius_mm);
   }
-  const auto lens_mm = lens_distance_mm(projector);
+  const auto lens_mm = columns_lens_mm(projector) ? columns_lens_mm(projector) : rows_lens_mm(projector);
   const double obstacle_mm = std::max(vial.radius_mm, bath.window_mm);
   if (lens_mm && *lens_mm <= obstacle_mm) {
     return "the projector's lens, " + mm(*lens_mm) + " from the axis, is not outside " +

@@ -48,7 +48,7 @@ std::vector<double> blurred(const std::vector<double>& light, double sigma) {
 SimBeams::SimBeams(const model::Printer& printer)
     : pixel_mm_(printer.projector.pixel_mm), radius_mm_(model::resin_radius_mm(printer.vial)) {
   const SimShells shells = outer_shells(printer, printer.resin.index);
-  const auto lens_mm = model::lens_distance_mm(printer.projector);
+  const auto lens_mm = model::columns_lens_mm(printer.projector);
   double grazing_mm = 0;
   double outside_mm = printer.vial.radius_mm;
   while (sim_ray(outside_mm, lens_mm, shells).enters) outside_mm *= 2;

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "light/lit_grid.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;
@@ -80,6 +81,34 @@ TEST_CASE("a projector's stack is traced, with the printer's own columns") {
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::projector, 199, 0.15), grid), Error);
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::projector, 200, 0.16), grid), Error);
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::camera, 200, 0.15), grid), Error);
+}
+
+TEST_CASE("light stays level where rows are telecentric") {
+  model::Printer printer = small_printer();
+  printer.projector.lens_distance_mm = 40;
+  model::StackInfo info = stack(model::Space::projector, 200, 0.15, 9);
+  info.z_start_mm = 6;
+  const model::Grid grid = model::centred_grid(20, 20, 9, 0.15, info.z_start_mm);
+  std::vector<Image> rows(9, Image(200, 180));
+  rows[4].values.assign(rows[4].size(), 1.0F);
+  const auto elsewhere = [&] {  // share of the middle row's light that is in other slices than its own
+    std::vector<Image> doses(9);
+    Simulation(printer, {}, info, grid).dose(rows, doses);
+    double own = 0, others = 0;
+    for (std::size_t k = 0; k < doses.size(); ++k) {
+      for (const float dose : doses[k].values) (k == 4 ? own : others) += static_cast<double>(dose);
+    }
+    CHECK(own > 0);
+    return others / (own + others);
+  };
+  CHECK(elsewhere() > 0.1);
+  printer.projector.telecentric_columns = true;
+  CHECK(elsewhere() > 0.1);
+  CHECK(lit_margin(printer, grid).above > 0);
+  printer.projector.telecentric_columns = false;
+  printer.projector.telecentric_rows = true;
+  CHECK(elsewhere() == 0);
+  CHECK(lit_margin(printer, grid).above == 0);
 }
 
 TEST_CASE("grids: cubes, and slices that are slices of the volume") {

@@ -6,7 +6,7 @@ using namespace vam::model;
 
 TEST_CASE("the default printer is that of RAY21") {
   const Printer printer;
-  CHECK(*lens_distance_mm(printer.projector) == doctest::Approx(1.8 * 1024 * 0.065));
+  CHECK(*columns_lens_mm(printer.projector) == doctest::Approx(1.8 * 1024 * 0.065));
 }
 
 TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric lens") {
@@ -14,7 +14,12 @@ TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - 12.7 * (1 - 1 / 1.53) / 119.808));
   printer.projector.telecentric = true;
   CHECK(vertical_magnification(printer) == 1.0);
-  printer.projector.telecentric = false;  // an index bath behind a window: each layer shortens the way
+  printer.projector.telecentric = false;
+  printer.projector.telecentric_columns = true;
+  CHECK(vertical_magnification(printer) < 1);
+  printer.projector.telecentric_rows = true;
+  CHECK(vertical_magnification(printer) == 1.0);
+  printer.projector.telecentric_rows = false;  // an index bath behind a window: each layer shortens the way
   printer.bath = {1.4, 20};
   const double shortened = 20 * (1 - 1 / 1.4) + 12.7 * (1 / 1.4 - 1 / 1.53);
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - shortened / 119.808));

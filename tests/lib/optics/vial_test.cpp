@@ -155,6 +155,17 @@ TEST_CASE("views are built from the printer") {
   CHECK(camera.shells[1].index == 1.5);
 }
 
+TEST_CASE("a projector may be telecentric in one direction only") {
+  model::Printer printer;
+  printer.projector.telecentric_columns = true;
+  CHECK(!projector_view(printer).lens_mm);
+  CHECK(*projector_view(printer).rows_lens_mm == doctest::Approx(1.8 * 1024 * 0.065));
+  printer.projector.telecentric_columns = false;
+  printer.projector.telecentric_rows = true;
+  CHECK(projector_view(printer).lens_mm);
+  CHECK(!projector_view(printer).rows_lens_mm);
+}
+
 TEST_CASE("impossible geometries are refused") {
   model::Printer printer;
   printer.vial.wall_mm = 12.7;
@@ -167,4 +178,7 @@ TEST_CASE("impossible geometries are refused") {
   CHECK_THROWS_AS(static_cast<void>(projector_view(printer)), Error);
   printer.projector.telecentric = true;  // then it does not matter
   CHECK_NOTHROW(static_cast<void>(projector_view(printer)));
+  printer.projector.telecentric = false;
+  printer.projector.telecentric_columns = true;  // its rows diverge in front of the window
+  CHECK_THROWS_AS(static_cast<void>(projector_view(printer)), Error);
 }

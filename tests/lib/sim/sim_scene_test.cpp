@@ -87,7 +87,7 @@ TEST_CASE("A lit column glows while it crosses resin: up to R_e = R / sqrt(1 - (
   bench.printer.camera.azimuth_deg = 90;
   bench.bodies.clear();
   const auto& projector = bench.printer.projector;
-  const double distance_mm = *model::lens_distance_mm(projector);
+  const double distance_mm = *model::columns_lens_mm(projector);
   const double ratio = bench.printer.vial.radius_mm / distance_mm;
   const double edge_px = bench.printer.vial.radius_mm / std::sqrt(1 - ratio * ratio) / projector.pixel_mm;
   bench.centre_px = 5;
