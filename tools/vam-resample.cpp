@@ -5,9 +5,12 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "io/stream/stream.hpp"
+#include "optics/climb.hpp"
 #include "optics/resample_stack.hpp"
 #include "printer.hpp"
 #include "vam-resample/options.hpp"
@@ -17,10 +20,33 @@ namespace {
 using namespace vam;
 using resample_tool::Options;
 
+void explain(const Options& options, const model::Printer& printer, const optics::ResampleOptions& how) {
+  const bool projector = options.to == "projector";
+  const optics::Detector detector = projector ? optics::projector_detector(printer, options.alignment)
+                                              : optics::camera_detector(printer, options.alignment);
+  std::ostringstream map;
+  if (options.row) {
+    optics::write_rays(map, printer, detector, *options.row);
+  } else {
+    optics::write_map(map, projector ? optics::projector_view(printer) : optics::camera_view(printer), detector, how);
+  }
+  io::write_text(options.output, map.str());
+}
+
+/// Half a slice: up to there light stays in its own.
+void warn_of_climb(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
+  constexpr double noticed = 0.5;
+  const double strayed = optics::strayed_slices(printer, info);
+  if (strayed < noticed) return;
+  warn((options.input == "-" ? "stdin" : options.input) + ": the projector's rays climb, by up to " +
+       format_number(strayed, 3) +
+       " voxels out of their slice; resampling takes them as level, vam-optimize --geometry vial does not");
+}
+
 void run(const cli::App& app, Options& options) {
-  check(options);
   const bool projector = options.to == "projector";
   const model::Printer printer = tool::load_printer(options.printer);
+  check(options, printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
 
   optics::ResampleOptions how;
@@ -29,14 +55,7 @@ void run(const cli::App& app, Options& options) {
   how.jacobian = projector ? !options.no_jacobian : options.jacobian;
   how.keep_negative = !projector || options.keep_negative;
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
-  if (options.explain) {
-    std::ostringstream map;
-    optics::write_map(map, projector ? optics::projector_view(printer) : optics::camera_view(printer),
-                      projector ? optics::projector_detector(printer, options.alignment)
-                                : optics::camera_detector(printer, options.alignment),
-                      how);
-    return io::write_text(options.output, map.str());
-  }
+  if (options.explain) return explain(options, printer, how);
 
   io::refuse_same_file(options.input, options.output);
   io::StackReader in(options.input);
@@ -58,6 +77,7 @@ void run(const cli::App& app, Options& options) {
     return resampled;
   });
   out.commit();
+  if (projector) warn_of_climb(options, printer, in.info());
 }
 
 }  // namespace

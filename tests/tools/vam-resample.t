@@ -35,6 +35,29 @@ ok "a map to a camera" vam-resample --explain --to virtual -o camera.csv
 ok "settings in force" vam-resample --print-printer -o printer.toml
 ok "which can be read back" vam-resample --printer printer.toml --explain -o map2.csv
 
+# Rays that climb
+top=$(vam-resample --explain --row 0 | awk -F, 'NR == 2 + 650 { print $1 " " $2 " " $3 " " $4 }')
+is "column and row, and where they are in the image" "$top" "650 0 9.0025 24.9275"
+# At the axis: s = z / sqrt(D^2 + z^2), climb = s / sqrt(n^2 - s^2), the height that of the ray at the surface less R climb.
+vam-resample --explain --row 0 --set projector.axis_column=512 | awk -F, '$1 == 512 { print $5, $6, $7, $8 }' >ray
+holds "the ray through the axis climbs by Snell's law" "$(awk '{ z = 24.9275; D = 119.808; s = z / sqrt(D * D + z * z)
+  climb = s / sqrt(1.53 ^ 2 - s * s); height = z * (D - 12.7) / D + 12.7 * climb
+  print ($1 ^ 2 + ($2 - height) ^ 2 + ($3 - climb) ^ 2 + $4 ^ 2) }' ray) < 1e-14"
+is "level rays do not" "$(vam-resample --explain --row 0 --set projector.telecentric_rows=true | awk -F, '$7 > 0' | wc -l)" 1
+is "the middle row is that of the map" \
+  "$(vam-resample --explain --row 383 --set projector.axis_row=383 | awk -F, 'NR > 1 { print $3 "," $5 "," $8 "," $9 }' | cksum)" \
+  "$(vam-resample --explain | awk -F, 'NR > 1 { print $1 "," $2 "," $3 "," $4 }' | cksum)"
+fails 64 '--row: requires --explain' vam-resample --row 3 virtual.exr -o x.exr
+fails 64 'does not apply' vam-resample --explain --to virtual --row 3 -o x.csv
+fails 64 'rows are 0 ... 767' vam-resample --explain --row 768 -o x.csv
+$exr make tall.exr width=64 height=60 pixel=0.26 row=0.26 count=51
+vam-resample tall.exr -o tall-p.exr 2>tall.err
+is "a part whose light strays is resampled with one line on stderr" "$(wc -l <tall.err)" 1
+grep -Eq "tall.exr: the projector's rays climb, by up to 2\.[34].* voxels" tall.err; report $? "which says by how much"
+quiet "level rays need none" vam-resample --set projector.telecentric_rows=true tall.exr -o level.exr
+quiet "parallel ones neither" vam-resample --set projector.telecentric=true tall.exr -o level.exr
+quiet "nor do a few slices" vam-resample virtual.exr -o few.exr
+
 # Alignment
 vam-resample --column-offset 10 virtual.exr >moved.exr
 is "the image moves by the column offset" "$($exr get moved.exr 1 610 7)" "$($exr get pipe.exr 1 600 7)"

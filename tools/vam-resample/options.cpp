@@ -12,6 +12,9 @@ void declare(cli::App& app, Options& options) {
   app.flag("--explain", options.explain,
            "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is "
            "read.");
+  app.option("--row", "N", options.row, {0, 65535},
+             "--explain: the exact rays of this row of the projector, from 0 at the top, instead of level ones: "
+             "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.");
   app.group("Weights");
   app.flag("--no-fresnel", options.no_fresnel, "--to projector: do not divide by the transmittance T.");
   app.flag("--no-jacobian", options.no_jacobian, "--to projector: do not multiply by J.");
@@ -35,7 +38,7 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
-void check(const Options& options) {
+void check(const Options& options, const model::Printer& printer) {
   const bool projector = options.to == "projector";
   const auto refuse = [&](bool given, const char* flag) {
     if (given) throw Error{Fault::usage, std::string(flag) + ": does not apply to --to " + options.to};
@@ -44,6 +47,12 @@ void check(const Options& options) {
   refuse(projector && options.jacobian, "--jacobian");
   refuse(projector && options.voxel_mm, "--voxel");
   refuse(projector && options.columns, "--columns");
+  refuse(!projector && options.row, "--row");
+  if (options.row && !options.explain) throw Error{Fault::usage, "--row: requires --explain"};
+  if (options.row && *options.row >= printer.projector.rows) {
+    throw Error{Fault::usage, "--row " + std::to_string(*options.row) + ": the projector's rows are 0 ... " +
+                                  std::to_string(printer.projector.rows - 1)};
+  }
   refuse(!projector && options.no_fresnel, "--no-fresnel");
   refuse(!projector && options.no_jacobian, "--no-jacobian");
 }

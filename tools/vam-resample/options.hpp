@@ -26,13 +26,14 @@ struct Options {
   std::optional<double> voxel_mm;
   std::optional<int> columns;
   bool explain = false;
+  std::optional<int> row;  // of the projector, whose rays to explain
   cli::PrinterOptions printer;
   io::StackOptions stack;
 };
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
-/// Throws Fault::usage for options that have no meaning in this direction.
-void check(const Options& options);
+/// Throws Fault::usage for options that have no meaning in this direction, and for rows that the projector lacks.
+void check(const Options& options, const model::Printer& printer);
 
 }  // namespace vam::resample_tool
