@@ -8,6 +8,7 @@
 #include "device/os/interrupt.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
+#include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
 #include "score/exposure.hpp"
@@ -91,11 +92,14 @@ void run(const cli::App& app, Options& options) {
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int, const Image& image) { sink.add(image); };
 
+  const std::string subject = options.input == "-" ? "stdin" : options.input;
+  optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   const auto outcome = optimize::optimise(task, *make_light(scene, options));
   if (outcome.reason == "interrupted") {
     checkpoint->keep();
     return;
   }
+  optimize::require_light(outcome, subject);
   sink.finish();
   publish(outcome, printer, options);
   sink.commit();

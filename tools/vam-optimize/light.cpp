@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "light/attenuated.hpp"
 #include "light/blur.hpp"
 #include "light/parallel.hpp"
@@ -28,6 +30,16 @@ light::VialSetup vial_setup(const Scene& scene, const Options& options) {
   return setup;
 }
 
+/// Rows beyond the projector's stay dark.
+void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
+  const double low_mm = grid.z_mm(0);
+  const double high_mm = grid.z_mm(grid.nz - 1);
+  if (high_mm >= setup.lowest_mm && low_mm <= setup.highest_mm) return;
+  throw Error{Fault::data, "the slices span z = " + format_number(low_mm, 4) + " ... " + format_number(high_mm, 4) +
+                               " mm, but the projector's rows cover " + format_number(setup.lowest_mm, 4) + " ... " +
+                               format_number(setup.highest_mm, 4) + " mm; check projector.axis_row"};
+}
+
 }  // namespace
 
 Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options) {
@@ -36,7 +48,11 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
   Scene scene{lit, margin, printer, model::writable_circle(lit, optics::writable_radius_mm(printer)), {}};
   const int columns = options.columns.value_or(optimize::columns_for(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
-  if (options.geometry != "vial") scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
+  if (options.geometry == "vial") {
+    require_rows(grid, vial_setup(scene, options));
+  } else {
+    scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
+  }
   return scene;
 }
 

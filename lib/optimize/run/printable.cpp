@@ -1,0 +1,54 @@
+#include "optimize/run/printable.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+float largest_inside(const std::vector<float>& slice, light::Shape shape, const Circle& circle) {
+  float most = 0;
+  for (int y = 0; y < shape.height; ++y) {
+    for (int x = 0; x < shape.width; ++x) {
+      const float value =
+          slice[static_cast<std::size_t>(y) * static_cast<std::size_t>(shape.width) + static_cast<std::size_t>(x)];
+      if (value > most && circle.contains(x, y)) most = value;
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+void require_printable(const VolumeTask& task, light::Shape shape, const std::string& subject) {
+  constexpr float half = 0.5F;
+  if (task.demands.grey) return;
+  std::vector<float> slice(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+  float most = 0;
+  for (int k = 0; k < task.source.slices && most < half; ++k) {
+    task.source.target(k, 1, slice.data());
+    most = std::max(most, largest_inside(slice, shape, task.circle));
+  }
+  if (most <= model::coverage_rounding || most >= half) return;
+  throw Error{Fault::data, subject + ": the part covers no voxel by half (the most is " + format_number(most, 2) +
+                               "), so that no slice would get light; take smaller voxels or a thicker part"};
+}
+
+void require_light(const VolumeOutcome& outcome, const std::string& subject) {
+  if (outcome.metrics.part == 0) {
+    throw Error{Fault::data, subject + ": no voxel of the part is asked to print (" +
+                                 std::to_string(outcome.dark_part_voxels) +
+                                 " are in an insert's shadow); check inserts, weights and tolerances"};
+  }
+  if (outcome.metrics.max_part <= 0) {
+    throw Error{Fault::data, subject +
+                                 ": no light reaches the part; check that the projector's columns and rows and "
+                                 "--max-intensity cover it"};
+  }
+}
+
+}  // namespace vam::optimize

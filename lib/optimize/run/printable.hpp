@@ -1,0 +1,17 @@
+// Whether there is anything to print, before and after the work.
+#pragma once
+
+#include <string>
+
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+/// Throws Fault::data when no slice of a part has a voxel that is covered by half or more: then every slice stays dark
+/// (append). Empty targets are left to check().
+void require_printable(const VolumeTask& task, light::Shape shape, const std::string& subject);
+
+/// Throws Fault::data when no voxel was asked to be part, or when none of these got light.
+void require_light(const VolumeOutcome& outcome, const std::string& subject);
+
+}  // namespace vam::optimize
