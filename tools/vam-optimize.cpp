@@ -99,7 +99,7 @@ void run(const cli::App& app, Options& options) {
     checkpoint->keep();
     return;
   }
-  optimize::require_light(outcome, subject);
+  if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
   sink.finish();
   publish(outcome, printer, options);
   sink.commit();
