@@ -156,14 +156,14 @@ void TileLight::each_piece(int angle, std::span<SlabType> sinograms, const Visit
 
 void TileLight::fetch(int angle, std::span<const Slab> sinograms) {
   light_.assign(product(columns_, rows_), 0.0F);
-  const std::ptrdiff_t next = rays_.columns() * lanes;  // the next stage angle
+  const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
   each_piece(angle, sinograms, [&](const float* from, std::size_t at, int columns, int rows) {
     Kernels::best().copy(from, columns, rows, rows_, next, light_.data() + at);
   });
 }
 
 void TileLight::put_back(int angle, std::span<Slab> sinograms) const {
-  const std::ptrdiff_t next = rays_.columns() * lanes;
+  const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));
   each_piece(angle, sinograms, [&](float* to, std::size_t at, int columns, int rows) {
     Kernels::best().add(light_.data() + at, columns, rows, rows_, next, to);
   });
@@ -189,8 +189,9 @@ void TileLight::cast_shadow(int angle) {
   depth_.assign(product(taps_.taps, taps_.pitch), 0.0F);
   for (int e = 0; e < count(); ++e) {
     const int voxel = tile_->voxels[static_cast<std::size_t>(e)];
+    const int j = j0_ + voxel / edge;
     const double x = grid.x_mm(i0_ + voxel % edge);
-    const double y = grid.y_mm(j0_ + voxel / edge);
+    const double y = grid.y_mm(j);
     for (int k = 0; k < taps_.taps; ++k) {
       const int column = std::clamp(taps_.cell[e] + k - rays_.padding(), 0, rays_.columns() - 1);
       depth_[product(k, taps_.pitch) + static_cast<std::size_t>(e)] = shadow_.depth_mm(x, y, angle, column);
