@@ -113,12 +113,37 @@ VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(tabl
   const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
   const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
   taps_ = static_cast<int>(std::ceil(std::numbers::sqrt2 * static_cast<double>(widest))) + 1;
+  require_gentle(level);
   for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta =
         setup_.direction * (setup_.turn.start_rad + a * setup_.turn.step_rad) + setup_.angle_offset_rad;
     cosines_.push_back(static_cast<float>(std::cos(theta)));
     sines_.push_back(static_cast<float>(std::sin(theta)));
   }
+}
+
+/// The row kernels hold a tile's rows: 64 slices under the largest zoom, and what the rays climb across the tile.
+void VialRays::require_gentle(RayNodes& nodes) const {
+  if (!climbs()) return;
+  constexpr float least_zoom = 0.55F, largest_zoom = 1.85F;
+  constexpr double steepest = 1.7;
+  const double top = top_mm();
+  float low = 1, high = 1;
+  for (const double z : {0.0, top}) {
+    table_.at_height(z, scale(), nodes);
+    for (const RayNode& node : nodes) {
+      low = std::min(low, node.zoom);
+      high = std::max(high, node.zoom);
+    }
+  }
+  const double climb = std::abs(optics::skew_ray(setup_.view, 0, top).climb);
+  if (low >= least_zoom && high <= largest_zoom && climb <= steepest) return;
+  throw Error{Fault::data, "projector: its lens, " + format_number(*setup_.view.rows_lens_mm, 4) +
+                               " mm from the axis, is too near: across the vial rows are " +
+                               format_number(static_cast<double>(low), 3) + " to " +
+                               format_number(static_cast<double>(high), 3) +
+                               " times as dense as on the axis, and 0.55 to 1.85 times can be followed; check "
+                               "projector.throw_ratio and projector.lens_distance_mm"};
 }
 
 int VialRays::chunk(double r_mm) const {

@@ -13,7 +13,8 @@ namespace vam::light {
 /// between rows.
 class VialRays {
  public:
-  /// Throws Fault::data unless the rows are one turn, or when no column of the projector lights the resin.
+  /// Throws Fault::data unless the rows are one turn, when no column of the projector lights the resin, and when the
+  /// lens is so near that rays climb too steeply.
   explicit VialRays(const VialSetup& setup);
 
   [[nodiscard]] const VialSetup& setup() const { return setup_; }
@@ -54,6 +55,7 @@ class VialRays {
   [[nodiscard]] double top_mm() const;
   [[nodiscard]] RayTable::Setup table_setup() const;
   [[nodiscard]] RayScale scale() const;
+  void require_gentle(RayNodes& nodes) const;
 
   VialSetup setup_;
   RayTable table_;

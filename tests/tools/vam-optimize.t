@@ -30,7 +30,7 @@ quiet "in so many turns" vam-optimize --angles 180 $resin --turns 3 --report tur
 is "it takes the turns that were asked for" "$(value turns.json turns)" 3
 vam-dose turns.exr --like part.vdb $resin --exposure-plan -o dose.vdb --report plan.json
 is "vam-dose plans the same" "$(value plan.json turns)" 3
-fails 64 'where everything is lit from all sides' vam-optimize --angles 60 --max-intensity 0.05 part.vdb -o out.exr
+fails 64 'if every pixel is lit at every angle' vam-optimize --angles 60 --max-intensity 0.05 part.vdb -o out.exr
 fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --turns 3 part.vdb -o out.exr
 fails 64 'omit --max-intensity' vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr
 fails 64 'method fbp has no maximum intensity' vam-optimize --method fbp --turns 3 part.vdb -o out.exr
@@ -151,6 +151,7 @@ fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
 fails 65 '90 angles' vam-optimize --angles 80 --init cal.exr part.vdb -o out.exr
 fails 65 'projector' vam-optimize --geometry parallel --angles 90 --init projector.exr part.vdb -o out.exr
+fails 65 'its lens, 16.64 mm from the axis, is too near' vam-optimize --set projector.throw_ratio=0.25 boat.vdb -o out.exr
 fails 65 'light reaches only' vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
 # Nothing to print: a disc and a rod thinner than half a voxel, and rows that pass below the part
 vam-slice --shape cylinder:diameter=6,height=0.18 --stretch-z 1 --voxel 0.2 -o flat.vdb

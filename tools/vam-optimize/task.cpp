@@ -63,10 +63,6 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
   return source;
 }
 
-}  // namespace
-
-namespace {
-
 /// Full grey for so many turns gives the critical dose where the relative dose is the threshold: intensity over the
 /// limit is irradiance over the lamp's.
 optimize::IntensityLimit limit(const Scene& scene, const Options& options) {

@@ -40,8 +40,13 @@ Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, ligh
   return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
 }
 
-/// Mean dose inside the circle of intensity 1 from everywhere.
-double even_dose(const light::Operator& light, const Circle& circle, int slices) {
+/// Dose inside the circle where every pixel has intensity 1 at every angle.
+struct EvenDose {
+  double mean = 0;
+  double largest = 0;
+};
+
+EvenDose even_dose(const light::Operator& light, const Circle& circle, int slices) {
   const auto count = static_cast<std::size_t>((slices + lanes - 1) / lanes);
   Slab even(light.image().width, light.image().height);
   std::fill(even.values.begin(), even.values.end(), 1.0F);
@@ -49,18 +54,22 @@ double even_dose(const light::Operator& light, const Circle& circle, int slices)
   for (Slab& slab : sinograms) light.collapse(even, slab);
   std::vector<Slab> dose = slabs(count, light.object().width, light.object().height);
   light.adjoint(sinograms, dose);
+  EvenDose result;
   double sum = 0;
   std::int64_t voxels = 0;
   for (int y = 0; y < light.object().height; ++y) {
     for (int x = 0; x < light.object().width; ++x) {
       if (!circle.contains(x, y)) continue;
       for (int k = 0; k < slices; ++k) {
-        sum += static_cast<double>(dose[static_cast<std::size_t>(k / lanes)].at(x, y)[k % lanes]);
+        const auto here = static_cast<double>(dose[static_cast<std::size_t>(k / lanes)].at(x, y)[k % lanes]);
+        sum += here;
+        result.largest = std::max(result.largest, here);
       }
       voxels += slices;
     }
   }
-  return sum / static_cast<double>(voxels);
+  result.mean = voxels > 0 ? sum / static_cast<double>(voxels) : 0;
+  return result;
 }
 
 /// One pass after the other.
@@ -120,15 +129,18 @@ class Run {
   void settle_limit() {
     const IntensityLimit& limit = task_.limit;
     if (limit.most <= 0 && limit.of_even <= 0) return;
+    const EvenDose even = even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
+    if (!(even.mean > 0)) return;  // dark: nothing to limit
     const double threshold = task_.demands.window.threshold();
-    even_intensity_ = threshold / even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
+    even_intensity_ = threshold / even.mean;
     max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * even_intensity_;
-    if (max_intensity_ >= even_intensity_) return;
-    throw Error{Fault::usage, "--max-intensity " + format_number(max_intensity_) + ": gives a mean dose of " +
-                                  format_number(threshold * max_intensity_ / even_intensity_) +
-                                  " where everything is lit from all sides, and the threshold is " +
-                                  format_number(threshold) + "; at least " + format_number(even_intensity_) +
-                                  " is needed, and some 1.5 times that to print"};
+    const double reached = max_intensity_ * even.largest;
+    if (task_.demands.grey || reached >= threshold) return;
+    throw Error{Fault::usage, "an intensity of at most " + format_number(max_intensity_, 3) +
+                                  " (--max-intensity, --turns) gives a dose of at most " + format_number(reached, 3) +
+                                  " if every pixel is lit at every angle, and the threshold is " +
+                                  format_number(threshold) + "; more than " +
+                                  format_number(threshold / even.largest, 3) + " is needed"};
   }
 
   /// False when the pass was interrupted.

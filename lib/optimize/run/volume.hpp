@@ -15,8 +15,8 @@
 
 namespace vam::optimize {
 
-/// Upper bound on projected intensity. Even intensity is the one that, projected everywhere from all sides, gives the
-/// threshold dose on average: no part is printed by less.
+/// Upper bound on projected intensity. Even intensity is the one that, projected by every pixel at every angle, gives
+/// the threshold dose on average.
 struct IntensityLimit {
   double most = 0;     // 0: none
   double of_even = 0;  // else so many times the even intensity

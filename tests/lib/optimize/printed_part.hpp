@@ -64,7 +64,7 @@ inline vam::model::StackInfo stack_info(const Part& part, int angles) {
 
 /// Projector's light for the part. `method` as vam-optimize takes it; resampled: by way of parallel light.
 inline Light make_light(const Part& part, const vam::model::Printer& printer, int angles, const std::string& method,
-                        bool resampled) {
+                        bool resampled, bool limited = true) {
   using namespace vam::optimize;
   using namespace vam::light;
   const bool automatic = method == "auto";
@@ -77,7 +77,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
     options.max_intensity = max_intensity;
     return make_method(name, options);
   };
-  if (automatic) task.limit.of_even = usual_of_even;
+  if (automatic && limited) task.limit.of_even = usual_of_even;
   task.limits.iterations = method_entry(name).iterations;
   if (automatic) {
     task.limits.until = vam::model::parse_conditions(automatic_until, SliceFigures::names());

@@ -400,7 +400,18 @@ TEST_CASE("an intensity limit that cannot print is refused with the least that c
   VolumeTask task;
   task.limit.most = 0.01;
   CHECK_THROWS_WITH_AS(run({vam::oracle::wheel(size)}, task),
-                       doctest::Contains("where everything is lit from all sides, and the threshold is 0.8"), Error);
+                       doctest::Contains("if every pixel is lit at every angle, and the threshold is 0.8"), Error);
+}
+
+TEST_CASE("a grey target may need less intensity than a print") {
+  VolumeTask task;
+  task.demands.grey = true;
+  task.limit.most = 0.01;
+  task.limits.iterations = 1;
+  task.make = [](double) { return make_method("apg", {}); };
+  std::vector<float> faint = vam::oracle::wheel(size);
+  for (float& v : faint) v *= 0.02F;
+  CHECK_NOTHROW(run({faint}, task));
 }
 
 TEST_CASE("the even intensity gives the threshold dose on average") {
