@@ -22,11 +22,11 @@ struct Projector {
   std::string response;                    // CSV "grey,intensity"; empty = linear
   int bits = 8;
   double fps = 16;
-  double axis_column = 511.5;          // where the rotation axis appears
-  double axis_row = 383.5;             // the row of z = 0 of a centred part
-  std::string orientation = "normal";  // normal, flip-columns, flip-rows, rotate-180
-  double latency_ms = 0;               // from a vertical blank to the light
-  int max_led_current = 100;           // of the light engine, in its own steps; more is refused
+  double axis_column = 511.5;           // where the rotation axis appears
+  double axis_row = 383.5;              // the row of z = 0 of a centred part
+  std::string orientation = "normal";   // normal, flip-columns, flip-rows, rotate-180
+  double latency_ms = 0;                // from a vertical blank to the light
+  double max_led_current_percent = 40;  // of the light engine; more is refused
 };
 
 struct Vial {

@@ -199,7 +199,8 @@ std::unique_ptr<UsbLink> simulate(const vam::device::Address& address, const vam
   if (address.scheme == "tic") return vam::sim::make_sim_tic({}, vam::device::real_clock(), log);
   vam::sim::SimDlpSettings settings;
   settings.dlpc900 = address.scheme == "dlpc900";
-  settings.current = address.integer("current", 0, 255).value_or(settings.current);
+  settings.current_percent = address.number("current_percent", settings.current_percent, 0, 100);
+  settings.inverted = address.word("inverted", "") == "yes";
   settings.stuck_grey = address.word("stuck_grey", "") == "yes";
   settings.slow_reads = address.integer("slow_reads", 0, 1000).value_or(0);
   settings.fault = address.word("fault", "");
@@ -224,7 +225,7 @@ void ended(GPid, gint status, gpointer user) {
 int main(int argc, char** argv) {
   if (argc < 4) return 64;
   const auto address = vam::device::parse_address(argv[1], {"tic", "dlpc350", "dlpc900"});
-  address.allow({"current", "stuck_grey", "slow_reads", "fault", "fault_after"});
+  address.allow({"current_percent", "inverted", "stuck_grey", "slow_reads", "fault", "fault_after"});
   Host host;
   host.link = simulate(address, vam::sim::file_sim_log(argv[2]));
   const std::string ids = host.link->about()["usb_id"];

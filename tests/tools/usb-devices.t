@@ -24,12 +24,12 @@ begin foreign tic: vam-stage identify --device 'tic:999?steps_per_deg=100'
 begin missing dlpc350: $grey 0.05 --light dlpc900:
 for engine in dlpc350 dlpc900; do
   begin $engine "$engine:?slow_reads=3" \
-    vam-project part.exr -o null: --light "$engine:?current=85" --speed 360 --missed 1
+    vam-project part.exr -o null: --light "$engine:?current_percent=33.4" --speed 360 --missed 1
 done
-begin asked-too-much dlpc900: $grey 0.05 --light dlpc900:?current=60 --set projector.max_led_current=50
-begin found-too-bright dlpc900:?current=120 $grey 0.05 --light dlpc900:
+begin asked-too-much dlpc900: $grey 0.05 --light dlpc900:?current_percent=60 --set projector.max_led_current_percent=50
+begin found-too-bright dlpc350:?current_percent=47 $grey 0.05 --light dlpc350:
 begin stuck-grey dlpc900:?stuck_grey=yes $grey 0.05 --light dlpc900:
-prepared=27  # reports
+prepared=30  # reports
 for fault in error unplug; do begin $fault "dlpc900:?fault=$fault&fault_after=9" $grey 0.05 --light dlpc900:; done
 for fault in silent late garbage truncated wrong-sender; do  # on the command to switch on
   begin $fault "dlpc900:?fault=$fault&fault_after=$prepared" $grey 0.05 --light dlpc900:
@@ -56,11 +56,11 @@ for engine in dlpc350 dlpc900; do
   ended $engine 0 ''
   is "$engine: off, on, off" "$(bits $engine)" '"bits":0 "bits":4 "bits":0 '
   is "$engine: with linear grey and the requested current" \
-    "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current":\[85,85,85\]')" 1
+    "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current_percent":\[33.3,33.3,33.3\]')" 1
   is "$engine: and asleep at the end" "$(asleep $engine)" 1
 done
-ended asked-too-much 64 'above the limit of 50'
-ended found-too-bright 76 'LED current is 120, above the limit of 100'
+ended asked-too-much 64 'current of 60 % is above the limit of 50 %'
+ended found-too-bright 76 'LED current is 47.1 %, above the limit of 40 %'
 ended stuck-grey 76 'video pattern mode was set to 02 but reads back as 00'
 ended error 76 'was refused'
 ended unplug 69 'NO_DEVICE'

@@ -15,8 +15,15 @@ fails 64 'out of range' vam-project part.exr -o null: --missed 2
 fails 66 'cannot be opened' vam-project part.exr -o null: --follow missing
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
-fails 64 'above the limit' vam-project part.exr -o null: --light 'sim:?current=120' --log why
-fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?current=60&max_current=200' --set projector.max_led_current=50
+fails 64 '47 % is above the limit of 40 %' vam-project part.exr -o null: --light 'sim:?current_percent=47' --log why
+fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?current_percent=60&max_current_percent=80' --set projector.max_led_current_percent=50
+# Steps of the controller, by which a LightCrafter 4500 shone with full current at 0, are refused.
+fails 64 'the larger the darker on a LightCrafter 4500; give current_percent' vam-project part.exr -o null: --light 'sim:?current=0'
+fails 64 'give max_current_percent' vam-project part.exr -o null: --light 'sim:?max_current=1'
+fails 64 'give projector.max_led_current_percent' vam-project part.exr -o null: --set projector.max_led_current=1
+ok 'no current is asked for' vam-project --pattern grey -o null: --hold 0.05 --light 'sim:?current_percent=0&log=none' --log engine
+is 'and none flows' "$(grep '"bits":4' none | grep -o '"current_percent":[^]]*]')" '"current_percent":[0.0,0.0,0.0]'
+is 'as the log says' "$(grep '"event":"light"' engine | grep -o '"led_current_percent":[^]]*]')" '"led_current_percent":[0.0,0.0,0.0]'
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 
 # Test patterns, to files and to a dry run.

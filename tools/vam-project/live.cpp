@@ -11,7 +11,7 @@ namespace vam::project {
 Live::Live(const LiveOptions& options, const std::string& output, const device::DisplayMode& wanted)
     : options_(options), log_(options.log), clock_(device::real_clock()) {
   if (options.with_parent) device::end_with_parent();
-  if (!options.light.empty()) light_ = device::open_light(options.light, options.max_led_current, &guardian_);
+  if (!options.light.empty()) light_ = device::open_light(options.light, options.max_led_current_percent, &guardian_);
   display_ = device::open_display(output, wanted, clock_, &guardian_);
   const auto mode = display_->mode();
   log_("display", {{"device", output}, {"columns", mode.columns}, {"rows", mode.rows}, {"hz", mode.hz}});

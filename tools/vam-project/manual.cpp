@@ -60,12 +60,14 @@ cli::Manual manual() {
        "or misses too many flips, the screen is black and the light engine dark within 100 ms, by a child process, the "
        "guardian. This is software and no interlock: install a hardware interlock that cuts the lamp. A closed window "
        "shows the desktop behind it, so make that black and keep the pointer on another screen. The LED current never "
-       "exceeds projector.max_led_current. After a print on drm:, Linux may return its text console to the screen: "
+       "exceeds projector.max_led_current_percent. After a print on drm:, Linux may return its text console to the "
+       "screen: "
        "keep the console elsewhere (kernel option fbcon=map:) and use --light, which is then in standby, or a shutter.",
        "Priority. As root, or with permission for a real-time priority of 2 (see vam-stage(1)), the flips and the "
        "guardian run before other programs.",
        "Light engines. dlpc350:SERIAL (LightCrafter 4500) and dlpc900:SERIAL (6500, 9000) on USB take the options "
-       "current=0..255, max_current (at most projector.max_led_current) and leds (any of r, g and b; default: b). The "
+       "current_percent=0..100 (of full current; as it is if not given), max_current_percent (at most "
+       "projector.max_led_current_percent) and leds (any of r, g and b; default: b). The "
        "engine leaves standby, is set to video with linear grey, and every setting is read back before its LEDs are "
        "enabled. At the end its LEDs are switched off, then patterns are stopped, then it returns to standby. Commands "
        "and faults are described in vam-devices(7).",

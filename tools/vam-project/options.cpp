@@ -91,7 +91,7 @@ model::Printer settle(Options& options) {
   if (bits != 1 && bits != 2 && bits != 4 && bits != 8 && bits != 10 && bits != 16) {
     throw Error{Fault::usage, "--bits: " + std::to_string(bits) + " is not one of 1, 2, 4, 8, 10, 16"};
   }
-  options.live.max_led_current = printer.projector.max_led_current;
+  options.live.max_led_current_percent = printer.projector.max_led_current_percent;
   if (!options.live.latency_ms) options.live.latency_ms = printer.projector.latency_ms;
   return printer;
 }

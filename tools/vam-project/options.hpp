@@ -18,7 +18,7 @@ struct LiveOptions {
   std::string light;
   std::string log;
   std::optional<double> latency_ms;
-  int max_led_current = 0;
+  double max_led_current_percent = 0;
   double allowed_missed = device::PlayPlan{}.allowed_missed;
   std::optional<int> frames_per_turn;
   bool with_parent = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"
 #include "sim/controllers/dlp.hpp"
@@ -11,13 +12,13 @@ namespace vam::device {
 namespace {
 
 std::unique_ptr<LightEngine> open_sim(const Address& address, const LightSettings& settings, Guardian*) {
-  address.allow({"current", "max_current", "leds", "log"});
+  address.allow({"current_percent", "max_current_percent", "leds", "log"});
   return make_dlp_light(sim::make_sim_dlp({}, sim::file_sim_log(address.word("log", ""))), settings, real_clock(),
                         nullptr);
 }
 
 std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSettings& settings, Guardian* guardian) {
-  address.allow({"current", "max_current", "leds"});
+  address.allow({"current_percent", "max_current_percent", "leds"});
   const int product = address.scheme == "dlpc900" ? dlpc900_product : dlpc350_product;
   auto link = open_usb({0x0451, {product}, address.place}, 0);
   auto lock = std::make_unique<DeviceLock>(link->name());
@@ -36,15 +37,30 @@ struct LightBackend {
 constexpr LightBackend backends[] = {
     {"dlpc350", "SERIAL", open_dlp}, {"dlpc900", "SERIAL", open_dlp}, {"sim", "", open_sim}};
 
+// As an intensity they would be upside down on a LightCrafter 4500.
+void refuse_steps(const Address& address) {
+  for (const char* key : {"current", "max_current"}) {
+    if (!address.options.contains(key)) continue;
+    throw Error{Fault::usage, "device '" + address.text + "': " + key +
+                                  " was in steps of the controller, the larger the darker on a LightCrafter 4500; "
+                                  "give " +
+                                  key + "_percent, in per cent of full current"};
+  }
+}
+
 }  // namespace
 
 std::string light_devices() { return forms_of(backends); }
 
-std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian) {
+std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
   const Address address = parse_address(device, schemes_of(backends));
+  refuse_steps(address);
   LightSettings settings;
-  settings.current = address.integer("current", 0, 255);
-  settings.max_current = std::min(max_current, address.integer("max_current", 0, 255).value_or(max_current));
+  if (address.options.contains("current_percent")) {
+    settings.current_percent = address.number("current_percent", 0, 0, 100);
+  }
+  settings.max_current_percent =
+      std::min(max_current_percent, address.number("max_current_percent", max_current_percent, 0, 100));
   settings.leds = address.word("leds", settings.leds);
   return backend_of(backends, address).open(address, settings, guardian);
 }

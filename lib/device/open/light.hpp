@@ -7,7 +7,8 @@ namespace vam::device {
 
 /// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current, max_current and leds; sim: is a simulated
 /// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
-[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, int max_current, Guardian* guardian);
+[[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent,
+                                                      Guardian* guardian);
 
 /// The devices that open_light knows, for --help: "dlpc350:SERIAL, dlpc900:SERIAL or sim:".
 [[nodiscard]] std::string light_devices();

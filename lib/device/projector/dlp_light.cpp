@@ -1,6 +1,8 @@
 // TI DLPC350 (LightCrafter 4500) and DLPC900 (LightCrafter 6500 and 9000) as light engines.
-// Source: TI DLPU010 and DLPU018, "Programmer's Guide".
+// Source: TI DLPU010 and DLPU018, "Programmer's Guide"; for the inverted current of the LightCrafter 4500 TI's forum,
+// thread 451589, and what TI's own LightCrafter 4500 GUI sends: 255 less the current, at normal polarity.
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 
@@ -31,6 +33,10 @@ constexpr int sequencer_runs = 1 << 1;  // of the main status
 constexpr int signal_found = 1 << 3;    // of the main status, DLPC900
 // Three of them and the 105 us of black before the next frame fit in a frame of 60 Hz.
 constexpr int pattern_us = 5500;
+constexpr int full_current = 255;
+constexpr int normal_polarity = 0;
+
+std::string in_percent(double percent) { return format_number(std::round(10 * percent) / 10) + " %"; }
 
 void unless_refused(const std::function<void()>& words) {
   try {
@@ -44,10 +50,10 @@ class DlpLight final : public LightEngine {
  public:
   DlpLight(std::unique_ptr<UsbLink> usb, const LightSettings& settings, Clock& clock, Guardian* guardian)
       : link_(std::move(usb), clock, guardian), settings_(settings), guardian_(guardian) {
-    if (settings.current.value_or(0) > settings.max_current) {
-      throw Error{Fault::usage, link_.name() + ": current " + std::to_string(*settings.current) +
-                                    " is above the limit of " + std::to_string(settings.max_current) +
-                                    "; raise projector.max_led_current only within the rating of the LEDs"};
+    if (settings.current_percent.value_or(0) > settings.max_current_percent) {
+      throw Error{Fault::usage, link_.name() + ": current of " + in_percent(*settings.current_percent) +
+                                    " is above the limit of " + in_percent(settings.max_current_percent) +
+                                    "; raise projector.max_led_current_percent only within the rating of the LEDs"};
     }
     for (const char led : settings.leds) {
       const std::size_t bit = std::string("rgb").find(led);
@@ -74,6 +80,7 @@ class DlpLight final : public LightEngine {
     about["hardware_status"] = link_.ask(hardware_status);
     about["system_status"] = link_.ask(system_status);
     about["main_status"] = link_.ask(main_status);
+    about["led_current_percent"] = currents_percent();
     return about;
   }
 
@@ -84,16 +91,17 @@ class DlpLight final : public LightEngine {
     link_.set(display_mode, {video_mode}, "video mode", mode_s);
     link_.set(input_source, {(link_.ask(input_source) & ~7) | from_video_port}, "input from the video port");
     // Grey must be linear: the host's own table makes the intensity.
-    if (link_.about()["usb_id"] == "0451:c900") {
+    if (dlpc900()) {
       show_patterns();
     } else {
       link_.set(gamma, {link_.ask(gamma) & 0x7F}, "gamma off");  // whatever its number
     }
-    if (settings_.current) {
-      link_.set(led_current, DlpBytes(3, *settings_.current), "LED current");
-    } else {
-      require_capped(link_.ask(led_current, 3));
+    if (settings_.current_percent) {
+      link_.set(led_polarity, {normal_polarity}, "LED polarity");
+      const int steps = static_cast<int>(std::floor(*settings_.current_percent / 100 * full_current));
+      link_.set(led_current, DlpBytes(3, dlpc900() ? steps : full_current - steps), "LED current");
     }
+    require_capped(currents_percent());
     if ((link_.ask(hardware_status) & 1) == 0) {
       throw Error{Fault::protocol, link_.name() + ": start-up self-test failed; switch it off and on"};
     }
@@ -155,12 +163,25 @@ class DlpLight final : public LightEngine {
     throw Error{Fault::busy, link_.name() + ": " + problem + " within " + format_number(patience_s) + " s; " + remedy};
   }
 
-  void require_capped(const DlpBytes& currents) const {
+  [[nodiscard]] bool dlpc900() const { return link_.about()["usb_id"] == "0451:c900"; }
+
+  // Of red, green and blue. The drivers of a LightCrafter 4500 invert what its DLPC350 puts out, whose polarity may be
+  // inverted in turn.
+  std::vector<double> currents_percent() {
+    const bool inverted = (link_.ask(led_polarity) & 1) != normal_polarity;
+    std::vector<double> percent;
+    for (const int byte : link_.ask(led_current, 3)) {
+      percent.push_back(100.0 / full_current * (inverted == dlpc900() ? full_current - byte : byte));
+    }
+    return percent;
+  }
+
+  void require_capped(const std::vector<double>& currents) const {
     for (std::size_t led = 0; led < 3; ++led) {
-      if ((led_bits_ >> led & 1) == 0 || currents[led] <= settings_.max_current) continue;
-      throw Error{Fault::protocol, link_.name() + ": LED current is " + std::to_string(currents[led]) +
-                                       ", above the limit of " + std::to_string(settings_.max_current) +
-                                       "; give current=N"};
+      if ((led_bits_ >> led & 1) == 0 || currents[led] <= settings_.max_current_percent) continue;
+      throw Error{Fault::protocol, link_.name() + ": LED current is " + in_percent(currents[led]) +
+                                       ", above the limit of " + in_percent(settings_.max_current_percent) +
+                                       "; give current_percent=N"};
     }
   }
 

@@ -18,9 +18,9 @@ inline constexpr int dlpc350_product = 0x6401;  // USB product ids
 inline constexpr int dlpc900_product = 0xc900;
 
 struct LightSettings {
-  std::optional<int> current;  // 0..255, in the controller's own steps; absent: as it is
-  int max_current = 100;       // a larger current is refused
-  std::string leds = "b";      // any of r, g, b
+  std::optional<double> current_percent;  // of full current, 0..100; absent: as it is
+  double max_current_percent = 40;        // a larger current is refused
+  std::string leds = "b";                 // any of r, g, b
 };
 
 /// A DLP controller on USB. Between on() and dark() the guardian holds the order to darken. Throws Error: absent, busy
@@ -31,7 +31,8 @@ class LightEngine {
   /// Model, firmware, status bits.
   virtual Json identify() = 0;
   /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs an image at its
-  /// input) and current set, each read back. LEDs stay off.
+  /// input) and current set, each read back. LEDs stay off. The bytes of a current mean what board and polarity make
+  /// of them: on a LightCrafter 4500 255 is none and 0 full current.
   virtual void prepare() = 0;
   virtual void on() = 0;
   /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.

@@ -36,7 +36,7 @@ const std::vector<PrinterField> fields{
     {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "of z = 0, from 0 at the top (z is up), before orientation", -65536, 131072},
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
     {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "delay from vertical blank to light output", -1000, 1000},
-    {"projector", "max_led_current", at<&Printer::projector, &Projector::max_led_current>, "maximum LED current of the light engine, in its own steps", 0, 255},
+    {"projector", "max_led_current_percent", at<&Printer::projector, &Projector::max_led_current_percent>, "maximum LED current of the light engine, in per cent of its full current", 0, 100},
     {"vial", "radius_mm", at<&Printer::vial, &Vial::radius_mm>, "outer radius", 0, 1e6, true},
     {"vial", "wall_mm", at<&Printer::vial, &Vial::wall_mm>, "0: glass and resin matched", 0, 1e6},
     {"vial", "index_glass", at<&Printer::vial, &Vial::index_glass>, "refractive index", 1, 4},
@@ -92,6 +92,12 @@ std::string mm(double value) { return format_number(value) + " mm"; }
 }  // namespace
 
 std::span<const PrinterField> printer_fields() { return fields; }
+
+std::string replacement(std::string_view section, std::string_view key) {
+  if (section != "projector" || key != "max_led_current") return "";
+  return "; it was in steps of the controller, the larger the darker on a LightCrafter 4500: give "
+         "projector.max_led_current_percent, in per cent of full current";
+}
 
 std::string dotted_name(const PrinterField& field) { return std::string(field.section) + "." + field.key; }
 

@@ -36,6 +36,7 @@ std::vector<std::string> section_names() {
 
 // "; did you mean radius_mm?" within the section, else the same key in another section, else all that there is.
 std::string suggestion(std::string_view section, std::string_view key) {
+  if (std::string instead = replacement(section, key); !instead.empty()) return instead;
   std::vector<std::string> here;
   for (const auto& field : printer_fields()) {
     if (section == field.section) here.emplace_back(field.key);

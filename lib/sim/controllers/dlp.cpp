@@ -1,5 +1,6 @@
 #include "sim/controllers/dlp.hpp"
 
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -17,7 +18,10 @@ class SimDlp final : public device::UsbLink {
     name_ = settings.dlpc900 ? "usb:0451:c900:LCR6500" : "usb:0451:6401:LCR4500";
     registers_[0x0200] = std::string(1, '\1');  // asleep
     registers_[0x0205] = std::string("\x01\x00\x00\x04", 4) + std::string(12, '\0');
-    registers_[0x0B01] = std::string(3, static_cast<char>(settings.current));
+    registers_[0x1A05] = std::string(1, settings.inverted ? '\1' : '\0');
+    const double share = settings.current_percent / 100;
+    const bool upside_down = settings.inverted != !settings.dlpc900;
+    registers_[0x0B01].assign(3, static_cast<char>(std::lround(255 * (upside_down ? 1 - share : share))));
     registers_[0x1A00] = std::string(1, '\x0A');
     registers_[0x1A07] = std::string(1, '\x08');  // LEDs by the sequencer
     registers_[0x1A0A] = std::string(1, '\x01');
@@ -94,6 +98,18 @@ class SimDlp final : public device::UsbLink {
     return value(0x1A1B) == 2 && value(0x1A24) == 2 && all_bits_ == 0xFFFFFF;
   }
 
+  // What flows through red, green and blue when they are enabled. The controller puts out a pulse of this width, of
+  // either polarity; the drivers of a LightCrafter 4500 are on where it is off.
+  [[nodiscard]] Json currents_percent() const {
+    Json percent = Json::array();
+    for (const char led : registers_.at(0x0B01)) {
+      double pulse = static_cast<unsigned char>(led) / 255.0;
+      if (value(0x1A05) != 0) pulse = 1 - pulse;
+      percent.push_back(std::round(1000 * (settings_.dlpc900 ? pulse : 1 - pulse)) / 10);
+    }
+    return percent;
+  }
+
   // The state it reports first is still the old one.
   std::string read(int command) {
     const bool slow = slow_[command] > 0 && slow_[command]-- > 0;
@@ -108,6 +124,7 @@ class SimDlp final : public device::UsbLink {
   // False: refused.
   bool write(int command, const std::string& data) {
     const int first = data.empty() ? 0 : static_cast<unsigned char>(data[0]);
+    if (settings_.stuck_polarity && command == 0x1A05) return true;
     if (settings_.stuck_grey && (command == 0x1A0E || (command == 0x1A1B && first == 2))) return true;
     if (command == 0x1A1B && first == 2 && (!image() || value(0x1A1B) != 0)) return false;
     if (command == 0x1A24 && first == 2 && value(0x1A1B) != 2) return false;
@@ -118,9 +135,11 @@ class SimDlp final : public device::UsbLink {
     const double now_s = device::real_clock().now_s();
     if (command == 0x0200 && first == 1) log_({{"t_monotonic_s", now_s}, {"event", "asleep"}});
     if (command != 0x1A07) return true;
-    Json current = Json::array();
-    for (const char led : registers_[0x0B01]) current.push_back(static_cast<unsigned char>(led));
-    log_({{"t_monotonic_s", now_s}, {"event", "leds"}, {"bits", first}, {"linear", linear()}, {"current", current}});
+    log_({{"t_monotonic_s", now_s},
+          {"event", "leds"},
+          {"bits", first},
+          {"linear", linear()},
+          {"current_percent", currents_percent()}});
     return true;
   }
 

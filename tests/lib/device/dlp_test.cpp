@@ -82,12 +82,12 @@ class Heard final : public UsbLink {
   std::vector<std::string>& reports_;
 };
 
-// What a print sends to an engine, with a current of 0x55 and the blue LED.
+// What a print sends to an engine, with a third of full current (0x55 steps) and the blue LED.
 std::vector<std::string> heard_by(const SimDlpSettings& sim) {
   std::vector<std::string> reports;
   VirtualClock clock;
   LightSettings settings;
-  settings.current = 0x55;
+  settings.current_percent = 33.4;
   const auto light = make_dlp_light(std::make_unique<Heard>(make_sim_dlp(sim, {}), reports), settings, clock, nullptr);
   light->prepare();
   light->on();
@@ -108,12 +108,14 @@ TEST_CASE(
                                         "40090300001a08",     "c00a0200001a",  //   then its port bits 0
                                         "c00b02000e1a",                        // gamma: what it is,
                                         "400c03000e1a00",     "c00d02000e1a",  //   then off
-                                        "400e0500010b555555", "c00f0200010b",  // LED current
-                                        "c01002000a1a",                        // hardware status
-                                        "40110300071a04",     "c0120200071a",  // LED enable: blue
-                                        "40130300071a00",     "c0140200071a",  // LED enable 0
-                                        "40150300241a00",                      // pattern stop
-                                        "40160300000201"};                     // power 1: asleep
+                                        "400e0300051a00",     "c00f0200051a",  // LED polarity: normal
+                                        "40100500010baaaaaa", "c0110200010b",  // LED current: 255 less 0x55 steps
+                                        "c0120200051a",       "c0130200010b",  // polarity and current, as they are
+                                        "c01402000a1a",                        // hardware status
+                                        "40150300071a04",     "c0160200071a",  // LED enable: blue
+                                        "40170300071a00",     "c0180200071a",  // LED enable 0
+                                        "40190300241a00",                      // pattern stop
+                                        "401a0300000201"};                     // power 1: asleep
   CHECK(heard_by({}) == wanted);
 }
 
@@ -140,15 +142,19 @@ TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bi
                                         "40130800311a030000000000",  // three patterns, for ever
                                         "40140300241a02",            // pattern start
                                         "c01502000c1a",              // main status: they run
-                                        "40160500010b555555",
-                                        "c0170200010b",  // LED current
-                                        "c01802000a1a",  // hardware status
-                                        "40190300071a04",
-                                        "c01a0200071a",  // LED enable: blue
-                                        "401b0300071a00",
-                                        "c01c0200071a",     // LED enable 0
-                                        "401d0300241a00",   // pattern stop
-                                        "401e0300000201"};  // power 1: asleep
+                                        "40160300051a00",
+                                        "c0170200051a",  // LED polarity: normal
+                                        "40180500010b555555",
+                                        "c0190200010b",  // LED current
+                                        "c01a0200051a",
+                                        "c01b0200010b",  // polarity and current, as they are
+                                        "c01c02000a1a",  // hardware status
+                                        "401d0300071a04",
+                                        "c01e0200071a",  // LED enable: blue
+                                        "401f0300071a00",
+                                        "c0200200071a",     // LED enable 0
+                                        "40210300241a00",   // pattern stop
+                                        "40220300000201"};  // power 1: asleep
   CHECK(heard_by({.dlpc900 = true}) == wanted);
   // A board without a receiver of that kind refuses to tell of it.
   CHECK(error_of([] { (void)heard_by({.dlpc900 = true, .refuse = 0x1A01}); }, Fault::busy).find("no video signal") !=
@@ -169,18 +175,51 @@ TEST_CASE("Exit without a command is dark, too") {
   CHECK(lab.sleep.size() == 1);
 }
 
+TEST_CASE("The LEDs shine by the current that was asked for, never more, on either board and from either polarity") {
+  for (const bool dlpc900 : {false, true}) {
+    for (const bool inverted : {false, true}) {
+      for (const double percent : {0.0, 0.5, 1.0, 39.9, 100.0}) {
+        CAPTURE(dlpc900);
+        CAPTURE(inverted);
+        CAPTURE(percent);
+        LightSettings settings;
+        settings.current_percent = percent;
+        settings.max_current_percent = 100;
+        LightLab lab({.dlpc900 = dlpc900, .inverted = inverted}, settings);
+        lab.light->prepare();
+        lab.light->on();
+        const double shines = lab.leds.back()["current_percent"][2];
+        CHECK(shines <= percent);
+        CHECK(shines > percent - 0.4);  // one of 255 steps
+        CHECK(lab.light->identify()["led_current_percent"][2].get<double>() == doctest::Approx(shines).epsilon(0.01));
+      }
+    }
+  }
+}
+
 TEST_CASE("The current is capped, as given and as found") {
   LightSettings settings;
-  settings.current = 120;
-  CHECK(fault_of([&] { LightLab lab({}, settings); }) == Fault::usage);
-  settings.max_current = 130;
+  settings.current_percent = 41;
+  CHECK(error_of([&] { LightLab lab({}, settings); }, Fault::usage).find("41 % is above the limit of 40 %") !=
+        std::string::npos);
+  settings.max_current_percent = 50;
   LightLab bright({}, settings);
   bright.light->prepare();
-  SimDlpSettings sim;
-  sim.current = 200;
-  LightLab found(sim);
-  CHECK(fault_of([&] { found.light->prepare(); }) == Fault::protocol);
-  CHECK(message_of([&] { found.light->prepare(); }).find("above the limit of 100") != std::string::npos);
+  for (const bool dlpc900 : {false, true}) {
+    for (const bool inverted : {false, true}) {
+      CAPTURE(dlpc900);
+      CAPTURE(inverted);
+      LightLab found({.dlpc900 = dlpc900, .current_percent = 78, .inverted = inverted});
+      CHECK(error_of([&] { found.light->prepare(); }, Fault::protocol).find("is 78 %, above the limit of 40 %") !=
+            std::string::npos);
+      CHECK(found.shining() == 0);
+      LightLab dim({.dlpc900 = dlpc900, .current_percent = 22, .inverted = inverted});
+      dim.light->prepare();
+    }
+  }
+  LightLab stuck({.inverted = true, .stuck_polarity = true}, settings);
+  CHECK(error_of([&] { stuck.light->prepare(); }, Fault::protocol)
+            .find("LED polarity was set to 00 but reads back as 01") != std::string::npos);
   LightSettings odd;
   odd.leds = std::string("bx");
   CHECK(fault_of([&] { LightLab lab({}, odd); }) == Fault::usage);
@@ -225,7 +264,7 @@ TEST_CASE("Each answer of the light engine wrong in turn: the right fault, and n
     CHECK(fault_of([&] { lit.light->dark(); }).has_value());
     if (kind != std::string("unplug") && kind != std::string("error")) CHECK(lit.shining() == 0);  // it heard the order
   }
-  for (const int command : {0x0200, 0x1A07, 0x1A1B, 0x1A00, 0x1A0E, 0x1A0A, 0x0B01, 0x1A0C, 0x1A34, 0x1A31}) {
+  for (const int command : {0x0200, 0x1A07, 0x1A1B, 0x1A00, 0x1A0E, 0x1A0A, 0x0B01, 0x1A05, 0x1A0C, 0x1A34, 0x1A31}) {
     CAPTURE(command);
     const bool dlpc900 = command == 0x1A0C || command == 0x1A34 || command == 0x1A31;
     LightLab lab({.dlpc900 = dlpc900, .refuse = command});

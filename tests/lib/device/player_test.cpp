@@ -248,7 +248,7 @@ TEST_CASE("A light engine that fails in a print: the right fault, the screen bla
         SimDlpSettings sim;
         sim.dlpc900 = dlpc900;
         sim.fault = kind;
-        const int to_prepare = dlpc900 ? 23 : 15;  // reports
+        const int to_prepare = dlpc900 ? 24 : 16;  // reports
         sim.fault_after = to_prepare + after;
         auto light =
             make_dlp_light(make_sim_dlp(sim, [&](const Json& line) { leds.push_back(line); }), {}, clock, nullptr);

@@ -23,6 +23,7 @@ enum class DlpCommand : unsigned {
   led_current = 0x0B01,
   input_source = 0x1A00,
   video_receiver = 0x1A01,  // DLPC900
+  led_polarity = 0x1A05,
   led_enable = 0x1A07,
   hardware_status = 0x1A0A,
   system_status = 0x1A0B,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,6 +28,9 @@ struct PrinterField {
 
 /// All fields, grouped by section in the order in which the file is printed.
 [[nodiscard]] std::span<const PrinterField> printer_fields();
+
+/// What a key that there is no more has to be instead: "; it was in ...: give ..."; empty for any other.
+[[nodiscard]] std::string replacement(std::string_view section, std::string_view key);
 
 /// "vial.radius_mm"
 [[nodiscard]] std::string dotted_name(const PrinterField& field);
