@@ -25,6 +25,8 @@ cli::Manual manual() {
        "before its line in the manifest is. Repeating the command captures only the missing frames.",
        "Default: every frame is kept; in a folder, a lost frame leaves its number free. With --every DEG the frame "
        "nearest to each multiple of that angle is kept, over --turns turns from angle 0.",
+       "The camera is that of --device or camera.device in the printer file; without either the command fails. What a "
+       "simulated camera takes is marked: \"simulated\" in log, report and manifest, a line in the history of a stack.",
        "A device is a scheme, a place and options. aravis:IP-or-ID is a GenICam camera on USB3 Vision or GigE Vision "
        "(?packet_size=8000, ?buffers=20); aravis: is the only camera present. v4l2:/dev/video0 is a Video4Linux "
        "camera. replay:PLACE is a folder of vam-capture, a folder of numbered images or an EXR frame stack, read as "
@@ -33,7 +35,7 @@ cli::Manual manual() {
        "Lost frames are always reported: the numbers of dropped and of incomplete frames appear on standard error, in "
        "--report and in --log; an incomplete frame is marked in the manifest and in the stack (vam:incomplete), where "
        "it keeps the received parts, and vam-ost ignores it. A gap in vam:number means dropped frames."},
-      {{"Identify the camera:", "vam-capture identify"},
+      {{"Identify the camera, here a simulated one:", "vam-capture identify --device sim:"},
        {"Twenty frames of a simulated print, 18 degrees apart, as fast as they can be rendered:",
         "vam-capture --device 'sim:?pace=virtual&speed_deg_s=180&lit_s=0.1' --binning 8 --fps 10 --frames 20 -o "
         "views.exr"},

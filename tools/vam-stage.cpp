@@ -14,13 +14,15 @@
 #include "device/port/lines.hpp"
 #include "device/port/serial_port.hpp"
 #include "device/stage/spin.hpp"
+#include "io/settings/printer_file.hpp"
+#include "printer.hpp"
 
 namespace {
 
 using namespace vam;
 
 struct Options {
-  std::string device = "sim:";
+  std::string device;  // empty: stage.device
   std::string log;
   bool with_parent = false;
   double angle_deg = 0;
@@ -31,7 +33,10 @@ struct Options {
   std::optional<double> seconds;
   double rate_hz = 100;
   double move_speed_deg_s = 10;
+  std::optional<double> speed_deg_s;
+  std::optional<int> turns, direction;  // of a spin; absent: of the printer file
   device::SpinPlan plan;
+  cli::PrinterOptions printer;
 };
 
 cli::Manual manual() {
@@ -44,7 +49,11 @@ cli::Manual manual() {
        "of the machine share, the angle at that time, and its standard deviation in degrees. vam-project --follow "
        "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
        "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
-       "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
+       "The stage is that of --device or stage.device in the printer file; without either the command fails: a "
+       "simulated "
+       "stage never stands in for a real one unasked, and log and identify mark it ({\"simulated\": true}). A device "
+       "is "
+       "a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
        "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
        "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
        "board with the stage on axis X, in degrees (?axis=Y for another). tic:00312345?steps_per_deg=88.9 is a stepper "
@@ -54,8 +63,8 @@ cli::Manual manual() {
        "simulator on a pseudo-terminal."
        " Protocols and fault handling are described in vam-devices(7).",
        "A device has one user at a time: a second one exits with status 75 and names the process that holds it."},
-      {{"Identify the controller and its limits", "vam-stage identify"},
-       {"Find the reference and move to 20 degrees", "vam-stage move --home --to 20"},
+      {{"Identify the controller and its limits, here of a simulated stage", "vam-stage identify --device sim:"},
+       {"Find the reference and move to 20 degrees", "vam-stage move --device sim: --home --to 20"},
        {"One turn of a simulated stage that is 1 % too fast and answers up to 5 ms late",
         "vam-stage spin --device 'sim:?speed_error=0.01&jitter_ms=5' --speed 90 --run-up 0.25 --rate 10 "
         ">angles.jsonl"}},
@@ -78,11 +87,14 @@ cli::Manual manual() {
 }
 
 void add_common(cli::App& command, Options& options) {
-  command.option("--device", "DEVICE", options.device,
-                 "Rotation stage: " + device::stage_devices() + ", with options after a question mark.");
+  command
+      .option("--device", "DEVICE", options.device,
+              "Rotation stage: " + device::stage_devices() + ", with options after a question mark.")
+      .default_is("stage.device");
   command.option("--log", "FILE", options.log,
                  "Append one JSON line per event, with UTC and monotonic time; - for standard error.");
   command.flag("--die-with-parent", options.with_parent, "Stop and end when the process that started this one ends.");
+  cli::add_printer(command, options.printer);
 }
 
 void add_commands(cli::App& app, Options& options, std::string& chosen) {
@@ -101,11 +113,14 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Time-out.");
   auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample", chosen);
   add_common(spin, options);
-  spin.option("--turns", "N", options.plan.turns, {1, 100000}, "Turns of the print, after the run-up.");
-  spin.option("--speed", "DEG/S", options.plan.speed_deg_s, {0.001, 1000}, "Speed of the stage.");
+  spin.option("--turns", "N", options.turns, {1, 100000}, "Turns of the print, after the run-up.")
+      .default_is("stage.turns");
+  spin.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Speed of the stage.")
+      .default_is("stage.speed_deg_s");
   spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
-  spin.option("--direction", "SIGN", options.plan.direction, {-1, 1},
-              "1, or -1 to reverse; the reported angle increases either way.");
+  spin.option("--direction", "SIGN", options.direction, {-1, 1},
+              "1, or -1 to reverse; the reported angle increases either way.")
+      .default_is("stage.direction");
   spin.option("--speed-tolerance", "PART", options.plan.speed_tolerance, {1e-6, 1},
               "Largest relative speed error before angle 0.");
   spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
@@ -119,18 +134,31 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   follow.option("--seconds", "S", options.seconds, cli::positive, "Duration.").default_is("until a signal");
 }
 
+// What is not given is the printer file's; calibration records have nothing to say about the stage.
+void settle(Options& options) {
+  if (options.direction == 0) throw Error{Fault::usage, "--direction: give 1 or -1"};
+  const model::Stage stage = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
+  if (options.device.empty()) options.device = stage.device;
+  options.plan.turns = options.turns.value_or(stage.turns);
+  options.plan.speed_deg_s = options.speed_deg_s.value_or(stage.speed_deg_s);
+  options.plan.direction = options.direction.value_or(stage.direction);
+  options.plan.period_s = 1 / options.rate_hz;
+}
+
 void drive(const std::string& command, Options& options) {
-  if (options.plan.direction == 0) throw Error{Fault::usage, "--direction: give 1 or -1"};
   if (command == "ports") return device::print_line(device::list_serial_ports().dump(2));
+  if (tool::print_printer(options.printer)) return;
+  settle(options);
   if (options.with_parent) device::end_with_parent();
   device::Guardian guardian;
   device::EventLog log(options.log);
   auto& clock = device::real_clock();
   const auto stage = device::open_stage(options.device, clock, &guardian);
   const auto print = [](const device::AngleSample& sample) { device::print_line(to_line(sample)); };
-  options.plan.period_s = 1 / options.rate_hz;
   device::hurry(device::Urgency::driver);
-  log("begin", {{"command", command}, {"device", options.device}});
+  Json begin{{"command", command}, {"device", options.device}};
+  if (!options.log.empty() && device::describe(*stage).contains("simulated")) begin["simulated"] = true;
+  log("begin", begin);
   if (command == "home" || options.home_first) device::home(*stage, clock, options.timeout_s);
   const std::map<std::string, std::function<void()>> actions{
       {"home", [] {}},

@@ -50,14 +50,14 @@ struct Resin {
 };
 
 struct Stage {
-  std::string device = "sim:";
+  std::string device;  // empty: none is named
   double speed_deg_s = 10;
   int turns = 1;
   int direction = 1;  // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
 };
 
 struct Camera {
-  std::string device = "sim:";
+  std::string device;        // empty: none is named
   double distance_mm = 200;  // entrance pupil to rotation axis
   double pixel_mm = 0.039;   // at the axis
   double azimuth_deg = 90;

@@ -75,9 +75,9 @@ kill -9 $camera; wait $camera 2>/dev/null
 
 # As cron runs a tool: nothing to read from, no environment to speak of, silence unless there is something to say.
 cron() { env -i PATH="$PATH" VAM_LOCK_DIR="$VAM_LOCK_DIR" "$@" </dev/null >out 2>>all.log; }
-cron vam-stage home --log -
+cron vam-stage home --device sim: --log -
 is 'cron: homing' "$? $(cat out)" '0 '
-cron vam-stage move --home --to 3 --log -
+cron vam-stage move --device sim: --home --to 3 --log -
 is 'cron: a move' "$? $(cat out)" '0 '
 cron vam-project --pattern grey -o null: --hold 0.1 --light sim: --log -
 is 'cron: a test pattern' "$? $(cat out)" '0 '

@@ -101,6 +101,8 @@ bench --serial another
 vam-print part.exr --screen null: --need 'latency response axis' --views 90 --run foreign 2>foreign.err
 is 'a foreign camera is refused' "$? $(grep -c 'was made with the camera VAM1, this is another; run vam-calibrate' foreign.err)" '65 1'
 is 'before anything moves' "$(ls foreign | grep -c 'stage.jsonl\|flips.jsonl\|views') $(json foreign/summary.json status)" '0 65'
+is 'both are marked as simulated, and so are the records' \
+  "$(json run/devices.json camera.camera.simulated) $(json run/devices.json stage.simulated) $(json cal/current-edges.json simulated)" 'true true true'
 camera_down
 echo '{"stage": {"serial": "another"}}' >other.json
 fails 65 'was made with the stage .*, this is another; run vam-calibrate' vam-calibrate check --devices other.json

@@ -69,6 +69,10 @@ ok 'so is the response' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-
 ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.toml
 ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
+vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
+  --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3 --set calibration.folder= >simulated.json
+is 'a record of simulated frames is marked, one of others is not' \
+  "$(json simulated.json simulated) $(grep -c simulated cal/current-axis.json)" 'true 0'
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: vam-capture check is now vam-calibrate check true'
 ok 'check' vam-calibrate check --need edges --need response
 vam-calibrate check >state

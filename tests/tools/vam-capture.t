@@ -22,6 +22,16 @@ is 'what ended it is logged' "$(json why event) $(json why status)" 'error 69'
 rm why
 fails 73 'cannot be written' $take --frames 1 --log missing/log -o views.exr
 
+# The camera is the printer file's; a simulated one never stands in for it, and what it takes is marked.
+fails 64 'camera: none is named; give --device or camera.device .*; sim: is a simulated one' vam-capture --frames 1 --log why -o views.exr
+printf '[camera]\ndevice = "v4l2:/dev/no-video"\n' >camera.toml
+fails 69 'no-video' vam-capture --printer camera.toml --frames 1 -o views.exr
+fails 64 "camera.device: 'usb:1' is no device of such a kind; begin with one of aravis:, v4l2:, replay:, sim:" vam-capture --set camera.device=usb:1 --frames 1 -o views.exr
+ok 'a simulated capture' vam-capture --set "camera.device=$sim" --binning 30 --frames 2 -o marked/ --log marked.log --report marked.json
+is 'is marked in manifest, log and report' "$(head -n 1 marked/manifest.jsonl | grep -c '"simulated":true') $(grep -c '"event":"begin".*"simulated":true' marked.log) $(json marked.json camera.simulated)" '1 1 true'
+$take --frames 1 --compression none -o marked.exr
+is 'and in a stack' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
+
 # A stack, and the same frames out of it again.
 quiet 'a stack of frames' $take --frames 12 -o views.exr
 quiet 'from a recording' vam-capture --device replay:views.exr --frames 12 -o again.exr --compression none

@@ -106,6 +106,7 @@ holds 'and many were seen' "$(cut -d' ' -f2 compared) > 100"
 is 'a view every 10 degrees' "$(ls run/views | grep -c png)" 36
 is 'the run folder: outcome' "$(json run/summary.json outcome)" done
 is 'the run folder: every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' run/events.jsonl)" 0
+is 'the run folder: which devices were simulated' "$(json run/summary.json simulated)" "['stage', 'camera', 'light']"
 is 'the run folder: hash of what was printed' "$(json run/summary.json sinogram_sha256)" "$(sha256sum <frames.exr | cut -d' ' -f1)"
 ok 'the run folder: every file is as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
 is 'the run folder: the reports' "$(json run/summary.json project.missed_flips | grep -c .) $(json run/summary.json capture.frames)" '1 36'

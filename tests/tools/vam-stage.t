@@ -16,14 +16,32 @@ fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
 fails 73 'cannot be written' vam-stage identify --log missing/log
 
+# The stage is the printer file's; a simulated one never stands in for it.
+mkdir lab; printf '[stage]\ndevice = "grbl:/dev/nope"\nturns = 3\n' >lab/printer.toml
+printf '[stage]\ndevice = "usb:1"\n' >lab/odd.toml
+fails 64 'stage: none is named; give --device or stage.device .*; sim: is a simulated one' vam-stage home --log why
+(cd lab && vam-stage home) 2>said
+is './printer.toml names it' "$? $(grep -c "^vam-stage: /dev/nope: not a serial port" said)" '69 1'
+fails 69 '/dev/nope' env VAM_PRINTER=lab/printer.toml vam-stage home
+fails 69 '/dev/nope' vam-stage home --printer lab/printer.toml
+fails 65 "odd.toml:2: stage.device: 'usb:1' is no device" vam-stage home --printer lab/odd.toml
+fails 65 'begin with one of gcs:, tic:, grbl:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
+fails 64 "camera.device: 'webcam' is no device" vam-stage home --set camera.device=webcam
+for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
+  ok "the printer file knows $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
+done
+ok '--device goes before it' vam-stage identify --device sim: --printer lab/printer.toml --log events
+is 'a simulated stage is marked in the log' "$(grep -c '"device":"sim:".*"simulated":true' events)" 1
+rm events
+
 # The simulator inside the tool.
-ok 'identify' vam-stage identify
-vam-stage identify >about
-is 'the model' "$(json about model)" C-863.11
+ok 'identify' vam-stage identify --device sim:
+vam-stage identify --set stage.device=sim: >about
+is 'the model, marked' "$(json about model) $(json about simulated)" 'C-863.11 true'
 ok 'ports' vam-stage ports
 quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --to 20 --speed 80
 fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --to 20
-vam-stage follow --seconds 0.2 --rate 50 >samples
+vam-stage follow --device sim: --seconds 0.2 --rate 50 >samples
 is 'follow takes its samples' "$(wc -l <samples)" 10
 holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
 
@@ -117,5 +135,5 @@ spoilt 76 'was expected' block@POS?:80
 spoilt 76 'is blocked' block@POS?:2
 
 # A full disk behind the samples.
-fails 74 'write failed' sh -c 'vam-stage follow --seconds 1 >/dev/full'
+fails 74 'write failed' sh -c 'vam-stage follow --device sim: --seconds 1 >/dev/full'
 done_testing

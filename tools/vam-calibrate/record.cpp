@@ -7,6 +7,8 @@
 #include "base/log.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
+#include "io/image/capture_folder.hpp"
+#include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -62,6 +64,18 @@ Json read_devices(const std::string& path) {
   return devices;
 }
 
+// Whether the frames, or a device, were simulated: as frames and identities say.
+bool is_simulated(const std::string& frames, const Json& facts) {
+  for (const auto& device : facts.value("devices", Json::object())) {
+    if (device.contains("simulated")) return true;
+  }
+  if (io::is_capture_folder(frames)) {
+    return io::read_manifest(frames).head.value("camera", Json::object()).contains("simulated");
+  }
+  const auto history = io::ViewSource(frames, 1).history();
+  return std::find(history.begin(), history.end(), "frames of a simulated camera") != history.end();
+}
+
 // Why a record was not made with these devices; empty when nothing speaks against it.
 std::string stranger(const Json& record, const Json& devices) {
   const Json known = record.value("devices", Json::object());
@@ -97,6 +111,7 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
              {"values", finding.values_}};
   facts.update(finding.facts);
   if (!options.devices.empty()) facts["devices"] = read_devices(options.devices);
+  if (is_simulated(options.from, facts)) facts["simulated"] = true;
   facts["sha256"] = hashes(options);
   if (calibration.folder.empty()) {
     io::write_text("-", facts.dump(2) + "\n");

@@ -26,6 +26,8 @@ Json facts(device::Camera& camera) {
           {"binning", mode.binning}};
 }
 
+constexpr const char* simulated_frames = "frames of a simulated camera";  // in the history of a stack
+
 bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
 
 device::CapturePlan plan_of(const Options& o) {
@@ -48,7 +50,7 @@ device::CapturePlan plan_of(const Options& o) {
 }
 
 model::StackInfo stack_info(const cli::App& app, const Options& o, const model::Printer& printer,
-                            const device::CameraMode& mode, long count) {
+                            const device::CameraMode& mode, long count, bool simulated) {
   model::StackInfo info;
   info.kind = model::Kind::frames;
   info.space = model::Space::camera;
@@ -61,6 +63,7 @@ model::StackInfo stack_info(const cli::App& app, const Options& o, const model::
   info.angle_step_deg = o.every_deg.value_or(0);
   info.units = "fraction of full scale";
   info.history.push_back(app.history());
+  if (simulated) info.history.emplace_back(simulated_frames);
   return info;
 }
 
@@ -73,7 +76,8 @@ std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, co
     head["every_deg"] = o.every_deg.value_or(0);
     return open_folder(o.output, head);
   }
-  const model::StackInfo info = stack_info(app, o, printer, camera.mode(), count);
+  const bool simulated = camera.identify().contains("simulated");
+  const model::StackInfo info = stack_info(app, o, printer, camera.mode(), count, simulated);
   return o.live ? open_stream(o.output, info, o.stack) : open_stack(o.output, info, o.stack);
 }
 

@@ -55,7 +55,8 @@ cli::Manual manual() {
         "--min-intensity 0.2 -o slices.exr && vam-project slices.exr --set projector.pixel_mm=0.05 -o slices.mkv"},
        {"A focus star as an image:", "vam-project --pattern star -o star/"},
        {"A synchronised print of one turn, here on a simulated stage and no screen:",
-        "vam-stage spin --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed 0.1"}},
+        "vam-stage spin --device sim: --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed "
+        "0.1"}},
       {"Safety (live output). When vam-project ends for any reason, hangs for 0.5 s, receives no stage angle for 0.3 s "
        "or misses too many flips, the screen is black and the light engine dark within 100 ms, by a child process, the "
        "guardian. This is software and no interlock: install a hardware interlock that cuts the lamp. A closed window "

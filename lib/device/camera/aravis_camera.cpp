@@ -19,6 +19,7 @@
 #include "device/camera/camera_backends.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
+#include "device/os/identity.hpp"
 #include "device/os/interrupt.hpp"
 
 namespace vam::device {
@@ -142,7 +143,7 @@ class AravisCamera final : public Camera {
     about["transport"] = arv_camera_is_gv_device(camera_.get())   ? "GigE Vision"
                          : arv_camera_is_uv_device(camera_.get()) ? "USB3 Vision"
                                                                   : "other";
-    return about;
+    return with_mark(about);
   }
 
   CameraMode mode() const override { return mode_; }

@@ -43,6 +43,7 @@ std::string camera_devices() { return forms_of(backends); }
 
 std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings, const CameraBench& bench,
                                     Clock& clock) {
+  require_named(device, "camera", "aravis:192.168.1.7");
   const Address address = parse_address(device, schemes_of(backends));
   return backend_of(backends, address).open(address, settings, bench, clock);
 }

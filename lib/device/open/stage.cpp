@@ -83,6 +83,7 @@ constexpr StageBackend backends[] = {
 std::string stage_devices() { return forms_of(backends); }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
+  require_named(device, "stage", "gcs:/dev/ttyUSB0");
   const Address address = parse_address(device, schemes_of(backends));
   return backend_of(backends, address).open(address, clock, guardian);
 }

@@ -10,6 +10,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/clock.hpp"
+#include "device/os/identity.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/projector/private/dlp_link.hpp"
 #include "device/safety/guardian_actions.hpp"
@@ -81,7 +82,7 @@ class DlpLight final : public LightEngine {
     about["system_status"] = link_.ask(system_status);
     about["main_status"] = link_.ask(main_status);
     about["led_current_percent"] = currents_percent();
-    return about;
+    return with_mark(about);
   }
 
   void prepare() override {

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "device/os/identity.hpp"
 #include "device/stage/private/stop_on_exit.hpp"
 #include "device/stage/spin.hpp"
 
@@ -66,7 +67,7 @@ void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> s
 }
 
 Json describe(Stage& stage) {
-  Json about = stage.identify();
+  Json about = with_mark(stage.identify());
   const StageCaps caps = stage.caps();
   about["min_deg"] = caps.min_deg;
   about["max_deg"] = caps.max_deg;

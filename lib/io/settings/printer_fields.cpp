@@ -48,11 +48,11 @@ const std::vector<PrinterField> fields{
     {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at which it gels", 0, huge, true},
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 1e6},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "of the dose (radicals and inhibitor)", 0, 1e6},
-    {"stage", "device", at<&Printer::stage, &Stage::device>, "sim:, gcs:PORT, tic:SERIAL or grbl:PORT"},
+    {"stage", "device", at<&Printer::stage, &Stage::device>, "gcs:PORT, tic:SERIAL, grbl:PORT, or sim:, a simulated one; empty: none", 0, 0, false, {}, {"gcs", "tic", "grbl", "sim"}},
     {"stage", "speed_deg_s", at<&Printer::stage, &Stage::speed_deg_s>, "rotation speed", 0, 1e6, true},
     {"stage", "turns", at<&Printer::stage, &Stage::turns>, "turns of one print", 1, 1e6},
     {"stage", "direction", at<&Printer::stage, &Stage::direction>, "1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
-    {"camera", "device", at<&Printer::camera, &Camera::device>, "sim:, aravis:ID, v4l2:FILE or replay:FOLDER"},
+    {"camera", "device", at<&Printer::camera, &Camera::device>, "aravis:ID, v4l2:FILE, replay:FOLDER, or sim:, a simulated one; empty: none", 0, 0, false, {}, {"aravis", "v4l2", "replay", "sim"}},
     {"camera", "distance_mm", at<&Printer::camera, &Camera::distance_mm>, "entrance pupil to rotation axis", 0, 1e9, true},
     {"camera", "pixel_mm", at<&Printer::camera, &Camera::pixel_mm>, "pitch at the rotation axis", 0, 100, true},
     {"camera", "azimuth_deg", at<&Printer::camera, &Camera::azimuth_deg>, "from the projector", -360, 360},
@@ -87,6 +87,17 @@ std::string word_objection(const PrinterField& field, const std::string& word) {
   return "'" + word + "' is none of " + join(field.words, ", ");
 }
 
+// No device is a value, too: a tool that needs one says so.
+std::string device_objection(const PrinterField& field, const std::string& device) {
+  const std::size_t colon = device.find(':');
+  if (device.empty()) return "";
+  const auto& known = field.schemes;
+  if (colon != std::string::npos && std::find(known.begin(), known.end(), device.substr(0, colon)) != known.end()) {
+    return "";
+  }
+  return "'" + device + "' is no device of such a kind; begin with one of " + join(known, ":, ") + ":";
+}
+
 std::string mm(double value) { return format_number(value) + " mm"; }
 
 }  // namespace
@@ -103,6 +114,7 @@ std::string dotted_name(const PrinterField& field) { return std::string(field.se
 
 std::string objection(const PrinterField& field, const Slot& slot) {
   if (const auto* word = std::get_if<std::string*>(&slot)) {
+    if (!field.schemes.empty()) return device_objection(field, **word);
     return field.words.empty() ? "" : word_objection(field, **word);
   }
   if (const auto* whole = std::get_if<int*>(&slot)) {

@@ -79,7 +79,10 @@ class SimCamera final : public device::Camera {
         scene_(sim_.bench, binning_, sim_.bits) {}
 
   Json identify() override {
-    return {{"maker", "vam"}, {"model", "simulated camera"}, {"serial", std::to_string(sim_.bench.seed)}};
+    return {{"maker", "VAM tools (simulated)"},
+            {"model", "camera"},
+            {"serial", std::to_string(sim_.bench.seed)},
+            {"simulated", true}};
   }
   device::CameraMode mode() const override {
     return {scene_.columns(), scene_.rows(), sim_.bits, sim_.exposure_us, sim_.fps, binning_};

@@ -78,7 +78,7 @@ class SimDlp final : public device::UsbLink {
   Json about() const override {
     return {{"usb_id", settings_.dlpc900 ? "0451:c900" : "0451:6401"},
             {"serial", settings_.dlpc900 ? "LCR6500" : "LCR4500"},
-            {"maker", "Texas Instruments"},
+            {"maker", "Texas Instruments (simulated)"},
             {"model", settings_.dlpc900 ? "DLPC900" : "DLPC350"}};
   }
 

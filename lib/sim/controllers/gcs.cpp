@@ -108,7 +108,7 @@ class SimGcs final : public SimController {
   std::string reply(const std::string& command, const std::vector<std::string>& words) {
     if (command == "#5") return decimal(motor_.moving() ? 1 : 0, "%.0f") + "\n";
     if (command == "#7") return std::string(1, homing_ ? '\xB0' : '\xB1') + "\n";
-    if (command == "*IDN?") return "(c)2016 Physik Instrumente (PI) GmbH & Co. KG, C-863.11, 0116012345, 1.2.1.0\n";
+    if (command == "*IDN?") return "VAM tools (simulated), C-863.11, 0116012345, 1.2.1.0\n";
     if (command == "CSV?") return "2.0\n";
     if (command == "HLP?") return help();
     if (command == "SAI?") return "1\n";

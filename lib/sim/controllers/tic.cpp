@@ -71,7 +71,7 @@ class SimTic final : public device::UsbLink {
   Json about() const override {
     return {{"usb_id", "1ffb:00b3"},
             {"serial", "00312345"},
-            {"maker", "Pololu Corporation"},
+            {"maker", "Pololu Corporation (simulated)"},
             {"model", "Tic T825"},
             {"firmware", "1.06"}};
   }

@@ -41,7 +41,9 @@ TEST_CASE("every field changed survives the round trip") {
   for (const auto& field : vam::io::printer_fields()) {
     const auto slot = field.slot(printer);
     if (auto* const* text = std::get_if<std::string*>(&slot))
-      **text = field.words.empty() ? "a \"b\"\\\n" : field.words.back();
+      **text = !field.schemes.empty() ? field.schemes.front() + ":a \"b\"\\\n"
+               : field.words.empty()  ? "a \"b\"\\\n"
+                                      : field.words.back();
     if (auto* const* flag = std::get_if<bool*>(&slot)) **flag = !**flag;
     if (auto* const* whole = std::get_if<int*>(&slot)) **whole = field.words.empty() ? **whole + 1 : 10;
     if (auto* const* number = std::get_if<double*>(&slot)) **number *= 1 + 1e-3 / 3;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.hpp"
 #include "device/os/address.hpp"
 
 namespace vam::device {
@@ -15,6 +16,13 @@ template <class Backend, std::size_t count>
   std::vector<std::string> schemes;
   for (const Backend& backend : backends) schemes.emplace_back(backend.scheme);
   return schemes;
+}
+
+/// Throws Fault::usage when there is no device of this kind: a simulator never stands in unasked.
+inline void require_named(const std::string& device, const std::string& kind, const std::string& example) {
+  if (!device.empty()) return;
+  throw Error{Fault::usage, kind + ": none is named; give --device or " + kind +
+                                ".device of the printer file, such as " + example + "; sim: is a simulated one"};
 }
 
 /// "gcs:PATH, tic:SERIAL or sim:"

@@ -23,7 +23,8 @@ struct PrinterField {
   double low = -1e300;  // allowed numbers, low itself included unless open_low
   double high = 1e300;
   bool open_low = false;
-  std::vector<std::string> words{};  // when not empty: the only values allowed, as text
+  std::vector<std::string> words{};    // when not empty: the only values allowed, as text
+  std::vector<std::string> schemes{};  // when not empty: what a device may begin with, before its colon
 };
 
 /// All fields, grouped by section in the order in which the file is printed.
