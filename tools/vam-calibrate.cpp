@@ -24,6 +24,8 @@ cli::Manual manual() {
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
        "each image column is another plane. latency takes the times of the frames as true: determine --latency of "
        "vam-capture first.",
+       "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused with that share: "
+       "what they would have shown is lost. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder (vam-ost): "
        "the threshold at which its cross-section has the known diameter, from a mean over the height of the standard. "
        "Its record is the --resin of vam-ost and vam-sdf.",

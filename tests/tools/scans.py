@@ -1,7 +1,7 @@
 """Folders of images as a camera would take them in a calibration scan, for tests, by formulas of their own.
 
     scans.py sweep DIR axis=511.5 radius=12.7 columns=1024 pitch=8 width=4    a lit line across a vial in air
-    scans.py ramp DIR gamma=2.2 each=4                                        17 levels
+    scans.py ramp DIR gamma=2.2 each=4 full=50000                             17 levels, clipped at 65535
     scans.py flat DIR                                                        an even scene, vignetted
     scans.py beam DIR                                                        a line on a sensor, plane by plane
     scans.py turn DIR axis=60 wobble=2 phase=40                               a vial that runs out of true
@@ -93,7 +93,7 @@ def sweep(job):
 def ramp(job):
     for level in range(17):
         for _ in range(job["each"]):
-            light = 500 + 50000 * (round(level / 16 * 255) / 255) ** job["gamma"] * random.gauss(1, 0.003)
+            light = 500 + job["full"] * (round(level / 16 * 255) / 255) ** job["gamma"] * random.gauss(1, 0.003)
             yield [[light + random.gauss(0, 100) for _ in range(12)] for _ in range(8)]
 
 
@@ -123,7 +123,7 @@ def turn(job):
 
 def main(verb, folder, *rest):
     random.seed(1)
-    job = dict(axis=511.5, radius=12.7, columns=1024, pitch=8, width=4, gamma=2.2, each=4, wobble=2.0, phase=40.0)
+    job = dict(axis=511.5, radius=12.7, columns=1024, pitch=8, width=4, gamma=2.2, each=4, wobble=2.0, phase=40.0, full=50000.0)
     for pair in rest:
         key, value = pair.split("=")
         job[key] = int(value) if key in ("columns", "pitch", "width", "each") else float(value)

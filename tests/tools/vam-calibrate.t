@@ -32,6 +32,14 @@ done
 fails 65 'no height shows light' vam-calibrate edges --from flat --pitch 4 --width 2
 fails 65 '8 rows; at least 16' vam-calibrate beam --from ramp --pixel 0.0035 --step 1.27
 
+# Over-exposed frames are refused by every scan: their curve would be smooth and wrong.
+$scans ramp bright full=80000
+fails 65 'response: bright/00060.png: 100 % of the pixels are over-exposed, at most 0.01 % may be; capture with a shorter' \
+  vam-calibrate response --from bright
+for scan in edges flat axis; do
+  fails 65 "$scan: bright/.* over-exposed" vam-calibrate $scan --from bright $([ $scan = axis ] && echo --step 10)
+done
+
 # Without a folder the record is printed.
 vam-calibrate beam --from beam --pixel 0.0035 --first -6.35 --step 1.27 >beam.json
 is 'beam: status 0' $? 0
@@ -53,6 +61,7 @@ near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
 is 'edges: the fields of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
 is 'edges: the frames are named by their hash' "$(json cal/current-edges.json sha256.sweep)" "$(cd sweep && sha256sum * | sha256sum | cut -d' ' -f1)"
 quiet 'response' vam-calibrate response --from ramp
+is 'response: the exposure is recorded' "$(json cal/current-response.json settings.exposure_us)" 20000.0
 near 'response: half grey' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-lab-1-response-*.csv)" 0.229 0.003
 quiet 'flat' vam-calibrate flat --from flat
 near 'flat: unevenness' "$(json cal/current-flat.json flat.unevenness)" 0.09 0.02
@@ -60,6 +69,10 @@ quiet 'axis' vam-calibrate axis --from turn --step 10
 near 'axis: the column' "$(value cal/current-axis.json axis_column)" 61.25 0.02
 near 'axis: the wobble' "$(value cal/current-axis.json wobble)" 2 0.02
 near 'axis: its phase' "$(value cal/current-axis.json wobble_phase)" 40 1
+vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
+  --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3 --set calibration.folder= >simulated.json
+is 'a record of simulated frames is marked, one of others is not' \
+  "$(json simulated.json simulated) $(grep -c simulated cal/current-axis.json)" 'true 0'
 is 'records are read-only' "$(find cal -name 'cal-*.json' -perm 0444 | wc -l)" 4
 
 # The tools take them up.
@@ -69,10 +82,6 @@ ok 'so is the response' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-
 ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.toml
 ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
-vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
-  --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3 --set calibration.folder= >simulated.json
-is 'a record of simulated frames is marked, one of others is not' \
-  "$(json simulated.json simulated) $(grep -c simulated cal/current-axis.json)" 'true 0'
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: vam-capture check is now vam-calibrate check true'
 ok 'check' vam-calibrate check --need edges --need response
 vam-calibrate check >state

@@ -13,6 +13,10 @@ namespace vam::calibrate_tool {
 namespace {
 
 constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
+constexpr float full_level = 0.998F;      // 254 of 255 is below, 4092 of 4095 shifted to 16 bits is not
+constexpr double allowed_share = 1e-4;    // of pixels at full level: hot ones
+constexpr std::ptrdiff_t allowed_few = 3;  // in a small image
+
 
 // The image that was on from begin to end; nothing when it changed meanwhile or was black.
 int shown_between(const std::vector<Showing>& flips, double begin_s, double end_s) {
@@ -23,6 +27,16 @@ int shown_between(const std::vector<Showing>& flips, double begin_s, double end_
 }
 
 }  // namespace
+// What a pixel at full level would have shown is not known: a curve made of it is wrong, and its scatter is small.
+void refuse_over_exposed(const ScanOptions& options, const Image& image, const std::string& name) {
+  const auto over = std::count_if(image.values.begin(), image.values.end(), [](float v) { return v >= full_level; });
+  const double share = static_cast<double>(over) / static_cast<double>(image.size());
+  if (over <= allowed_few || share <= allowed_share) return;
+  throw Error{Fault::data, options.command + ": " + name + ": " + format_number(100 * share, 3) +
+                               " % of the pixels are over-exposed, at most " + format_number(100 * allowed_share) +
+                               " % may be; capture with a shorter --exposure, less gain or less light"};
+}
+
 
 std::vector<Showing> read_flips(const std::string& path) {
   std::vector<Showing> flips;
@@ -50,13 +64,14 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
   const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
-  // A folder of images asks for angles, which only the scan `axis` needs.
+  // Only the scan `axis` needs angles; where others are given frames without, these are at no angle.
   const bool needs_angles = options.command == "axis";
   io::ViewSource source(options.from, needs_angles ? options.step_deg : 1);
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
   for (int n = 0; source.next(frame); ++n) {
     ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
+    refuse_over_exposed(options, frame.image, frame.name);
     if (!flips.empty()) {
       if (frame.time_s == 0) {
         throw Error{Fault::usage, frame.name + ": has no time, required by --flips; use frames of vam-capture"};

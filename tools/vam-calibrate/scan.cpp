@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "base/error.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -36,7 +37,9 @@ void run_scan(const cli::App& app, const ScanOptions& options) {
     printer.projector.latency_ms = known->value("latency");
   }
   if (options.from.empty()) throw Error{Fault::usage, command + ": no frames; name them with --from"};
-  keep(app, options, printer.calibration, command, scans().at(command)(options, printer));
+  Finding finding = scans().at(command)(options, printer);
+  finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;
+  keep(app, options, printer.calibration, command, std::move(finding));
 }
 
 }  // namespace vam::calibrate_tool

@@ -56,7 +56,7 @@ struct ScanFrame {
 };
 
 /// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on.
-/// Throws Error: no_input, data, usage (flips, but frames without times).
+/// Throws Error: no_input, data (also a frame that is over-exposed), usage (flips, but frames without times).
 void each_frame(const ScanOptions& options, const model::Printer& printer,
                 const std::function<void(const ScanFrame&)>& take);
 
