@@ -20,11 +20,15 @@ cli::Manual manual() {
        "pattern frame was on and when. check reports which records are in force. vam-calibrate-all(1) shows the "
        "patterns, captures the frames and runs all commands in the right order.",
        "edges: the camera must see the whole vial, from the position given by camera.distance_mm and "
-       "camera.azimuth_deg, 60 to 91 degrees from the projector. beam: either a bare sensor is moved along the beam, "
+       "camera.azimuth_deg, 60 to 91 degrees from the projector. The vial circles the rotation axis, so that frames "
+       "of one stage angle give its middle there, not the axis; frames of four (vam-capture --angle 0, 90, 180, 270, "
+       "their stacks one after the other in one file) give both, the wobble as the radius and the stage angle of "
+       "greatest column. beam: either a bare sensor is moved along the beam, "
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
        "each image column is another plane. latency takes the times of the frames as true: determine --latency of "
        "vam-capture first.",
-       "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused with that share: "
+       "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused with that "
+       "share: "
        "what they would have shown is lost. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder (vam-ost): "
        "the threshold at which its cross-section has the known diameter, from a mean over the height of the standard. "
@@ -69,7 +73,7 @@ void add_resin(cli::App& resin, ResinOptions& o) {
 }
 
 void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
-  auto& edges = app.subcommand("edges", "centre, radius and tilt of the vial, from a sweep of lines", o.command);
+  auto& edges = app.subcommand("edges", "axis, wobble, radius and tilt of the vial, from sweeps of lines", o.command);
   add_input(edges, o, true);
   edges.option("--pitch", "PX", o.pitch_px, {1, 1000}, "Step of the sweep.");
   edges.option("--width", "PX", o.width_px, {1, 1000}, "Width of the swept line.");

@@ -88,6 +88,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
              "Without --follow: angle = speed x time since the start.");
+  app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: the stage stands at this angle.");
   app.option("--latency", "MS", o.latency_ms, {-10000, 10000},
              "Delay from the end of an exposure to the camera's time stamp, as received.");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,

@@ -49,7 +49,7 @@ bench() {  # bench OPTIONS...
   camera_up --angles truth --shown keep/flips --log seen --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --gamma 1.8 \
     --axis-column 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --screen sdl:0 --light sim: --keep keep --log events --pitch 2 --sweep-exposure 19000 --scans "$@"; }
+calibrate() { vam-calibrate-all --screen sdl:0 --light sim: --keep keep --log events --home --pitch ${pitch:-2} --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0.001 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'five scans in one go' calibrate 'edges axis beam latency response'
@@ -79,11 +79,22 @@ near 'edges: the radius' "$(value edges radius)" 9 0.0045
 within 'edges: the middle' "$(value edges axis_column)" 106.7 "$(sigma edges axis_column)"
 within 'edges: the radius' "$(value edges radius)" 9 "$(sigma edges radius)"
 
+# A vial that runs out of true: its middle is up to 3 px beside the axis.
+bench --wobble 0.3 --wobble-phase 50
+pitch=4; quiet 'edges of a vial that wobbles' calibrate edges; pitch=2
+near 'edges: the axis, not the middle of the vial' "$(value edges axis_column)" 106.7 0.1
+near 'edges: the wobble' "$(value edges wobble)" 3 0.1
+near 'edges: in millimetres' "$(value edges wobble_mm)" 0.3 0.01
+near 'edges: its phase' "$(value edges wobble_phase)" 50 2
+within 'edges: its phase' "$(value edges wobble_phase)" 50 "$(sigma edges wobble_phase)"
+is 'edges: from four stage angles' "$(json cal/current-edges.json settings.stage_angles_deg)" '[0.0, 90.0, 180.0, 270.0]'
+camera_down
+
 # Eight times the light, which the camera cannot take in 2.5 ms: the scan shortens its exposure.
 glow=40; bench; glow=5
 quiet 'a scan that begins over-exposed' calibrate response
 near 'response: the gamma all the same' "$(awk -F, '$1 == 128 { print $2 }' "$(ls -t cal/cal-simulated-response-*.csv | head -n 1)")" 0.289 0.01
-is 'response: by a shorter exposure' "$(json cal/current-response.json settings.exposure_us) $(grep -c '"event":"over-exposed' events)" '400.0 2'
+is 'response: by a shorter exposure' "$(json cal/current-response.json settings.exposure_us) $(grep -c '"event":"over-exposed.*"scan":"response"' events)" '400.0 2'
 camera_down
 
 bench --card --vignetting 0.3

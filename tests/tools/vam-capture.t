@@ -42,6 +42,11 @@ python3 "$VAM_SOURCE/tests/tools/exr.py" sum piped.exr >sum2
 same 'has the same pixels' sum1 sum2
 is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 
+# A stage that stands at a known angle.
+fails 64 'a stage that stands conflicts with --follow, --speed and --every' $take --angle 90 --speed 3 --frames 1 -o no.exr
+$take --angle 270 --frames 1 --compression none -o stands.exr
+is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr stands.exr vam:angle_deg)" 270
+
 # Lost and incomplete frames: said, counted, marked.
 lossy='sim:?pace=virtual&lose=3,4&cut=6'
 vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said

@@ -3,10 +3,14 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "metrology/calibrate/wobble.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
@@ -40,44 +44,112 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
   }
 }
 
-}  // namespace
+// The frames of one sweep, by the pattern's frame: how many, and the sum of each height's means.
+using Sweep = std::map<int, std::pair<int, std::vector<double>>>;
 
-Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
-  std::map<int, std::pair<int, std::vector<double>>> sums;  // by the pattern's frame
+struct Sweeps {
+  std::map<long, Sweep> by_angle;  // stage angle in whole degrees, 0...359; -1: not known
   int rows = 0;
   double row_mm = 0;
+};
+
+Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
+  Sweeps sweeps;
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const auto means = metrology::band_means(frame.image, options.bands);
-    auto& [count, sum] = sums[frame.shown];
+    const long angle = std::isfinite(frame.angle_deg) ? (std::lround(frame.angle_deg) % 360 + 360) % 360 : -1;
+    auto& [count, sum] = sweeps.by_angle[angle][frame.shown];
     sum.resize(means.size());
     for (std::size_t b = 0; b < means.size(); ++b) sum[b] += means[b];
     ++count;
-    rows = frame.image.height;
-    row_mm = frame.pixel_mm;
+    sweeps.rows = frame.image.height;
+    sweeps.row_mm = frame.pixel_mm;
   });
+  return sweeps;
+}
+
+metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, const Sweep& sweep) {
   metrology::SweepScan scan;
   scan.width_px = options.width_px;
   scan.signal.resize(static_cast<std::size_t>(options.bands));
-  for (const auto& [shown, sum] : sums) {
+  for (const auto& [shown, sum] : sweep) {
     scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
     for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
   }
-  const int band_rows = rows / options.bands;  // as band_means() cuts them
+  const int band_rows = sweeps.rows / options.bands;  // as band_means() cuts them
   for (int b = 0; b < options.bands; ++b) {
-    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * row_mm);
+    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * sweeps.row_mm);
   }
-  const auto found = metrology::find_edges(scan, printer);
+  return scan;
+}
+
+// Of all angles: the rotation axis where the vial's middle was, what does not depend on the angle by its mean.
+metrology::VialEdges combine(const std::vector<double>& angles, const std::vector<metrology::VialEdges>& all,
+                             Finding& finding, double pixel_mm) {
+  if (all.size() == 1) {
+    finding.warn_because(
+        "the sweep is of one stage angle, where the vial's middle stands for the rotation axis, which a "
+        "vial that wobbles misses; sweep at 0, 90, 180 and 270");
+    return all.front();
+  }
+  std::vector<stats::Measured> column, tilt, edge, radius, blur;
+  for (const auto& edges : all) {
+    column.push_back(edges.axis_column);
+    if (edges.tilt_deg.n > 0) tilt.push_back(edges.tilt_deg);
+    edge.push_back(edges.edge_px);
+    radius.push_back(edges.radius_mm);
+    blur.push_back(edges.blur_px);
+  }
+  const char* method = "first harmonic of the vial's middle";
+  const auto circle = metrology::find_wobble(angles, column, "edges");
+  finding.value("wobble", circle.radius, "px", method);
+  finding.value("wobble_phase", circle.phase_deg, "deg", method);
+  finding.value("wobble_mm", {circle.radius.value * pixel_mm, circle.radius.sigma * pixel_mm, circle.radius.n}, "mm",
+                method);
+  metrology::VialEdges out = all.front();
+  out.axis_column = circle.mean;
+  if (tilt.size() == all.size()) {
+    const auto cone = metrology::find_wobble(angles, tilt, "edges");
+    out.tilt_deg = cone.mean;
+    finding.value("wobble_tilt", cone.radius, "deg", "first harmonic of the tilt");
+    finding.value("wobble_tilt_phase", cone.phase_deg, "deg", "first harmonic of the tilt");
+  }
+  out.edge_px = stats::weighted_mean(edge);
+  out.radius_mm = stats::weighted_mean(radius);
+  out.blur_px = stats::weighted_mean(blur);
+  return out;
+}
+
+}  // namespace
+
+Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
+  const Sweeps sweeps = read_sweeps(options, printer);
+  std::vector<double> angles;
+  std::vector<metrology::VialEdges> all;
+  std::size_t positions = 0;
+  for (const auto& [angle, sweep] : sweeps.by_angle) {
+    const metrology::SweepScan scan = to_scan(options, sweeps, sweep);
+    angles.push_back(static_cast<double>(angle));
+    all.push_back(metrology::find_edges(scan, printer));
+    positions = scan.column.size();
+  }
+  if (all.empty()) throw Error{Fault::data, options.from + ": no frame shows one line of the sweep; see --flips"};
   Finding finding;
-  const char* method = "edge fit of fluorescence";
+  const auto found = combine(angles, all, finding, printer.projector.pixel_mm);
+  const char* method =
+      all.size() > 1 ? "edge fit of fluorescence, mean over the stage angles" : "edge fit of fluorescence";
   finding.value("axis_column", found.axis_column, "px", method);
   finding.value("edge", found.edge_px, "px", method);
   finding.value("radius", found.radius_mm, "mm", "tangent column to radius");
   finding.value("tilt", found.tilt_deg, "deg", "line through the middles by height");
   finding.value("line_blur", found.blur_px, "px", method);
-  finding.facts["settings"] = {
-      {"pitch_px", options.pitch_px},           {"width_px", options.width_px},
-      {"positions", scan.column.size()},        {"heights", options.bands},
-      {"pixel_mm", printer.projector.pixel_mm}, {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
+  finding.facts["settings"] = {{"pitch_px", options.pitch_px},
+                               {"width_px", options.width_px},
+                               {"positions", positions},
+                               {"heights", options.bands},
+                               {"pixel_mm", printer.projector.pixel_mm},
+                               {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
+  if (all.size() > 1) finding.facts["settings"]["stage_angles_deg"] = angles;
   if (found.axis_column.sigma > wanted_axis_sigma_px) {
     finding.fail_because("the standard deviation of the centre is " + format_number(found.axis_column.sigma, 3) +
                          " px, above " + format_number(wanted_axis_sigma_px));

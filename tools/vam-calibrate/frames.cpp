@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -12,11 +13,11 @@ namespace vam::calibrate_tool {
 
 namespace {
 
-constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
-constexpr float full_level = 0.998F;      // 254 of 255 is below, 4092 of 4095 shifted to 16 bits is not
-constexpr double allowed_share = 1e-4;    // of pixels at full level: hot ones
+constexpr float full_level = 0.998F;       // 254 of 255 is below, 4092 of 4095 shifted to 16 bits is not
+constexpr double allowed_share = 1e-4;     // of pixels at full level: hot ones
 constexpr std::ptrdiff_t allowed_few = 3;  // in a small image
 
+constexpr double margin_s = 0.02;  // either side of an exposure: a vertical blank, and the light's own time
 
 // The image that was on from begin to end; nothing when it changed meanwhile or was black.
 int shown_between(const std::vector<Showing>& flips, double begin_s, double end_s) {
@@ -26,7 +27,6 @@ int shown_between(const std::vector<Showing>& flips, double begin_s, double end_
   return first == flips.begin() || first != last ? -1 : (first - 1)->frame;
 }
 
-}  // namespace
 // What a pixel at full level would have shown is not known: a curve made of it is wrong, and its scatter is small.
 void refuse_over_exposed(const ScanOptions& options, const Image& image, const std::string& name) {
   const auto over = std::count_if(image.values.begin(), image.values.end(), [](float v) { return v >= full_level; });
@@ -37,6 +37,7 @@ void refuse_over_exposed(const ScanOptions& options, const Image& image, const s
                                " % may be; capture with a shorter --exposure, less gain or less light"};
 }
 
+}  // namespace
 
 std::vector<Showing> read_flips(const std::string& path) {
   std::vector<Showing> flips;
@@ -66,12 +67,12 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
   const double latency_s = 1e-3 * printer.projector.latency_ms;
   // Only the scan `axis` needs angles; where others are given frames without, these are at no angle.
   const bool needs_angles = options.command == "axis";
-  io::ViewSource source(options.from, needs_angles ? options.step_deg : 1);
+  io::ViewSource source(options.from, needs_angles ? options.step_deg : std::numeric_limits<double>::quiet_NaN());
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
   for (int n = 0; source.next(frame); ++n) {
-    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
     refuse_over_exposed(options, frame.image, frame.name);
+    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
     if (!flips.empty()) {
       if (frame.time_s == 0) {
         throw Error{Fault::usage, frame.name + ": has no time, required by --flips; use frames of vam-capture"};

@@ -49,10 +49,10 @@ void measure_resin(const ResinOptions& options);
 
 struct ScanFrame {
   Image image;
-  double time_s = 0;  // middle of the exposure
-  double angle_deg = 0;
-  double pixel_mm = 0;  // at the axis, as the frames say, else the printer
-  int shown = 0;        // pattern frame during the whole exposure: by the flips, else the frame's own number
+  double time_s = 0;     // middle of the exposure
+  double angle_deg = 0;  // NaN: not known
+  double pixel_mm = 0;   // at the axis, as the frames say, else the printer
+  int shown = 0;         // pattern frame during the whole exposure: by the flips, else the frame's own number
 };
 
 /// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on.

@@ -15,7 +15,7 @@ struct Options {
   std::string device;  // empty: camera.device
   std::string output = "-";
   std::string follow;
-  std::optional<double> speed_deg_s, every_deg, pixel_mm, turns;
+  std::optional<double> speed_deg_s, angle_deg, every_deg, pixel_mm, turns;
   std::optional<int> frames, max_lost;
   double latency_ms = 0;
   bool live = false;

@@ -84,6 +84,7 @@ std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, co
 std::unique_ptr<device::AngleSource> open_angles(const Options& o) {
   if (!o.follow.empty()) return device::followed_angle(o.follow, device::real_clock());
   if (o.speed_deg_s) return device::elapsed_angle(*o.speed_deg_s, device::real_clock());
+  if (o.angle_deg) return device::standing_angle(*o.angle_deg);
   return nullptr;
 }
 
@@ -96,6 +97,9 @@ bool is_recording(const std::string& device) { return device.rfind("replay:", 0)
 void check(const Options& o, const model::Printer& printer) {
   if (!o.follow.empty() && o.speed_deg_s)
     throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
+  if (o.angle_deg && (!o.follow.empty() || o.speed_deg_s || o.every_deg)) {
+    throw Error{Fault::usage, "--angle: a stage that stands conflicts with --follow, --speed and --every"};
+  }
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
     throw Error{Fault::usage, "--every: camera frames have no angles; give --follow or --speed"};
   }

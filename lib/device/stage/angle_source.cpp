@@ -36,6 +36,16 @@ class ElapsedAngle final : public AngleSource {
   std::optional<double> start_s_;
 };
 
+class StandingAngle final : public AngleSource {
+ public:
+  explicit StandingAngle(double angle_deg) : angle_deg_(angle_deg) {}
+  void update() override {}
+  std::optional<AngleSample> at(double t_s) const override { return AngleSample{t_s, angle_deg_, 0}; }
+
+ private:
+  double angle_deg_;
+};
+
 class FollowedAngle final : public AngleSource {
  public:
   FollowedAngle(const std::string& path, Clock& clock) : clock_(clock) {
@@ -99,6 +109,8 @@ class FollowedAngle final : public AngleSource {
 std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock) {
   return std::make_unique<ElapsedAngle>(speed_deg_s, clock);
 }
+
+std::unique_ptr<AngleSource> standing_angle(double angle_deg) { return std::make_unique<StandingAngle>(angle_deg); }
 
 std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock) {
   return std::make_unique<FollowedAngle>(path, clock);

@@ -23,6 +23,9 @@ class AngleSource {
 /// first question [OST22].
 [[nodiscard]] std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock);
 
+/// Of a stage that stands.
+[[nodiscard]] std::unique_ptr<AngleSource> standing_angle(double angle_deg);
+
 /// By the lines of vam-stage from a file, FIFO, or "-" (stdin): their running line fit, extrapolated. update() throws
 /// Fault::data for a bad line, Fault::busy when nothing came for 0.3 s or the lines have ended. Before the first line
 /// it waits without limit. Throws Fault::no_input when the file cannot be opened.

@@ -8,6 +8,7 @@
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
+#include "metrology/calibrate/wobble.hpp"
 
 namespace vam::metrology {
 
@@ -39,16 +40,6 @@ stats::CurveFit fit_band(const TurnScan& scan, const std::vector<double>& middle
     return out;
   };
   return stats::fit_curve(residuals, std::vector<double>(count), std::vector<double>(count, 1e-3), "axis: middles");
-}
-
-// Amplitude and phase of a cos + b sin.
-void to_wobble(const stats::Measured& a, const stats::Measured& b, CameraAxis& out) {
-  const double radius = std::hypot(a.value, b.value);
-  const double phase = std::atan2(b.value, a.value) * deg_per_rad;
-  const double along = std::hypot(a.value * a.sigma, b.value * b.sigma) / radius;
-  const double across = std::hypot(b.value * a.sigma, a.value * b.sigma) / radius;
-  out.wobble_px = {radius, along, a.n};
-  out.phase_deg = {phase < 0 ? phase + 360 : phase, across / radius * deg_per_rad, a.n};
 }
 
 }  // namespace
@@ -92,7 +83,9 @@ CameraAxis find_camera_axis(const TurnScan& scan) {
     out.column = line.at_zero;
     out.tilt_deg = stats::lean_deg(line.slope, 1);
   }
-  to_wobble(stats::weighted_mean(a), stats::weighted_mean(b), out);
+  const Wobble wobble = wobble_of(out.column, stats::weighted_mean(a), stats::weighted_mean(b));
+  out.wobble_px = wobble.radius;
+  out.phase_deg = wobble.phase_deg;
   return out;
 }
 

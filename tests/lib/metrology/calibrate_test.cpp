@@ -12,6 +12,7 @@
 #include "metrology/calibrate/latency.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/calibrate/response.hpp"
+#include "metrology/calibrate/wobble.hpp"
 #include "oracle/calibration_scans.hpp"
 
 using namespace vam;
@@ -253,4 +254,35 @@ TEST_CASE("Half maximum: between pixels, and only with dark on both sides") {
   std::vector<double> step(40);
   for (std::size_t i = 20; i < 40; ++i) step[i] = 1;
   CHECK_FALSE(half_maximum(step));
+}
+
+TEST_CASE("Wobble: what stands still and what goes round, from four stage angles, 200 scans") {
+  vam::oracle::Random random(23);
+  test::Coverage axis("axis"), radius("radius"), phase("phase");
+  for (int run = 0; run < runs; ++run) {
+    const double at = 500 + 20 * part(random);
+    const double out = 0.5 + 5 * part(random);
+    const double towards_deg = 360 * part(random);
+    std::vector<double> angle_deg;
+    std::vector<Measured> middle;
+    for (int i = 0; i < 4; ++i) {
+      angle_deg.push_back(90 * i);
+      const double sigma = 0.01 + 0.02 * part(random);
+      const double theta = (90 * i - towards_deg) * std::numbers::pi / 180;
+      middle.push_back({at + out * std::cos(theta) + sigma * unit(random), sigma, 50});
+    }
+    const Wobble found = find_wobble(angle_deg, middle, "test");
+    axis.add(found.mean, at);
+    radius.add(found.radius, out);
+    phase.add({std::remainder(found.phase_deg.value - towards_deg, 360), found.phase_deg.sigma, 4}, 0);
+  }
+  axis.check();
+  radius.check();
+  phase.check();
+  const auto at = [](std::vector<double> angles) {
+    return [angles] { (void)find_wobble(angles, std::vector<Measured>(angles.size(), {1, 0.1, 9}), "edges"); };
+  };
+  CHECK(error_of(at({0, 90}), Fault::data).find("edges: 2 stage angles leave a gap of 270 degrees") == 0);
+  CHECK(fault_of(at({0, 90, 180})) == Fault::data);
+  at({0, 120, 240})();
 }
