@@ -13,6 +13,7 @@ namespace vam::device {
 namespace {
 
 constexpr std::size_t longest_answer = 65536;
+constexpr int not_referenced = 5;  // or the servo is off, which the backend sees to
 
 // What of an answer may be shown to a person: control bytes as \xNN, at most 40 characters.
 std::string shown(const std::string& bytes) {
@@ -37,16 +38,14 @@ bool printable(const std::string& line) {
   });
 }
 
-}  // namespace
-
-std::string gcs_error_text(int code) {
+std::string gcs_meaning(int code) {
   static const std::map<int, std::string> meanings{
       {1, "parameter syntax"},
       {2, "unknown command"},
       {3, "command too long"},
-      {5, "not referenced or servo off"},
-      {7, "position out of limits"},
-      {8, "velocity out of limits"},
+      {5, "not referenced: run `vam-stage home` or give --home"},
+      {7, "beyond the limits of travel"},
+      {8, "faster than the stage's maximum"},
       {10, "stopped by command"},
       {15, "no such axis"},
       {17, "parameter out of range"},
@@ -56,7 +55,14 @@ std::string gcs_error_text(int code) {
       {54, "unknown parameter"},
       {-1024, "motion error: position error too large, servo switched off"}};
   const auto found = meanings.find(code);
-  return std::to_string(code) + (found == meanings.end() ? "" : " (" + found->second + ")");
+  return found == meanings.end() ? "" : found->second;
+}
+
+}  // namespace
+
+std::string gcs_error_text(int code) {
+  const std::string meaning = gcs_meaning(code);
+  return std::to_string(code) + (meaning.empty() ? "" : " (" + meaning + ")");
 }
 
 GcsLink::GcsLink(std::unique_ptr<Port> port, Clock& clock, GcsSettings settings)
@@ -71,8 +77,7 @@ double GcsLink::send(const std::string& text) {
   while (!port_->read(1e-9).empty()) continue;
   // Before the bytes leave: a process that must wait for its processor right after has its answer before it knows.
   const double t0_s = clock_.now_s();
-  const std::string prefix = settings_.address ? std::to_string(*settings_.address) + " " : "";
-  port_->write(text.size() == 1 ? text : prefix + text + "\n");
+  port_->write(addressed(text.size() == 1 ? text : text + "\n", settings_));
   return t0_s;
 }
 
@@ -158,6 +163,7 @@ void GcsLink::order(const std::string& text, int harmless) {
   send(text);
   const int code = take_error();
   if (code != 0 && code != harmless) {
+    if (code == not_referenced) throw Error{Fault::protocol, port_->name() + ": " + gcs_meaning(code)};
     throw Error{Fault::protocol, port_->name() + ": '" + text + "' was refused with error " + gcs_error_text(code)};
   }
 }
@@ -187,6 +193,10 @@ bool GcsLink::ready() {
   }
 }
 
-void GcsLink::halt_now() { port_->write("\x18"); }
+void GcsLink::halt_now() { port_->write(addressed("\x18", settings_)); }
+
+std::string addressed(const std::string& bytes, const GcsSettings& settings) {
+  return settings.address ? std::to_string(*settings.address) + " " + bytes : bytes;
+}
 
 }  // namespace vam::device

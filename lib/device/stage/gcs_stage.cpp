@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -18,9 +19,12 @@ namespace {
 
 constexpr int stopped_by_command = 10;
 
-// Every byte of this stops: #24 at once; the LF ends half a command that the dead tool may have left in the
-// controller, which could be a motion, so STP and #24 follow.
-const std::string stop_bytes = "\x18\nSTP\n\x18";
+// #24 stops at once; the LF ends half a command that the dead tool may have left in the controller, which could be a
+// motion, so STP and #24 follow. With an address half a command comes first: what follows it would be a part of it.
+std::string stop_bytes(const GcsSettings& settings) {
+  const std::string now = addressed("\x18", settings);
+  return settings.address ? "\n" + now + addressed("STP\n", settings) + now : now + "\nSTP\n" + now;
+}
 
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(' ');
@@ -162,10 +166,12 @@ class GcsStage final : public Stage {
   std::string unit() {
     if (!has("PUN?")) return "";
     const std::string line = link_.ask("PUN? " + axis_).lines.front();
-    return line.substr(line.find('=') + 1);
+    std::string name = trimmed(line.substr(line.find('=') + 1));  // "deg" or "DEG", as the parameters were loaded
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
   }
 
-  void watch() { stop_order_.give(stop_bytes, link_.port().handle()); }
+  void watch() { stop_order_.give(stop_bytes(link_.settings()), link_.port().handle()); }
 
   GcsLink link_;
   std::string axis_;

@@ -63,7 +63,9 @@ class SimGcs final : public SimController {
     for (const char c : bytes) {
       if (silent()) return;
       if (c == 5 || c == 7 || c == 24) {
-        handle(std::string("#") + std::to_string(static_cast<int>(c)));
+        // An address may precede single bytes, too; they need no LF [PI MS249E, 8.2 and 8.3].
+        const bool for_someone = line_.find_first_not_of("0123456789 ") == std::string::npos;
+        handle((for_someone ? std::exchange(line_, "") : "") + "#" + std::to_string(static_cast<int>(c)));
       } else if (c == '\n') {
         handle(std::exchange(line_, ""));
       } else {
@@ -78,7 +80,8 @@ class SimGcs final : public SimController {
     homing_ = false;
   }
 
-  // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us.
+  // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us. Without an address a command, single
+  // bytes included, is for controller 1 [PI MS249E, 8.3 "Target and sender address"].
   void handle(const std::string& line) {
     auto words = split(line, ' ');
     std::erase(words, "");
@@ -88,7 +91,7 @@ class SimGcs final : public SimController {
       if (words.front() != std::to_string(settings_.address)) return;
       words.erase(words.begin());
       if (words.empty()) return;
-    } else if (settings_.address != 1 && line.front() != '#') {
+    } else if (settings_.address != 1) {
       return;
     }
     const std::string command = words.front();
@@ -148,7 +151,7 @@ class SimGcs final : public SimController {
     if (command == "ACC?") return "=" + decimal(settings_.motor.acceleration_deg_s2) + "\n";
     if (command == "TMN?") return "=" + decimal(settings_.min_deg) + "\n";
     if (command == "TMX?") return "=" + decimal(settings_.max_deg) + "\n";
-    if (command == "PUN?") return "=deg\n";
+    if (command == "PUN?") return "=DEG\n";
     if (command == "SPA?" && words.size() == 2 && words[1] == "0xA") {
       return " 0xA=" + decimal(settings_.max_speed_deg_s) + "\n";
     }

@@ -30,9 +30,38 @@ TEST_CASE("A controller of a daisy chain is addressed and its answers are checke
   gcs.address = 2;
   VirtualStage lab(sim, gcs);
   CHECK(describe(*lab.stage)["model"] == "C-863.11");
+  // All that a print sends is addressed, single bytes included: this controller hears nothing else.
+  home(*lab.stage, lab.clock, 60);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  double last_deg = 0;
+  spin(*lab.stage, lab.clock, plan, [&](const AngleSample& sample) { last_deg = sample.angle_deg; });
+  CHECK(last_deg >= 360);
+  lab.stage->start_move(1000);
+  CHECK(lab.truly_moves());
+  halt(*lab.stage, lab.clock, Stop::abrupt);
+  CHECK_FALSE(lab.truly_moves());
   gcs.address = 3;
   VirtualStage other(sim, gcs);
   CHECK(fault_of([&] { (void)other.stage->identify(); }) == Fault::busy);
+}
+
+TEST_CASE("The first controller of a chain hears nothing that is for another") {
+  GcsSettings gcs;
+  gcs.address = 2;
+  VirtualStage first({}, gcs);
+  CHECK(fault_of([&] { (void)first.stage->moving(); }) == Fault::busy);
+  CHECK(fault_of([&] { (void)first.stage->homed(); }) == Fault::busy);
+  CHECK(fault_of([&] { first.stage->stop(Stop::abrupt); }) == Fault::busy);
+  CHECK(first.commands("") == 0);
+}
+
+TEST_CASE("The unit of an axis is degrees, however it is written; a stage without reference says what to do") {
+  VirtualStage lab;
+  CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
+  lab.stage->enable();
+  CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::protocol)
+            .find("not referenced: run `vam-stage home` or give --home") != std::string::npos);
 }
 
 TEST_CASE("An axis that the controller does not have is named, with those it has") {
@@ -64,10 +93,10 @@ TEST_CASE("The controller's refusals are errors with their meaning") {
   SimGcsSettings sim;
   sim.max_deg = 100;
   VirtualStage lab(sim);
-  CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("error 5") != std::string::npos);
+  CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("not referenced") != std::string::npos);
   home(*lab.stage, lab.clock, 60);
   CHECK(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }).find("limits") != std::string::npos);
-  CHECK(message_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }).find("velocity") != std::string::npos);
+  CHECK(message_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }).find("faster than") != std::string::npos);
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::protocol);
   CHECK_FALSE(lab.truly_moves());
   // A refusal is cleared by being read: the next order is judged for itself.

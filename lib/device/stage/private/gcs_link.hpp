@@ -62,7 +62,11 @@ class GcsLink {
   GcsSettings settings_;
 };
 
-/// "7 (position out of limits)"
+/// The command as the controller of that address takes it: in a daisy chain the address precedes single bytes, too
+/// [PI MS249E, 8.3 "Target and sender address"].
+[[nodiscard]] std::string addressed(const std::string& bytes, const GcsSettings& settings);
+
+/// "7 (beyond the limits of travel)"
 [[nodiscard]] std::string gcs_error_text(int code);
 
 }  // namespace vam::device
