@@ -76,6 +76,8 @@ void declare(cli::App& app, Options& options) {
              "Additional random time, before and after the angle is sampled.");
   app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept this rate only.");
   app.option("--address", "N", options.stage.address, {1, 16}, "Address of the controller in a daisy chain.");
+  app.flag("--reset-at-open", options.stage.reset_at_open,
+           "GRBL: the board is reset when its port is opened, as most are, and its position is lost.");
   app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N]; may be repeated.");
   app.group("Program");
   app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");

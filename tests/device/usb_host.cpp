@@ -196,7 +196,11 @@ std::string descriptors(const std::string& ids, int interface_class) {
 }
 
 std::unique_ptr<UsbLink> simulate(const vam::device::Address& address, const vam::sim::SimLog& log) {
-  if (address.scheme == "tic") return vam::sim::make_sim_tic({}, vam::device::real_clock(), log);
+  if (address.scheme == "tic") {
+    vam::sim::SimTicSettings tic;
+    tic.referenced = address.word("referenced", "") == "yes";
+    return vam::sim::make_sim_tic(tic, vam::device::real_clock(), log);
+  }
   vam::sim::SimDlpSettings settings;
   settings.dlpc900 = address.scheme == "dlpc900";
   settings.current_percent = address.number("current_percent", settings.current_percent, 0, 100);
@@ -225,7 +229,7 @@ void ended(GPid, gint status, gpointer user) {
 int main(int argc, char** argv) {
   if (argc < 4) return 64;
   const auto address = vam::device::parse_address(argv[1], {"tic", "dlpc350", "dlpc900"});
-  address.allow({"current_percent", "inverted", "stuck_grey", "slow_reads", "fault", "fault_after"});
+  address.allow({"current_percent", "inverted", "referenced", "stuck_grey", "slow_reads", "fault", "fault_after"});
   Host host;
   host.link = simulate(address, vam::sim::file_sim_log(argv[2]));
   const std::string ids = host.link->about()["usb_id"];

@@ -37,7 +37,7 @@ class Tool:
         open(path, "w").close()
         self.log = Log(path)
         device = DEVICES[kind][number % len(DEVICES[kind])]
-        hardware = device.split("?")[0]
+        hardware = device.split("?")[0] + ("?referenced=yes" if kind == "tic" else "")
         self.host = subprocess.Popen(ON_A_SIMULATED_BUS + [hardware, path] + TELL_PID + COMMANDS[kind] + [device],
                                      stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
                                      env=dict(os.environ, VAM_LOCK_DIR=folder))

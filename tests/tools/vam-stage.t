@@ -30,6 +30,7 @@ fails 64 "camera.device: 'webcam' is no device" vam-stage home --set camera.devi
 for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
   ok "the printer file knows $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
 done
+ok 'options may stand before the command' vam-stage --device sim: identify
 ok '--device goes before it' vam-stage identify --device sim: --printer lab/printer.toml --log events
 is 'a simulated stage is marked in the log' "$(grep -c '"device":"sim:".*"simulated":true' events)" 1
 rm events
@@ -103,6 +104,22 @@ stage identify >about
 is 'the baud rate is found' "$(json about model)" C-863.11
 LD_PRELOAD=$shim vam-stage identify --device "gcs:$PWD/stage?baud=115200" 2>errors
 is 'the wrong one is a wrong answer or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
+stage_down
+
+# The second controller of a daisy chain: all is addressed to it, the guardian's order to stop included.
+stage_up --address 2 --acceleration 5000 --max-speed 720
+LD_PRELOAD=$shim vam-stage spin --home --device "gcs:$PWD/stage?address=2" --speed 1 >/dev/null &
+chained=$!
+await turning
+kill -9 $chained; wait $chained 2>/dev/null
+await stood
+ok 'killed, it leaves a stage in a chain standing' stood
+stage_down
+
+# A GRBL board that its port resets has lost its position.
+stage_up --protocol grbl --reset-at-open
+fails 76 'not referenced: its zero may be anywhere; run `vam-stage home` or give --home' \
+  env LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 60
 stage_down
 
 # A GRBL board instead.

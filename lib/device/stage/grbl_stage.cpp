@@ -84,10 +84,13 @@ class GrblStage final : public Stage {
     }
     require_ok("$H", line);
     homing_ = false;
+    referenced_ = true;
     offset_deg_ = -sample().angle_deg;
     stop_order_.withdraw();
     return true;
   }
+
+  bool referenced() override { return referenced_; }
 
   void set_speed(double deg_s) override { speed_deg_s_ = deg_s; }
 
@@ -127,6 +130,7 @@ class GrblStage final : public Stage {
   void stop(Stop) override {
     stop_order_.beat();
     port_->write(homing_ ? soft_reset : jog_cancel);
+    if (homing_) referenced_ = false;
     homing_ = false;
   }
 
@@ -142,6 +146,7 @@ class GrblStage final : public Stage {
       const std::string line = next_line(0.2, false);
       if (line.rfind("Grbl ", 0) == 0) {
         greeting_ = line.substr(0, line.find(" ["));
+        referenced_ = false;  // it was reset: its position counts from where it stood
         break;
       }
       if (line == "ok") break;  // it was awake
@@ -275,6 +280,7 @@ class GrblStage final : public Stage {
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;
   bool homing_ = false;
+  bool referenced_ = true;  // a board that was not reset keeps its position
   std::optional<double> idle_since_s_;
 };
 

@@ -82,6 +82,7 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     throw Error{Fault::data, format_number(plan.speed_deg_s) + " deg/s exceeds the stage's maximum of " +
                                  format_number(caps.max_speed_deg_s)};
   }
+  require_referenced(stage);
   StopOnExit stopper(stage);
   stage.enable();
   const Course course = plot(plan, caps, plan.direction * stage.sample().angle_deg);

@@ -47,6 +47,8 @@ class Stage {
   /// Starts the search for the reference; homed() turns true when it is found. 0 deg is there.
   virtual void start_homing() = 0;
   virtual bool homed() = 0;
+  /// False where the controller knows that its zero is not at the reference: it may stand anywhere.
+  virtual bool referenced() { return true; }
   virtual void set_speed(double deg_s) = 0;
   /// Declares the present angle of a standing stage to be angle_deg.
   virtual void set_angle(double angle_deg) = 0;

@@ -24,6 +24,11 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
   }
 }
 
+void require_referenced(Stage& stage) {
+  if (stage.referenced()) return;
+  throw Error{Fault::protocol, "stage: not referenced: its zero may be anywhere; run `vam-stage home` or give --home"};
+}
+
 void home(Stage& stage, Clock& clock, double timeout_s) {
   StopOnExit stopper(stage);
   stage.enable();
@@ -39,6 +44,7 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
 }
 
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s) {
+  if (!relative) require_referenced(stage);
   StopOnExit stopper(stage);
   stage.enable();
   stage.set_speed(speed_deg_s);

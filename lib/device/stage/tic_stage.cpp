@@ -17,6 +17,7 @@ namespace {
 // Pololu Tic User's Guide, "Command reference" and "Variable reference".
 enum Request {
   set_target_position = 0xE0,
+  set_target_velocity = 0xE3,
   halt_and_set_position = 0xEC,
   halt_and_hold = 0x89,
   go_home = 0x97,
@@ -29,6 +30,7 @@ enum Request {
 enum Offset {
   operation_state = 0x00,  // the miscellaneous flags follow
   error_status = 0x02,
+  planning_mode = 0x09,
   target_position = 0x0A,
   max_speed = 0x16,
   max_acceleration = 0x1E,
@@ -39,6 +41,7 @@ constexpr int state_normal = 10;  // the others are 0, 2, 4, 6 and 8
 constexpr int homing_active = 1 << 4;
 constexpr int position_uncertain = 1 << 1;
 constexpr int unused_flags = 0xE0;
+constexpr int to_position = 1;                   // planning mode
 constexpr double speed_unit_hz = 1e-4;           // speeds count microsteps per 10,000 s
 constexpr double acceleration_unit_hz_s = 1e-2;  // accelerations count microsteps per second per 100 s
 
@@ -104,6 +107,8 @@ class TicStage final : public Stage {
     return true;
   }
 
+  bool referenced() override { return (state_now().second & position_uncertain) == 0; }
+
   void set_speed(double deg_s) override {
     const double hz = deg_s * std::abs(steps_per_deg_);
     if (hz > 50000) {
@@ -131,15 +136,16 @@ class TicStage final : public Stage {
 
   bool moving() override {
     order(reset_command_timeout, 0);
-    const bool moves = variable(current_velocity) != 0 || variable(target_position) != variable(current_position);
+    const bool moves = variable(current_velocity) != 0 || ((variable(planning_mode) & 0xFF) == to_position &&
+                                                           variable(target_position) != variable(current_position));
     if (!moves) stop_order_.withdraw();
     return moves;
   }
 
-  // A Tic knows one stop; it keeps the position by the motor's current. Its target becomes where it stands.
-  void stop(Stop) override {
+  // Halt and hold stops without a ramp, may lose steps, and makes the position uncertain (Tic User's Guide, chapter 8).
+  void stop(Stop how) override {
+    if (how == Stop::smooth) return order(set_target_velocity, 0);
     order(halt_and_hold, 0);
-    order(set_target_position, variable(current_position));
   }
 
   std::optional<std::string> fault() override {

@@ -35,6 +35,7 @@ struct SimGcsSettings {
   double jitter_s = 0;        // a random part more, of either half
   std::uint64_t seed = 1;
   int address = 1;
+  bool reset_at_open = false;  // GRBL, as most boards do by the DTR line: greets, and counts from where it stands
   double log_period_s = 0.01;  // of the true angle, while the stage moves
   std::vector<SimFault> faults;
 };

@@ -81,6 +81,10 @@ class SimGrbl final : public SimController {
   }
 
   void handle(const std::string& line) {
+    if (settings_.reset_at_open && !std::exchange(greeted_, true)) {
+      motor_.set_angle(0);
+      return answer("\r\nGrbl 1.1h ['$' for help]\r\n");
+    }
     if (line.empty()) return answer("ok\r\n");
     const std::string command = line.substr(0, line.rfind("$J=", 0) == 0 ? 2 : line.size());
     if (command == "$I")
@@ -116,6 +120,7 @@ class SimGrbl final : public SimController {
 
   std::string line_;
   bool homing_ = false;
+  bool greeted_ = false;
   bool asked_while_homing_ = false;
   std::string homing_fault_;
   bool alarm_ = false;

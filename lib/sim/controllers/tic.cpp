@@ -11,11 +11,13 @@ namespace vam::sim {
 
 namespace {
 
+// Source: Pololu, Tic Stepper Motor Controller User's Guide, chapters 7 (variables) and 8 (commands).
 class SimTic final : public device::UsbLink {
  public:
   SimTic(const SimTicSettings& settings, device::Clock& clock, SimLog log)
       : settings_(settings), clock_(clock), log_(std::move(log)), motor_(settings.motor, clock.now_s()) {
     heard_s_ = clock.now_s();
+    uncertain_ = !settings.referenced;
   }
 
   void control_out(int request, int value, int index) override {
@@ -35,19 +37,29 @@ class SimTic final : public device::UsbLink {
         break;  // reset command time-out
       case 0x89:
         motor_.brake();
+        uncertain_ = true;
+        homing_ = to_position_ = false;
         note("halt");
-        break;  // halt and hold
+        break;  // halt and hold: abruptly, steps may be lost
+      case 0xE3:
+        if (argument != 0) throw Error{Fault::protocol, name_ + ": turns to positions only"};
+        to_position_ = false;
+        motor_.halt();
+        note("slowing");
+        break;  // target velocity
       case 0xE6:
         motor_.set_speed(argument * 1e-4 / settings_.steps_per_deg);
         break;  // maximum speed
       case 0xEC:
         motor_.set_angle(angle(argument));
+        uncertain_ = homing_ = to_position_ = false;
         break;  // halt and set position
       case 0x97:
+        homing_ = true;
         go(0);
-        uncertain_ = false;
         break;  // go home
       case 0xE0:
+        to_position_ = true;
         go(angle(argument));
         break;  // target position
       default:
@@ -107,6 +119,7 @@ class SimTic final : public device::UsbLink {
     motor_.advance(std::min(clock_.now_s(), heard_s_ + settings_.command_timeout_s));
     if (clock_.now_s() > heard_s_ + settings_.command_timeout_s) motor_.halt();
     motor_.advance(clock_.now_s());
+    if (homing_ && !motor_.moving()) homing_ = uncertain_ = false;  // the limit switch
     if (moved && !motor_.moving()) note("standing");
   }
 
@@ -116,9 +129,11 @@ class SimTic final : public device::UsbLink {
       case 0x00:
         return (settings_.error_bits != 0 ? 4 : energized_ ? 10 : 2) | variable(0x01) << 8;
       case 0x01:
-        return (energized_ ? 1 : 0) | (uncertain_ ? 2 : 0) | (!uncertain_ && motor_.moving() ? 16 : 0);
+        return (energized_ ? 1 : 0) | (uncertain_ ? 2 : 0) | (homing_ ? 16 : 0);
       case 0x02:
         return settings_.error_bits;
+      case 0x09:
+        return to_position_ ? 1 : 0;
       case 0x0A:
         return steps(motor_.target_deg());
       case 0x1E:
@@ -147,6 +162,8 @@ class SimTic final : public device::UsbLink {
   bool energized_ = false;
   bool safe_start_ = true;
   bool uncertain_ = true;
+  bool homing_ = false;
+  bool to_position_ = false;
   std::string name_ = "usb:1ffb:00b3:00312345";
 };
 

@@ -41,6 +41,23 @@ struct GrblLab {
 
 }  // namespace
 
+TEST_CASE("A GRBL board that was reset when its port was opened turns nothing before it is homed") {
+  SimGcsSettings sim;
+  sim.reset_at_open = true;
+  GrblLab lab(sim);
+  lab.open();
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
+  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; run `vam-stage home`") !=
+        std::string::npos);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
+  CHECK_FALSE(lab.truly_moves());
+  move(*lab.stage, lab.clock, 10, true, 30, 60);  // by an angle it may turn
+  home(*lab.stage, lab.clock, 60);
+  print();
+}
+
 TEST_CASE("A GRBL board homes, moves and prints like any other stage") {
   GrblLab lab;
   lab.open();

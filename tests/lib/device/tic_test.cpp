@@ -51,6 +51,24 @@ TEST_CASE("A Tic homes, moves and prints like any other stage") {
   CHECK(lab.log.back()["event"] == "standing");
 }
 
+TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smooth stop keeps it certain") {
+  TicLab lab;
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
+  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; run `vam-stage home`") !=
+        std::string::npos);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
+  CHECK(lab.log.empty());
+  home(*lab.stage, lab.clock, 60);
+  print();
+  print();  // the first ended with a ramp
+  lab.stage->enable();
+  lab.stage->start_move(90);
+  halt(*lab.stage, lab.clock, Stop::abrupt);  // which may lose steps
+  CHECK(fault_of(print) == Fault::protocol);
+}
+
 TEST_CASE("A Tic that hears nothing for a second stops by itself") {
   TicLab lab;
   lab.stage->enable();

@@ -14,6 +14,7 @@ namespace vam::sim {
 struct SimTicSettings {
   MotorSettings motor;
   double steps_per_deg = 100;
+  bool referenced = false;       // else its position is uncertain, as after power-on
   double command_timeout_s = 1;  // without a word for so long it decelerates to a stop
   int error_bits = 0;            // of the error status; 8 is the kill switch
   // What spoils every transfer from the n-th (from 0) on: silent (time-out) · error (stall) · garbage · truncated ·
