@@ -1,0 +1,136 @@
+#include "optimize/run/interruption.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "lib/optimize/parts.hpp"
+#include "lib/optimize/volumes.hpp"
+#include "light/shadowed.hpp"
+#include "optimize/methods/metrics.hpp"
+#include "optimize/target/schedule.hpp"
+#include "oracle/part_2d.hpp"
+
+using namespace vam;
+using namespace vam::optimize;
+using namespace vam::light;
+using namespace volumes;
+
+namespace {
+
+/// Runs a task that is interrupted after every `steps` iterates until it is complete.
+struct Broken {
+  Written result;
+  int times = 0;
+  std::string state;  // the last one
+};
+
+Broken run_in_pieces(const std::vector<std::vector<float>>& slices, const VolumeTask& task, int steps) {
+  Broken broken;
+  for (;;) {
+    std::string next;
+    std::size_t read = 0;
+    Archive to(Archive::Way::out, "state",
+               [&](void* bytes, std::size_t n) { next.append(static_cast<const char*>(bytes), n); });
+    Archive from(Archive::Way::in, "state", [&](void* bytes, std::size_t n) {
+      REQUIRE(read + n <= broken.state.size());
+      std::copy_n(broken.state.data() + read, n, static_cast<char*>(bytes));
+      read += n;
+    });
+    int left = steps;
+    VolumeTask piece = task;
+    piece.interruption = {[&] { return left-- == 0; }, &to, broken.times > 0 ? &from : nullptr, "job"};
+    broken.result = run(slices, piece);
+    if (broken.result.outcome.reason != "interrupted") return broken;
+    broken.state = next;
+    ++broken.times;
+    REQUIRE(broken.times < 100);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a run interrupted repeatedly gives the bytes of an uninterrupted one, with every method") {
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 70; ++k) {  // two passes; the last slices come again
+    slices.push_back(
+        vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * (k % 67); }));
+  }
+  for (const auto& name : method_names()) {
+    CAPTURE(name);
+    VolumeTask task;
+    task.watch = true;
+    task.limits = {.iterations = 7, .until = {}, .patience = 3};
+    task.make = [&](double) { return make_method(name, {}); };
+    const auto whole = run(slices, task);
+    const auto broken = run_in_pieces(slices, task, 2);
+    if (name != "fbp") CHECK(broken.times >= 2);
+    REQUIRE(broken.result.images.size() == slices.size());
+    bool same = true;
+    for (std::size_t k = 0; k < slices.size(); ++k) {
+      same = same && broken.result.images[k].values == whole.images[k].values;
+    }
+    CHECK(same);
+    CHECK(report(broken.result.outcome).dump() == report(whole.outcome).dump());
+    CHECK(trace_csv(broken.result.outcome.trace) == trace_csv(whole.outcome.trace));
+  }
+}
+
+TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < 70; ++k) {
+    slices.push_back(vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < 5 + 0.2 * k; }));
+  }
+  VolumeTask task;
+  task.blur_px = 0.8;
+  task.limits = {.iterations = 4, .until = {}, .patience = 0};
+  task.make = [](double) { return make_method("apg", {}); };
+  const auto whole = run(slices, task);
+  const auto broken = run_in_pieces(slices, task, 3);
+  REQUIRE(whole.images.size() == 70);
+  CHECK(whole.outcome.jobs == 70);
+  CHECK(broken.times == 2);
+  bool same = true;
+  for (std::size_t k = 0; k < 70; ++k) same = same && broken.result.images[k].values == whole.images[k].values;
+  CHECK(same);
+  task.make = [](double) { return make_method("osmo", {}); };
+  CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("--no-blur"), vam::Error);
+}
+
+TEST_CASE("a damaged state, and one of another job, are refused") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
+  VolumeTask task;
+  task.limits.iterations = 5;
+  task.make = [](double) { return make_method("apg", {}); };
+  std::string state;
+  Archive to(Archive::Way::out, "state",
+             [&](void* bytes, std::size_t n) { state.append(static_cast<const char*>(bytes), n); });
+  task.interruption = {[] { return true; }, &to, nullptr, "job"};
+  REQUIRE(run(slices, task).outcome.reason == "interrupted");
+  const auto resume = [&](const std::string& bytes, const std::string& job) {
+    std::size_t read = 0;
+    Archive from(Archive::Way::in, "x.state", [&](void* to_, std::size_t n) {
+      REQUIRE(read + n <= bytes.size());
+      std::copy_n(bytes.data() + read, n, static_cast<char*>(to_));
+      read += n;
+    });
+    VolumeTask again = task;
+    again.interruption = {{}, nullptr, &from, job};
+    return run(slices, again);
+  };
+  CHECK(resume(state, "job").outcome.reason != "interrupted");
+  CHECK_THROWS_WITH_AS(resume(state, "other"), doctest::Contains("x.state: is a checkpoint of another job"),
+                       vam::Error);
+  std::string bad = state;
+  const float nan = std::nanf("");
+  std::memcpy(bad.data() + bad.size() / 2 / 4 * 4, &nan, sizeof nan);  // in the middle of the doses
+  CHECK_THROWS_WITH_AS(resume(bad, "job"), doctest::Contains("x.state: "), vam::Error);
+  bad = state;
+  bad[bad.size() - 20] = static_cast<char>(bad[bad.size() - 20] ^ 1);
+  CHECK_THROWS_WITH_AS(resume(bad, "job"), doctest::Contains("checksum"), vam::Error);
+}
