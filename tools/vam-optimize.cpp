@@ -2,21 +2,16 @@
 #include <optional>
 #include <string>
 
-#include "base/json.hpp"
-#include "base/log.hpp"
-#include "base/text.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
-#include "score/exposure.hpp"
-#include "score/exposure_plan.hpp"
 #include "vam-optimize/checkpoint.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
+#include "vam-optimize/publish.hpp"
 #include "vam-optimize/sink.hpp"
 #include "vam-optimize/task.hpp"
 
@@ -25,41 +20,6 @@ namespace {
 using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
-
-void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
-  if (outcome.dark_part_voxels > 0) {
-    warn(options.input + ": " + std::to_string(outcome.dark_part_voxels) +
-         " voxels of the part are in the insert's shadow from all sides; they will not print");
-  }
-  const model::DoseMetrics& m = outcome.metrics;
-  const bool asked = !options.until.empty() || options.max_intensity || options.turns;
-  if (!asked || outcome.reason == "goal" || options.demands.grey || m.ver == 0) return;
-  const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
-  warn(options.input + ": does not print after " + std::to_string(outcome.iterations) +
-       " iterations: voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
-       "; more --iterations" +
-       (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
-}
-
-/// Turns and seconds at full grey, of a resin that is known.
-void add_exposure(Json& report, const optimize::VolumeOutcome& outcome, const model::Printer& printer,
-                  const Options& options) {
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
-  const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
-  if (!per_radian || !(full_scale > 0)) return;
-  add_to(report, score::plan_exposure(options.demands.window.threshold() / full_scale * *per_radian, printer));
-}
-
-/// Warnings, trace and report.
-void publish(const optimize::VolumeOutcome& outcome, const model::Printer& printer, const Options& options) {
-  warn_of(outcome, options);
-  if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
-  Json report = optimize::report(outcome);
-  report["method"] = options.method;
-  report["threshold_dose"] = options.demands.window.threshold();
-  add_exposure(report, outcome, printer, options);
-  io::write_report(options.report, "vam-optimize/1", report);
-}
 
 void refuse_same_files(const Options& options) {
   for (const auto* input : {&options.input, &options.init, &options.weights, &options.tolerances}) {

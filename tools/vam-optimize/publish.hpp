@@ -1,0 +1,13 @@
+// What is said of a finished run beside its projections.
+#pragma once
+
+#include "model/printer.hpp"
+#include "optimize/run/volume.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Warnings on stderr; the files of --trace and --report where they are asked for.
+void publish(const optimize::VolumeOutcome& outcome, const model::Printer& printer, const Options& options);
+
+}  // namespace vam::optimize_tool
