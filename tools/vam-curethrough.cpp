@@ -86,11 +86,11 @@ cli::Manual manual() {
 int main(int argc, char** argv) {
   cli::App app(manual());
   std::string chosen;
-  curethrough::Model model;
-  curethrough::Correct correct;
-  curethrough::WorkingCurve working_curve;
-  curethrough::GreyResponse response;
-  curethrough::Sweep sweep;
+  curethrough::ModelOptions model;
+  curethrough::CorrectOptions correct;
+  curethrough::WorkingCurveOptions working_curve;
+  curethrough::GreyResponseOptions response;
+  curethrough::SweepOptions sweep;
   cli::App& for_model = app.subcommand("model", "compute dose and cure map of slices", chosen);
   cli::App& for_correct = app.subcommand("correct", "compute slices without cure-through", chosen);
   cli::App& for_curve = app.subcommand("working-curve", "fit absorbance height and gelation dose", chosen);

@@ -108,7 +108,7 @@ void declare(cli::App& app, Options& o) {
 void once(const cli::App& app, const Options& options) {
   ost_tool::Session session(app, options);
   io::ViewSource source(options.views, options.step_deg);
-  std::vector<metrology::View> views;
+  std::vector<metrology::CameraView> views;
   io::CameraFrame frame;
   while (source.next(frame)) {
     metrology::require_exposed(frame.image, frame.name);

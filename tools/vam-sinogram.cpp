@@ -42,7 +42,7 @@ model::StackInfo make_info(const tomo::ProjectionSpec& spec, const io::SparseVol
   info.pixel_mm = info.row_mm = spec.voxel_mm;
   info.z_start_mm = volume.grid().z_mm(0);
   info.angle_step_deg = 360.0 / spec.geometry.angles;
-  info.units = spec.filter.window == tomo::Window::none ? "mm" : "1/rad";
+  info.units = spec.filter.window == tomo::FilterWindow::none ? "mm" : "1/rad";
   info.history = volume.history;
   info.history.push_back(history);
   info.extra = volume.metadata;

@@ -28,7 +28,7 @@ void report_repairs(const solid::Part& part) {
 }
 
 io::SparseVolume volume_of(const std::string& name, const solid::Part& part, const model::Grid& grid,
-                           solid::Content& content) {
+                           solid::FillSummary& content) {
   io::SparseVolume volume(name, grid);
   Progress progress("slicing", grid.nz);
   content = solid::fill(part, grid, [&](int k0, int count, const float* slices) {
@@ -60,7 +60,7 @@ void run(const cli::App& app, Options& options) {
   const model::Grid grid =
       solid::grid_around(part.extent, options.voxel_mm.value(), radius_mm, part.lattice, part.subject);
 
-  solid::Content content;
+  solid::FillSummary content;
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", part, grid, content));
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);

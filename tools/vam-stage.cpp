@@ -137,7 +137,8 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
 // What is not given is the printer file's; calibration records have nothing to say about the stage.
 void settle(Options& options) {
   if (options.direction == 0) throw Error{Fault::usage, "--direction: give 1 or -1"};
-  const model::Stage stage = io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
+  const model::PrinterStage stage =
+      io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
   if (options.device.empty()) options.device = stage.device;
   options.plan.turns = options.turns.value_or(stage.turns);
   options.plan.speed_deg_s = options.speed_deg_s.value_or(stage.speed_deg_s);

@@ -14,13 +14,11 @@ struct Image {
 
   Image() = default;
   Image(int columns, int rows, float fill = 0.0F)
-      : width(columns),
-        height(rows),
-        values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill) {}
+      : width(columns), height(rows), values(static_cast<std::size_t>(columns) * rows, fill) {}
 
   [[nodiscard]] std::size_t size() const { return values.size(); }
   [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
   }
   float& operator()(int x, int y) { return values[index(x, y)]; }
   float operator()(int x, int y) const { return values[index(x, y)]; }

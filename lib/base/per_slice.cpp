@@ -3,10 +3,42 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/error.hpp"
+
 namespace vam {
 
 std::vector<Slab> slabs(std::size_t count, int width, int height) {
   return std::vector<Slab>(count, Slab(width, height));
+}
+
+std::vector<Slab> packed(std::span<const Image> slices, int width, int height) {
+  std::vector<Slab> all = slabs((slices.size() + lanes - 1) / lanes, width, height);
+  parallel_for(static_cast<int>(slices.size()), [&](int k) {
+    const auto i = static_cast<std::size_t>(k);
+    const Image& image = slices[i];
+    if (image.width != width || image.height != height) throw Error{Fault::bug, "packed: a slice of another size"};
+    float* to = all[i / lanes].values.data() + i % lanes;
+    for (std::size_t p = 0; p < image.size(); ++p) to[p * lanes] = image.values[p];
+  });
+  return all;
+}
+
+PerSlice filled(std::size_t slabs, float value) {
+  PerSlice result(slabs);
+  for (auto& lane : result) lane.fill(value);
+  return result;
+}
+
+PerSlice sum_of_rows(const PerSlice& rows, std::size_t slabs) {
+  PerSlice result(slabs);
+  for (std::size_t s = 0; s < slabs; ++s) {
+    std::array<double, lanes> total{};
+    for (std::size_t i = s * rows.size() / slabs; i < (s + 1) * rows.size() / slabs; ++i) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) total[lane] += static_cast<double>(rows[i][lane]);
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) result[s][lane] = static_cast<float>(total[lane]);
+  }
+  return result;
 }
 
 PerSlice minima(std::span<const Slab> images) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "base/image.hpp"
 #include "base/parallel.hpp"
 #include "base/slab.hpp"
 
@@ -21,6 +22,9 @@ using PerSlice = std::vector<std::array<float, lanes>>;
 /// So many slabs of zeros.
 [[nodiscard]] std::vector<Slab> slabs(std::size_t count, int width, int height);
 
+/// As many slabs as slices of width x height take, 16 in each. Throws Fault::bug for a slice of another size.
+[[nodiscard]] std::vector<Slab> packed(std::span<const Image> slices, int width, int height);
+
 /// work(slab, first, last): the slab's values [first, last), whole lane groups, shared among the threads.
 template <class Work>
 void for_values(std::span<const Slab> like, const Work& work) {
@@ -33,53 +37,48 @@ void for_values(std::span<const Slab> like, const Work& work) {
   });
 }
 
-/// Reduces the rows of each slab: fold(accumulator of 16 lanes, slab, first, last), then merges rows in order.
-template <class Fold, class Merge>
-[[nodiscard]] PerSlice reduce(std::span<const Slab> images, float start, const Fold& fold, const Merge& merge) {
-  PerSlice result(images.size());
-  for (auto& lane : result) lane.fill(start);
-  if (images.empty()) return result;
+/// `value` for every slice of so many slabs.
+[[nodiscard]] PerSlice filled(std::size_t slabs, float value);
+
+/// The sums of fold_rows() of each slab, added in order, in double.
+[[nodiscard]] PerSlice sum_of_rows(const PerSlice& rows, std::size_t slabs);
+
+/// Folds each row of each slab into 16 accumulators: fold(accumulator, slab, index). The result has the rows of the
+/// first slab, then those of the second.
+template <class Fold>
+[[nodiscard]] PerSlice fold_rows(std::span<const Slab> images, float start, const Fold& fold) {
+  if (images.empty()) return {};
   const auto rows = static_cast<std::size_t>(images[0].height);
   const std::size_t row = static_cast<std::size_t>(images[0].width) * lanes;
-  std::vector<std::array<float, lanes>> partial(images.size() * rows);
+  PerSlice folded = filled(images.size() * rows, start);
   for_values(images, [&](std::size_t s, std::size_t first, std::size_t last) {
     std::array<float, lanes> sum{};
     sum.fill(start);
     for (std::size_t i = first; i < last; i += lanes) {
       for (std::size_t lane = 0; lane < lanes; ++lane) fold(sum[lane], s, i + lane);
     }
-    partial[s * rows + first / row] = sum;
+    folded[s * rows + first / row] = sum;
   });
-  for (std::size_t i = 0; i < partial.size(); ++i) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) merge(result[i / rows][lane], partial[i][lane]);
+  return folded;
+}
+
+/// Reduces each slice: fold(accumulator, slab, index) along its rows, then merge(accumulator, row's) row after row.
+template <class Fold, class Merge>
+[[nodiscard]] PerSlice reduce(std::span<const Slab> images, float start, const Fold& fold, const Merge& merge) {
+  const PerSlice rows = fold_rows(images, start, fold);
+  PerSlice result = filled(images.size(), start);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      merge(result[i * images.size() / rows.size()][lane], rows[i][lane]);
   }
   return result;
 }
 
-/// Sum over each slice of value(slab, index), the rows of a slice added in order.
+/// Sum over each slice of value(slab, index), the rows of a slice added in order, in double.
 template <class Value>
-[[nodiscard]] PerSlice summed(std::span<const Slab> like, const Value& value) {
-  PerSlice result(like.size());
-  for (auto& lane : result) lane.fill(0.0F);
-  if (like.empty()) return result;
-  const auto rows = static_cast<std::size_t>(like[0].height);
-  const std::size_t row = static_cast<std::size_t>(like[0].width) * lanes;
-  std::vector<std::array<float, lanes>> partial(like.size() * rows);
-  for_values(like, [&](std::size_t s, std::size_t first, std::size_t last) {
-    std::array<float, lanes> sum{};
-    for (std::size_t i = first; i < last; i += lanes) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += value(s, i + lane);
-    }
-    partial[s * rows + first / row] = sum;
-  });
-  std::vector<std::array<double, lanes>> totals(like.size());
-  for (std::size_t i = 0; i < partial.size(); ++i) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) totals[i / rows][lane] += static_cast<double>(partial[i][lane]);
-  }
-  for (std::size_t s = 0; s < totals.size(); ++s) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) result[s][lane] = static_cast<float>(totals[s][lane]);
-  }
-  return result;
+[[nodiscard]] PerSlice summed(std::span<const Slab> images, const Value& value) {
+  const PerSlice rows = fold_rows(images, 0, [&](float& sum, std::size_t s, std::size_t i) { sum += value(s, i); });
+  return sum_of_rows(rows, images.size());
 }
 
 /// a = max(a, b), for reduce.

@@ -17,13 +17,10 @@ struct GreyImage {
 
   GreyImage() = default;
   GreyImage(int columns, int rows, int depth)
-      : width(columns),
-        height(rows),
-        bits(depth),
-        values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)) {}
+      : width(columns), height(rows), bits(depth), values(static_cast<std::size_t>(columns) * rows) {}
 
   [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
   }
   std::uint16_t& operator()(int x, int y) { return values[index(x, y)]; }
   std::uint16_t operator()(int x, int y) const { return values[index(x, y)]; }
@@ -41,12 +38,10 @@ struct RgbImage {
 
   RgbImage() = default;
   RgbImage(int columns, int rows, Rgb fill = {0, 0, 0})
-      : width(columns),
-        height(rows),
-        values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), fill) {}
+      : width(columns), height(rows), values(static_cast<std::size_t>(columns) * rows, fill) {}
 
   [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
   }
   Rgb& operator()(int x, int y) { return values[index(x, y)]; }
   const Rgb& operator()(int x, int y) const { return values[index(x, y)]; }

@@ -33,11 +33,9 @@ struct Slab {
   std::vector<float, CacheAligned<float>> values;
 
   Slab() = default;
-  Slab(int w, int h)
-      : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * lanes, 0.0F) {}
+  Slab(int w, int h) : width(w), height(h), values(static_cast<std::size_t>(w) * h * lanes, 0.0F) {}
   float* at(int x, int y) {
-    return values.data() +
-           (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) * lanes;
+    return values.data() + (static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)) * lanes;
   }
   [[nodiscard]] const float* at(int x, int y) const { return const_cast<Slab*>(this)->at(x, y); }
 };

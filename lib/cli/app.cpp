@@ -49,7 +49,7 @@ std::string exact(double value) { return format_number(value, 17); }
 Declaration asked_about(Declaration tool, const std::vector<std::string>& words) {
   const int place = find_command(tool, words);
   for (Declaration nested : tool.subcommands) {
-    if (place < 0 || nested.manual.name != words[static_cast<std::size_t>(place)]) continue;
+    if (place < 0 || nested.manual.name != words[place]) continue;
     nested.manual.name = tool.manual.name + " " + nested.manual.name;
     return nested;
   }

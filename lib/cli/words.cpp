@@ -32,7 +32,7 @@ const Option* find_own(const Declaration& tool, const std::string& flag) {
 const Declaration& form_of(const Declaration& tool, const std::vector<std::string>& words) {
   const int place = find_command(tool, words);
   if (place < 0) return tool;
-  const auto& name = words[static_cast<std::size_t>(place)];
+  const auto& name = words[place];
   return *std::find_if(tool.subcommands.begin(), tool.subcommands.end(),
                        [&](const Declaration& nested) { return nested.manual.name == name; });
 }
@@ -88,7 +88,7 @@ int find_command(const Declaration& tool, const std::vector<std::string>& words)
   const int place = first_operand(tool, words);
   if (place < 0) return -1;
   const auto names = command_names(tool);
-  return std::find(names.begin(), names.end(), words[static_cast<std::size_t>(place)]) == names.end() ? -1 : place;
+  return std::find(names.begin(), names.end(), words[place]) == names.end() ? -1 : place;
 }
 
 void require_command(const Declaration& tool, const std::vector<std::string>& words) {
@@ -96,7 +96,7 @@ void require_command(const Declaration& tool, const std::vector<std::string>& wo
   const auto names = command_names(tool);
   const int place = first_operand(tool, words);
   if (place < 0) throw Error{Fault::usage, "no command; give one of " + join(names, ", ")};
-  const std::string& word = words[static_cast<std::size_t>(place)];
+  const std::string& word = words[place];
   throw Error{Fault::usage,
               word + ": unknown command" + did_you_mean(word, names) + " (" + tool.manual.name + " --help lists all)"};
 }
@@ -108,7 +108,7 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 
 void rename_former(const Declaration& tool, std::vector<std::string>& words) {
   const Declaration& form = form_of(tool, words);
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (auto& word : words) {
     if (word == "--") return;
     const std::string flag = flag_of(word);
@@ -116,7 +116,7 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
     if (option == nullptr || std::count(option->former.begin(), option->former.end(), flag) == 0) continue;
     const std::string present = long_flag(*option);
     word.replace(0, flag.size(), present);
-    if (!told.insert(flag).second) continue;
+    if (!reported.insert(flag).second) continue;
     std::fprintf(stderr, "%s: %s is now %s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str());
   }
 }

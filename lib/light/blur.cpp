@@ -26,7 +26,7 @@ void blur_row(const float* from, const std::vector<float>& weights, int width, s
   std::copy_n(from, width, padded.data() + reach);
   std::fill_n(to, width, 0.0F);
   for (int n = -reach; n <= reach; ++n) {
-    add_row(to, padded.data() + reach + n, weights[static_cast<std::size_t>(std::abs(n))], width);
+    add_row(to, padded.data() + reach + n, weights[std::abs(n)], width);
   }
 }
 
@@ -46,7 +46,7 @@ Image blur_across(const Image& slice, const std::vector<float>& weights) {
   });
   each_row([&](int y) {
     for (int n = std::max(-reach, -y); n <= std::min(reach, slice.height - 1 - y); ++n) {
-      add_row(result.row(y), along.row(y + n), weights[static_cast<std::size_t>(std::abs(n))], slice.width);
+      add_row(result.row(y), along.row(y + n), weights[std::abs(n)], slice.width);
     }
   });
   return result;
@@ -96,8 +96,8 @@ void VolumeBlur::emit(int centre) {
   const int high = std::min(centre + reach, pushed_ - 1);
   parallel_for(result.height, [&](int y) {
     for (int k = low; k <= high; ++k) {
-      const Image& slice = held_[static_cast<std::size_t>(k - first_)];
-      add_row(result.row(y), slice.row(y), weights_[static_cast<std::size_t>(std::abs(k - centre))], result.width);
+      const Image& slice = held_[k - first_];
+      add_row(result.row(y), slice.row(y), weights_[std::abs(k - centre)], result.width);
     }
   });
   ++emitted_;

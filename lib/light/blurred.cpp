@@ -46,12 +46,11 @@ void BlurredOperator::blur(std::span<Slab> objects) const {
   const int width = objects[0].width;
   const int height = objects[0].height;
   const int count = static_cast<int>(objects.size());
-  parallel_for(count * height,
-               [&](int i) { blur_row(objects[static_cast<std::size_t>(i / height)].at(0, i % height), width); });
+  parallel_for(count * height, [&](int i) { blur_row(objects[i / height].at(0, i % height), width); });
   const int tiles = (width + tile - 1) / tile;
   parallel_for(count * tiles, [&](int i) {
     const int first = i % tiles * tile;
-    blur_columns(objects[static_cast<std::size_t>(i / tiles)], first, std::min(tile, width - first));
+    blur_columns(objects[i / tiles], first, std::min(tile, width - first));
   });
   parallel_for(height, [&](int y) { blur_stack(objects, y); });
 }
@@ -87,7 +86,7 @@ void BlurredOperator::blur_stack(std::span<Slab> objects, int y) const {
   std::vector<float> result(objects.size() * lanes, 0.0F);
   for (int x = 0; x < objects[0].width; ++x) {
     for (int k = 0; k < used; ++k) {
-      padded[reach + static_cast<std::size_t>(k)] = objects[static_cast<std::size_t>(k / lanes)].at(x, y)[k % lanes];
+      padded[reach + static_cast<std::size_t>(k)] = objects[k / lanes].at(x, y)[k % lanes];
     }
     add_taps(padded.data() + reach, 1, weights_, result.data(), used);
     for (std::size_t s = 0; s < objects.size(); ++s) std::copy_n(result.data() + s * lanes, lanes, objects[s].at(x, y));

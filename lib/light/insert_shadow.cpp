@@ -59,7 +59,7 @@ struct InsertShadow::Body {
     }
   }
   [[nodiscard]] bool at(const std::array<int, 3>& v) const {
-    return opaque(coverage[static_cast<std::size_t>(v[2] / lanes)].at(v[0], v[1])[v[2] % lanes]);
+    return opaque(coverage[v[2] / lanes].at(v[0], v[1])[v[2] % lanes]);
   }
 };
 
@@ -74,9 +74,9 @@ InsertShadow::InsertShadow(const model::Grid& grid, std::span<const Slab> insert
   }
   const Body body(inserts);
   const int angles = static_cast<int>(parts_.size());
-  ends_.assign(static_cast<std::size_t>(row_slabs), Slab(columns, angles));
+  ends_.assign(row_slabs, Slab(columns, angles));
   parallel_for(row_slabs * columns, [&](int item) {
-    Slab& slab = ends_[static_cast<std::size_t>(item / columns)];
+    Slab& slab = ends_[item / columns];
     const int column = item % columns;
     for (int lane = 0; lane < lanes; ++lane) {
       const PixelRay way = ray(column, item / columns * lanes + lane);
@@ -105,7 +105,7 @@ void InsertShadow::note_hindered() {
 /// Voxel by voxel [Amanatides & Woo 1987].
 float InsertShadow::follow(const Body& body, const PixelRay& ray, int angle) const {
   if (!ray.hits || body.high[0] == 0) return unhindered;
-  const Direction& part = parts_[static_cast<std::size_t>(angle)];
+  const Direction& part = parts_[angle];
   const double cosine = std::cos(ray.delta_rad);
   const double sine = std::sin(ray.delta_rad);
   const double c = part.cosine * cosine - part.sine * sine;

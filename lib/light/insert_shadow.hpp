@@ -40,8 +40,8 @@ class InsertShadow {
 
   /// u in mm of a point of the part on the ray of that column and angle; the ray's plan view taken as level.
   [[nodiscard]] float depth_mm(double x_mm, double y_mm, int angle, int column) const {
-    const Direction& part = parts_[static_cast<std::size_t>(angle)];
-    const Direction& ray = columns_[static_cast<std::size_t>(column)];
+    const Direction& part = parts_[angle];
+    const Direction& ray = columns_[column];
     const double x = x_mm * part.cosine + y_mm * part.sine;
     const double y = y_mm * part.cosine - x_mm * part.sine;
     return static_cast<float>(y * ray.cosine - x * ray.sine);

@@ -99,8 +99,7 @@ RayTable::RayTable(const Setup& setup)
     outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
     outer.first_row = inner.rows;
   }
-  nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) *
-                static_cast<std::size_t>(directions));
+  nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) * directions);
   parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });
   parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
 }
@@ -161,7 +160,7 @@ void RayTable::fill_outer_row(const Light& light, int row) {
     double x_p = 0, zoom = 0, cosine = 0, sine = 0, spacing = 0;  // weighted by strength
   };
   std::array<std::vector<Cell>, most_sheets> sheets;
-  for (auto& sheet : sheets) sheet.resize(static_cast<std::size_t>(directions));
+  for (auto& sheet : sheets) sheet.resize(directions);
 
   const double arc = std::numbers::pi - 2 * open;
   const int samples = std::max(8, static_cast<int>(std::ceil(samples_per_step * directions * arc / turn_rad)));
@@ -184,8 +183,7 @@ void RayTable::fill_outer_row(const Light& light, int row) {
       for (const int side : {0, 1}) {  // shared by the two nearest directions
         const double share = light_here * (side == 1 ? place - below : 1 - (place - below));
         const int index = (static_cast<int>(below) + side) % directions;
-        Cell& cell =
-            sheets[static_cast<std::size_t>(sheet)][static_cast<std::size_t>((index + directions) % directions)];
+        Cell& cell = sheets[sheet][(index + directions) % directions];
         cell.strength += share;
         cell.x_p += share * point.x_p_mm;
         cell.zoom += share * zoom;
@@ -196,8 +194,8 @@ void RayTable::fill_outer_row(const Light& light, int row) {
     }
   }
   for (int sheet = 0; sheet < most_sheets; ++sheet) {
-    const std::vector<Cell>& cells = sheets[static_cast<std::size_t>(sheet)];
-    const auto cell = [&](int index) { return cells[static_cast<std::size_t>((index + directions) % directions)]; };
+    const std::vector<Cell>& cells = sheets[sheet];
+    const auto cell = [&](int index) { return cells[(index + directions) % directions]; };
     for (int index = 0; index < directions; ++index) {
       // A direction without a ray takes its neighbour's, so that interpolation to it only fades.
       Cell source = cell(index);
@@ -219,7 +217,7 @@ void RayTable::fill_outer_row(const Light& light, int row) {
 
 void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const {
   const int rows = inner.rows + outer.rows * outer.sheets;
-  nodes.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(directions + 1));
+  nodes.resize(rows * static_cast<std::size_t>(directions + 1));
   const auto z2 = static_cast<float>((z_mm / setup_.height_mm) * (z_mm / setup_.height_mm));
   const auto columns_per_mm = static_cast<float>(scale.columns_per_mm);
   const auto column_origin = static_cast<float>(scale.column_origin);

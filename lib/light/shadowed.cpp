@@ -46,8 +46,8 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
 }
 
 ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle) const {
-  const double c = cosine_[static_cast<std::size_t>(angle)];
-  const double s = sine_[static_cast<std::size_t>(angle)];
+  const double c = cosine_[angle];
+  const double s = sine_[angle];
   const double dx = x - turn_.axis_x;
   const double dy = y - turn_.axis_y;
   const double column = dx * c + dy * s + 0.5 * (turn_.columns - 1);
@@ -65,7 +65,7 @@ ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle)
 }
 
 float ShadowedOperator::left(int column, double u) const {
-  return static_cast<float>(std::exp(-mu_ * (depth_[static_cast<std::size_t>(column)] + u)));
+  return static_cast<float>(std::exp(-mu_ * (depth_[column] + u)));
 }
 
 void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {

@@ -45,7 +45,7 @@ tomo::ParallelGeometry parallel_turn(const model::StackInfo& info, const model::
           0};
 }
 
-VialSetup projector_turn(const model::Printer& printer, const optics::Alignment& alignment,
+VialSetup projector_turn(const model::Printer& printer, const optics::AxisAlignment& alignment,
                          const model::StackInfo& info, const model::Grid& grid) {
   VialSetup setup;
   setup.view = optics::projector_view(printer);
@@ -70,20 +70,18 @@ VialSetup projector_turn(const model::Printer& printer, const optics::Alignment&
   return setup;
 }
 
-std::vector<Slab> packed(std::span<const Image> images, Shape shape, const std::string& what) {
-  std::vector<Slab> all = slabs((images.size() + lanes - 1) / lanes, shape.width, shape.height);
+void require_shape(std::span<const Image> images, Shape shape, const std::string& what) {
   for (const Image& image : images) {
     if (image.width == shape.width && image.height == shape.height) continue;
     throw Error{Fault::data, what + ": a slice has " + std::to_string(image.width) + " x " +
                                  std::to_string(image.height) + " pixels, but " + std::to_string(shape.width) + " x " +
                                  std::to_string(shape.height) + " are needed"};
   }
-  parallel_for(static_cast<int>(images.size()), [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    float* to = all[i / lanes].values.data() + i % lanes;
-    for (std::size_t p = 0; p < images[i].size(); ++p) to[p * lanes] = images[i].values[p];
-  });
-  return all;
+}
+
+std::vector<Slab> slabs_of(std::span<const Image> images, Shape shape, const std::string& what) {
+  require_shape(images, shape, what);
+  return packed(images, shape.width, shape.height);
 }
 
 }  // namespace
@@ -99,8 +97,8 @@ struct Simulation::State {
   [[nodiscard]] bool resin_at(int i, int j) const { return std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm; }
 };
 
-Simulation::Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
-                       const model::Grid& grid, Climb climb)
+Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment,
+                       const model::StackInfo& info, const model::Grid& grid, Climb climb)
     : state_(std::make_unique<State>()) {
   state_->grid = grid;
   state_->resin_mm = model::resin_radius_mm(printer.vial);
@@ -132,7 +130,7 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
   std::vector<Slab> bodies;
   std::unique_ptr<Operator> around;
   if (!inserts.empty()) {
-    bodies = packed(inserts, state.clear->object(), "insert");
+    bodies = slabs_of(inserts, state.clear->object(), "insert");
     around = state.make(bodies);
   }
   const Operator& light = around ? *around : *state.clear;
@@ -140,7 +138,7 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
       slabs((sinograms.size() + lanes - 1) / lanes, light.sinogram().width, light.sinogram().height);
   for (std::size_t s = 0; s < rows.size(); ++s) {
     const auto slices = sinograms.subspan(s * lanes, std::min<std::size_t>(lanes, sinograms.size() - s * lanes));
-    light.collapse(packed(slices, light.image(), "sinogram").front(), rows[s]);
+    light.collapse(slabs_of(slices, light.image(), "sinogram").front(), rows[s]);
   }
   std::vector<Slab> out = slabs((doses.size() + lanes - 1) / lanes, state.grid.nx, state.grid.ny);
   light.adjoint(rows, out);
@@ -184,7 +182,7 @@ int first_slice(const model::Grid& grid, const model::StackInfo& info) {
   return first;
 }
 
-void shine(const Light& light, std::span<Image> sinograms, LightSeen& seen) {
+void shine(const DisplayRange& light, std::span<Image> sinograms, LightSeen& seen) {
   const float scale = light.full_scale ? static_cast<float>(1 / *light.full_scale) : 1.0F;
   const float least = light.full_scale ? static_cast<float>(light.dark) : 0.0F;
   for (Image& image : sinograms) {

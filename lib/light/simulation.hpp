@@ -37,7 +37,7 @@ class Simulation {
  public:
   /// Throws Fault::data: angles that are not one turn, a camera stack, columns that are not the printer's, or voxels
   /// that differ from the virtual columns.
-  Simulation(const model::Printer& printer, const optics::Alignment& alignment, const model::StackInfo& info,
+  Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::StackInfo& info,
              const model::Grid& grid, Climb climb = Climb::follow);
   ~Simulation();
   /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
@@ -51,7 +51,7 @@ class Simulation {
 };
 
 /// What a projector makes of sinogram values.
-struct Light {
+struct DisplayRange {
   bool clip = true;                  // no negative light
   std::optional<double> full_scale;  // the value shown at full intensity: light is value / this, at most 1
   double dark = 0;                   // least light, of full; only with full_scale
@@ -67,6 +67,6 @@ struct LightSeen {
 };
 
 /// Turns values into light, in place.
-void shine(const Light& light, std::span<Image> sinograms, LightSeen& seen);
+void shine(const DisplayRange& light, std::span<Image> sinograms, LightSeen& seen);
 
 }  // namespace vam::light

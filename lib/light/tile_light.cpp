@@ -30,7 +30,7 @@ struct Kernels {
 };
 
 /// Elements of a times b: sizes are multiplied as sizes.
-std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * static_cast<std::size_t>(b); }
+std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * b; }
 
 constexpr int overrun = 32;  // floats that the kernels may read and write beyond: two vectors
 
@@ -45,7 +45,7 @@ std::vector<Tile> TileLight::tiles(const VialRays& rays) {
   const int across = tiles_across(grid.nx);
   std::vector<Tile> all(product(across, tiles_across(grid.ny)));
   parallel_for(static_cast<int>(all.size()), [&](int t) {
-    Tile& tile = all[static_cast<std::size_t>(t)];
+    Tile& tile = all[t];
     RaySource found[VialRays::most_rays];
     double r_mm = 0;
     for (int voxel = 0; voxel < edge * edge; ++voxel) {
@@ -148,7 +148,7 @@ void TileLight::each_piece(int angle, std::span<SlabType> sinograms, const Visit
   const int end = std::min(row_ + rows_, lit_end_);
   for (int row = first; row < end;) {
     const int next = std::min(end, (row / lanes + 1) * lanes);
-    visit(sinograms[static_cast<std::size_t>(row / lanes)].at(column, angle) + row % lanes,
+    visit(sinograms[row / lanes].at(column, angle) + row % lanes,
           product(left, rows_) + static_cast<std::size_t>(row - row_), count, next - row);
     row = next;
   }
@@ -188,7 +188,7 @@ void TileLight::cast_shadow(int angle) {
   const model::Grid& grid = rays_.setup().grid;
   depth_.assign(product(taps_.taps, taps_.pitch), 0.0F);
   for (int e = 0; e < count(); ++e) {
-    const int voxel = tile_->voxels[static_cast<std::size_t>(e)];
+    const int voxel = tile_->voxels[e];
     const int j = j0_ + voxel / edge;
     const double x = grid.x_mm(i0_ + voxel % edge);
     const double y = grid.y_mm(j);

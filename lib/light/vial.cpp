@@ -102,9 +102,9 @@ void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinogr
   each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
     parallel_for(static_cast<int>(blocks.size()), [&](int b) {
       TileLight light(rays_, shadow_);
-      const auto [first, end] = blocks[static_cast<std::size_t>(b)];
+      const auto [first, end] = blocks[b];
       for (const int t : tiles) {
-        const Tile& tile = tiles_[static_cast<std::size_t>(t)];
+        const Tile& tile = tiles_[t];
         if (tile.rays.empty()) continue;
         light.enter(t, tile, chunk);
         light.load_voxels(objects);
@@ -120,8 +120,8 @@ void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> obje
   each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
     parallel_for(static_cast<int>(tiles.size()), [&](int item) {
       TileLight light(rays_, shadow_);
-      const int t = tiles[static_cast<std::size_t>(item)];
-      const Tile& tile = tiles_[static_cast<std::size_t>(t)];
+      const int t = tiles[item];
+      const Tile& tile = tiles_[t];
       light.enter(t, tile, chunk);
       light.clear_voxels();
       for (int angle = 0; angle < angles && !tile.rays.empty(); ++angle) light.take(nodes, angle, sinograms);

@@ -64,10 +64,6 @@ VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int
   const model::Projector& p = printer.projector;
   setup.lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
   setup.highest_mm = p.axis_row * p.pixel_mm;
-  for (const int edge : {0, setup.projector.columns - 1}) {
-    const optics::ChiefRay ray = optics::chief_ray(setup.view, setup.projector.x_mm(edge));
-    if (ray.hits) setup.radius_mm = std::min(setup.radius_mm, std::abs(ray.x_v_mm));
-  }
   return setup;
 }
 

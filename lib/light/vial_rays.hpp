@@ -23,7 +23,7 @@ class VialRays {
   [[nodiscard]] int first_column() const { return first_; }
   [[nodiscard]] int columns() const { return static_cast<int>(transmitted_.size()); }
   /// T e^{-mu sqrt(R^2 - t^2)} of a column: the fraction that reaches the plane of the axis.
-  [[nodiscard]] double transmitted(int column) const { return transmitted_[static_cast<std::size_t>(column)]; }
+  [[nodiscard]] double transmitted(int column) const { return transmitted_[column]; }
   /// Slices that may share the rays of voxel columns up to that radius: 64, 32 or 16, so that these drift by less than
   /// 0.12 columns from the middle to the end. Over all slices and directions that is some 0.03 columns (RMS), and no
   /// two stage angles err alike.

@@ -30,15 +30,15 @@ double DoseHistogram::upper_edge(int key) { return lower_edge(key + 1); }
 
 std::int64_t& DoseHistogram::bin(int key) {
   if (key < 0) return below_;
-  auto& page = pages_[static_cast<std::size_t>(key / page_size)];
+  auto& page = pages_[key / page_size];
   if (!page) page = std::make_unique<Page>();
-  return (*page)[static_cast<std::size_t>(key % page_size)];
+  return (*page)[key % page_size];
 }
 
 std::int64_t DoseHistogram::count(int key) const {
   if (key < 0) return below_;
-  const auto& page = pages_[static_cast<std::size_t>(key / page_size)];
-  return page ? (*page)[static_cast<std::size_t>(key % page_size)] : 0;
+  const auto& page = pages_[key / page_size];
+  return page ? (*page)[key % page_size] : 0;
 }
 
 void DoseHistogram::merge(const DoseHistogram& other, int times) {
@@ -56,7 +56,7 @@ std::int64_t DoseHistogram::count_from(double dose) const {
   std::int64_t sum = 0;
   const int from = key_of(static_cast<float>(dose));
   for (int p = pages - 1; p >= 0 && (p + 1) * page_size > from; --p) {
-    if (!pages_[static_cast<std::size_t>(p)]) continue;
+    if (!pages_[p]) continue;
     for (int key = std::max(from, p * page_size); key < (p + 1) * page_size; ++key) sum += count(key);
   }
   return from < 0 ? sum + below_ : sum;
@@ -69,7 +69,7 @@ double DoseHistogram::quantile(double fraction) const {
   std::int64_t passed = below_;
   if (rank < passed) return 0.0;
   for (int p = 0; p < pages; ++p) {
-    if (!pages_[static_cast<std::size_t>(p)]) continue;
+    if (!pages_[p]) continue;
     for (int key = p * page_size; key < (p + 1) * page_size; ++key) {
       passed += count(key);
       if (rank < passed) return 0.5 * (lower_edge(key) + upper_edge(key));

@@ -20,7 +20,7 @@ struct Grid {
   [[nodiscard]] double x_mm(double i) const { return origin_mm[0] + voxel_mm * i; }
   [[nodiscard]] double y_mm(double j) const { return origin_mm[1] + voxel_mm * j; }
   [[nodiscard]] double z_mm(double k) const { return origin_mm[2] + voxel_mm * k; }
-  [[nodiscard]] std::size_t slice_size() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny); }
+  [[nodiscard]] std::size_t slice_size() const { return static_cast<std::size_t>(nx) * ny; }
   [[nodiscard]] std::size_t size() const { return slice_size() * static_cast<std::size_t>(nz); }
   bool operator==(const Grid&) const = default;
 };

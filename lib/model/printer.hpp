@@ -49,14 +49,14 @@ struct Resin {
   double diffusion_mm2_s = 0;
 };
 
-struct Stage {
+struct PrinterStage {
   std::string device;  // empty: none is named
   double speed_deg_s = 10;
   int turns = 1;
   int direction = 1;  // +1: the vial turns clockwise seen from above and theta increases; -1: the other way
 };
 
-struct Camera {
+struct PrinterCamera {
   std::string device;        // empty: none is named
   double distance_mm = 200;  // entrance pupil to rotation axis
   double pixel_mm = 0.039;   // at the axis
@@ -83,8 +83,8 @@ struct Printer {
   Vial vial;
   Bath bath;
   Resin resin;
-  Stage stage;
-  Camera camera;
+  PrinterStage stage;
+  PrinterCamera camera;
   Calibration calibration;
 };
 

@@ -11,7 +11,7 @@
 
 namespace vam::optics {
 
-Image smear(std::span<const float> projection, double detector_mm, double angle_rad, const Canvas& canvas) {
+Image smear(std::span<const float> projection, double detector_mm, double angle_rad, const ImagePlane& canvas) {
   Image image(canvas.columns, canvas.rows);
   const int last = static_cast<int>(projection.size()) - 1;
   const double scale = canvas.pixel_mm / detector_mm;
@@ -44,12 +44,12 @@ std::vector<float> projection_at(const Image& sinogram, const model::StackInfo& 
   return projection;
 }
 
-Canvas flatland_canvas(const model::Projector& projector, double column_offset, double row_offset) {
+ImagePlane flatland_canvas(const model::Projector& projector, double column_offset, double row_offset) {
   return {projector.columns, projector.rows, projector.pixel_mm, 0.5 * (projector.columns - 1) + column_offset,
           0.5 * (projector.rows - 1) + row_offset};
 }
 
-FlatlandSlice::FlatlandSlice(std::string subject, const model::StackInfo& info, const Canvas& canvas, double z_mm)
+FlatlandSlice::FlatlandSlice(std::string subject, const model::StackInfo& info, const ImagePlane& canvas, double z_mm)
     : subject_(std::move(subject)), info_(info), canvas_(canvas), wanted_mm_(z_mm) {}
 
 void FlatlandSlice::add(const Image& sinogram, double z_mm) {

@@ -14,7 +14,7 @@
 namespace vam::optics {
 
 /// The image plane: the part's x to the right, y up, the axis at (axis_column, axis_row) from the top left.
-struct Canvas {
+struct ImagePlane {
   int columns = 0;
   int rows = 0;
   double pixel_mm = 0;
@@ -24,13 +24,13 @@ struct Canvas {
 
 /// The projector's image with the axis of the part in the middle, moved by the offsets in pixels to the right and
 /// down.
-[[nodiscard]] Canvas flatland_canvas(const model::Projector& projector, double column_offset, double row_offset);
+[[nodiscard]] ImagePlane flatland_canvas(const model::Projector& projector, double column_offset, double row_offset);
 
 /// Smears one 1-D parallel projection (pitch detector_mm, axis in the middle) across the plane along the light: pixel
 /// (x, y) shows the projection at t = x cos theta + y sin theta [CAL17 eq 1], interpolated linearly, dark beyond its
 /// ends.
 [[nodiscard]] Image smear(std::span<const float> projection, double detector_mm, double angle_rad,
-                          const Canvas& canvas);
+                          const ImagePlane& canvas);
 
 /// The row of a virtual sinogram at one part angle, over the span that the stage turns meanwhile: interpolated between
 /// its angles, or averaged over those that the span covers.
@@ -41,7 +41,7 @@ struct Canvas {
 class FlatlandSlice {
  public:
   /// `subject` begins messages.
-  FlatlandSlice(std::string subject, const model::StackInfo& info, const Canvas& canvas, double z_mm);
+  FlatlandSlice(std::string subject, const model::StackInfo& info, const ImagePlane& canvas, double z_mm);
 
   /// The next slice of the stack; only the nearest so far is kept.
   void add(const Image& sinogram, double z_mm);
@@ -55,7 +55,7 @@ class FlatlandSlice {
  private:
   std::string subject_;
   model::StackInfo info_;
-  Canvas canvas_;
+  ImagePlane canvas_;
   double wanted_mm_;
   double nearest_mm_ = 0;
   double low_mm_ = 0;  // of all slices

@@ -107,7 +107,7 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
   const int high = std::min(lit.high - taps.first, 2 * place_.columns - 1);
   slice.first = std::clamp(low, 0, place_.columns);
   slice.width = std::max(std::min(high + 1, place_.columns) - slice.first, 0);
-  slice.values.reserve(static_cast<std::size_t>(slice.width) * static_cast<std::size_t>(sinogram.height));
+  slice.values.reserve(slice.width * static_cast<std::size_t>(sinogram.height));
   float* peak = column_peak_.data() + place_.columns;
   for (int a = 0; a < sinogram.height; ++a) {
     const float* row = sinogram.row(a);
@@ -115,7 +115,7 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
       float value = 0;
       for (int t = 0; t < count; ++t) {
         const int c = x + taps.first + t;
-        if (c >= 0 && c < sinogram.width) value += taps.weights[static_cast<std::size_t>(t)] * row[c];
+        if (c >= 0 && c < sinogram.width) value += taps.weights[t] * row[c];
       }
       peak[x] = std::max(peak[x], value);
       if (x >= 0 && x < place_.columns) slice.values.push_back(value);
@@ -162,7 +162,7 @@ void FrameComposer::check() const {
 void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {
   if (slice.width == 0) return;
   const int a = (angle % info_.height + info_.height) % info_.height;
-  const float* from = slice.values.data() + static_cast<std::size_t>(a) * static_cast<std::size_t>(slice.width);
+  const float* from = slice.values.data() + static_cast<std::size_t>(a) * slice.width;
   float* to = row + slice.first;
   for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
 }
@@ -179,8 +179,7 @@ Image FrameComposer::frame(double angle_deg, double span_deg) const {
       continue;  // half a slice beyond the middle of the last one it is dark
     const Taps taps = sample_taps(position, place_.pixel_mm / slice_mm());
     for (std::size_t s = 0; s < taps.weights.size(); ++s) {
-      const Slice& slice =
-          slices_[static_cast<std::size_t>(std::clamp(taps.first + static_cast<int>(s), 0, count - 1))];
+      const Slice& slice = slices_[std::clamp(taps.first + static_cast<int>(s), 0, count - 1)];
       for (std::size_t a = 0; a < angles.weights.size(); ++a) {
         add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], image.row(r));
       }

@@ -69,7 +69,7 @@ void resample_tile(const ResamplePlan& plan, const Kernels& kernel, int first, i
   int low = plan.columns_in;
   int high = 0;
   for (int c = first; c < last; ++c) {
-    const ColumnSource& source = plan.sources[static_cast<std::size_t>(c)];
+    const ColumnSource& source = plan.sources[c];
     if (source.count == 0) continue;
     low = std::min(low, source.first);
     high = std::max(high, source.first + source.count);
@@ -84,7 +84,7 @@ void resample_tile(const ResamplePlan& plan, const Kernels& kernel, int first, i
   column.resize(static_cast<std::size_t>(stride + Index{3} * lanes));
   result.assign(static_cast<std::size_t>(stride * (last - first)), 0.0F);
   for (int c = first; c < last; ++c) {
-    const ColumnSource& source = plan.sources[static_cast<std::size_t>(c)];
+    const ColumnSource& source = plan.sources[c];
     if (source.count == 0) continue;
     kernel.mix(packed.data() + (source.first - low) * stride, stride, plan.weights.data() + source.weights,
                source.count, plan.rows, column.data());

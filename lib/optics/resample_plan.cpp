@@ -63,7 +63,7 @@ std::vector<double> kernel_taps(Interpolation interpolation, double column, doub
   }
   for (int c = first; c <= last; ++c) {
     const double d = (c - column) / width;
-    taps[static_cast<std::size_t>(c - first)] += bump(d) * (factor[0] + d * (factor[1] + d * factor[2]));
+    taps[c - first] += bump(d) * (factor[0] + d * (factor[1] + d * factor[2]));
   }
   return taps;
 }

@@ -11,7 +11,7 @@ namespace vam::optics {
 
 namespace {
 
-ResampleOptions placed(ResampleOptions options, const model::Printer& printer, const Alignment& alignment) {
+ResampleOptions placed(ResampleOptions options, const model::Printer& printer, const AxisAlignment& alignment) {
   options.direction = alignment.reverse ? -printer.stage.direction : printer.stage.direction;
   options.angle_offset_rad = alignment.angle_offset_rad;
   return options;
@@ -25,12 +25,12 @@ void check_pitch(const model::StackInfo& in) {
 
 }  // namespace
 
-Detector projector_detector(const model::Printer& printer, const Alignment& alignment) {
+Detector projector_detector(const model::Printer& printer, const AxisAlignment& alignment) {
   return {printer.projector.columns, printer.projector.pixel_mm,
           printer.projector.axis_column + alignment.column_offset};
 }
 
-Detector camera_detector(const model::Printer& printer, const Alignment& alignment) {
+Detector camera_detector(const model::Printer& printer, const AxisAlignment& alignment) {
   const View view = camera_view(printer);
   const double edge_mm = column_of(view, reach_mm(view) * (1 - 1e-12)).value_or(resin_radius_mm(view));
   Detector camera =
@@ -43,7 +43,7 @@ Turn turn_of(const model::StackInfo& info) {
   return {info.height, info.angle_start_deg * rad_per_deg, info.angle_step_deg * rad_per_deg};
 }
 
-StackResampling stack_to_projector(const model::Printer& printer, const Alignment& alignment,
+StackResampling stack_to_projector(const model::Printer& printer, const AxisAlignment& alignment,
                                    const model::StackInfo& in, ResampleOptions options) {
   check_pitch(in);
   const Detector projector = projector_detector(printer, alignment);
@@ -57,8 +57,9 @@ StackResampling stack_to_projector(const model::Printer& printer, const Alignmen
   return result;
 }
 
-StackResampling stack_to_virtual(const model::Printer& printer, const Alignment& alignment, const model::StackInfo& in,
-                                 ResampleOptions options, std::optional<double> pixel_mm, std::optional<int> columns) {
+StackResampling stack_to_virtual(const model::Printer& printer, const AxisAlignment& alignment,
+                                 const model::StackInfo& in, ResampleOptions options, std::optional<double> pixel_mm,
+                                 std::optional<int> columns) {
   check_pitch(in);
   const View view = camera_view(printer);
   Detector camera = centred_detector(in.width, in.pixel_mm);

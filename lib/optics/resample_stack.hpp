@@ -11,7 +11,7 @@
 namespace vam::optics {
 
 /// What is known about the alignment of one machine beside its printer settings.
-struct Alignment {
+struct AxisAlignment {
   double column_offset = 0;     // columns by which the axis appears to the right of where the settings say
   double angle_offset_rad = 0;  // the part stands at stage angle + this
   bool reverse = false;         // flips stage.direction
@@ -23,20 +23,20 @@ struct StackResampling {
 };
 
 /// The columns of the projector, the axis where it appears.
-[[nodiscard]] Detector projector_detector(const model::Printer& printer, const Alignment& alignment);
+[[nodiscard]] Detector projector_detector(const model::Printer& printer, const AxisAlignment& alignment);
 
 /// The angles of a sinogram stack.
 [[nodiscard]] Turn turn_of(const model::StackInfo& info);
 
 /// Virtual sinograms for the projector's columns. Direction and angle offset of `options` come from the printer and the
 /// alignment. Throws Fault::data where the angles are not one turn or the bench is impossible.
-[[nodiscard]] StackResampling stack_to_projector(const model::Printer& printer, const Alignment& alignment,
+[[nodiscard]] StackResampling stack_to_projector(const model::Printer& printer, const AxisAlignment& alignment,
                                                  const model::StackInfo& in, ResampleOptions options);
 
 /// Camera sinograms (axis in the middle) to virtual ones with the axis of the part: the camera sees the part turned by
 /// its azimuth, which counts counter-clockwise from the projector seen from above. pixel_mm: column pitch of the
 /// output, by default the pitch of the slices, as voxels are cubes; columns: by default what the camera can see.
-[[nodiscard]] StackResampling stack_to_virtual(const model::Printer& printer, const Alignment& alignment,
+[[nodiscard]] StackResampling stack_to_virtual(const model::Printer& printer, const AxisAlignment& alignment,
                                                const model::StackInfo& in, ResampleOptions options,
                                                std::optional<double> pixel_mm, std::optional<int> columns);
 
@@ -44,6 +44,6 @@ struct StackResampling {
 void write_map(std::ostream& out, const View& view, const Detector& detector, const ResampleOptions& options);
 
 /// The columns of the camera that see the resin, axis in the middle, for write_map.
-[[nodiscard]] Detector camera_detector(const model::Printer& printer, const Alignment& alignment);
+[[nodiscard]] Detector camera_detector(const model::Printer& printer, const AxisAlignment& alignment);
 
 }  // namespace vam::optics

@@ -57,8 +57,7 @@ struct Canvas::State {
     if (x < 0 || y < 0 || x >= pixels.cols || y >= pixels.rows) return;
     auto& pixel = pixels.at<cv::Vec3b>(y, x);
     for (int c = 0; c < 3; ++c) {
-      pixel[c] = static_cast<unsigned char>(
-          std::lround((1 - opacity) * pixel[c] + opacity * colour[static_cast<std::size_t>(c)]));
+      pixel[c] = static_cast<unsigned char>(std::lround((1 - opacity) * pixel[c] + opacity * colour[c]));
     }
   }
 };

@@ -35,7 +35,7 @@ Rgb colour(ColourMap map, double place) {
                    : Rgb{255, byte(towards_white), byte(towards_white)};
   }
   static const std::vector<Rgb> viridis = viridis_table();
-  return viridis[static_cast<std::size_t>(std::lround(255 * p))];
+  return viridis[std::lround(255 * p)];
 }
 
 }  // namespace vam::plot

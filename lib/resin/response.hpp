@@ -51,7 +51,7 @@ class GreyLevels {
   [[nodiscard]] int level(float intensity) const;
 
   /// What a level gives, as a fraction of full intensity.
-  [[nodiscard]] float intensity(int level) const { return intensity_[static_cast<std::size_t>(level)]; }
+  [[nodiscard]] float intensity(int level) const { return intensity_[level]; }
 
  private:
   int bits_;

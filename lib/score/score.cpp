@@ -52,7 +52,7 @@ const std::vector<Figure>& figure_list() {
 }  // namespace
 
 Score::Score(const ScoreOptions& options, int width, int height) : options_(options), statistics_(options.threshold) {
-  inside_.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  inside_.reserve(width * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       inside_.push_back(options.circle.contains(x, y));
@@ -73,15 +73,15 @@ void Score::add(const float* dose, const float* target, int count) {
       auto label = model::label_of(f);
       if (!inside_[i] && label == model::Label::void_) continue;
       if (label == model::Label::surface) {
-        ++surface[static_cast<std::size_t>(s)];
+        ++surface[s];
         if (options_.surface) label = f >= 0.5F ? model::Label::part : model::Label::void_;
       }
-      slices[static_cast<std::size_t>(s)].add(d, label);
+      slices[s].add(d, label);
     }
   });
   for (int s = 0; s < count; ++s) {
-    statistics_.merge(slices[static_cast<std::size_t>(s)]);
-    surface_ += surface[static_cast<std::size_t>(s)];
+    statistics_.merge(slices[s]);
+    surface_ += surface[s];
   }
 }
 

@@ -51,7 +51,7 @@ class Adjoint {
     const int across = (geometry_.nx + tile - 1) / tile;
     const int down = (geometry_.ny + tile - 1) / tile;
     parallel_for(static_cast<int>(groups_.size()) * across * down, [&](int item) {
-      const Group& group = groups_[static_cast<std::size_t>(item / (across * down))];
+      const SlabGroup& group = groups_[item / (across * down)];
       work_out_tile(group, item % across * tile, item / across % down * tile);
     });
   }
@@ -86,7 +86,7 @@ class Adjoint {
     });
   }
 
-  void work_out_tile(const Group& group, int x0, int y0) const {
+  void work_out_tile(const SlabGroup& group, int x0, int y0) const {
     const std::ptrdiff_t pitch = group.pitch();
     float* bins = scratch(0, rows * window * group_lanes);
     float* pixels = scratch(1, std::size_t{tile} * tile * group_lanes);
@@ -123,7 +123,7 @@ class Adjoint {
   }
 
   /// Where the bins of a block's angles lie that the tile sees, opposite angles to be added when the plan is folded.
-  [[nodiscard]] Stretch find(const Group& group, std::size_t block, int x0, int y0) const {
+  [[nodiscard]] Stretch find(const SlabGroup& group, std::size_t block, int x0, int y0) const {
     Stretch stretch;
     for (std::size_t r = 0; r < rows; ++r) {
       Interleave& job = stretch.from[r];
@@ -176,7 +176,7 @@ class Adjoint {
     for (std::size_t e = 0; e < pair_entries; ++e) job.row_factor[e] = along_y[e % rows];
   }
 
-  void put(const Group& group, const float* pixels, int x0, int x1, int y) const {
+  void put(const SlabGroup& group, const float* pixels, int x0, int x1, int y) const {
     for (std::size_t s = 0; s < group.slabs; ++s) {
       float* to = images_[group.first + s].at(x0, y);
       const float* from = pixels + s * lanes;
@@ -188,7 +188,7 @@ class Adjoint {
   std::span<const Slab> sinograms_;
   std::span<Slab> images_;
   Plan plan_;
-  std::vector<Group> groups_;
+  std::vector<SlabGroup> groups_;
   const RadonKernels& kernels_;
   std::vector<Footprints> footprints_;  // per block of eight angles
   Factors factors_;

@@ -28,18 +28,18 @@ double kernel(int n, double low) {
   return ramp - (low * std::sin(phase) / (pi * n) + (std::cos(phase) - 1) / (2 * pi * pi * n * n));
 }
 
-double window_gain(Window window, double x) {
-  if (window == Window::gaussian) return std::exp(-x * x);
-  if (window == Window::exponential) return std::exp(-x);
+double window_gain(FilterWindow window, double x) {
+  if (window == FilterWindow::gaussian) return std::exp(-x * x);
+  if (window == FilterWindow::exponential) return std::exp(-x);
   if (x > 1) return 0;
   switch (window) {
-    case Window::shepp_logan:
+    case FilterWindow::shepp_logan:
       return x == 0 ? 1.0 : std::sin(pi * x / 2) / (pi * x / 2);
-    case Window::cosine:
+    case FilterWindow::cosine:
       return std::cos(pi * x / 2);
-    case Window::hamming:
+    case FilterWindow::hamming:
       return 0.54 + 0.46 * std::cos(pi * x);
-    case Window::hann:
+    case FilterWindow::hann:
       return 0.5 + 0.5 * std::cos(pi * x);
     default:
       return 1;
@@ -51,21 +51,21 @@ std::vector<double> make_gains(int length, const FilterSpec& spec) {
   const double low = std::min(std::abs(spec.alpha_per_px) / (2 * pi), nyquist);
   const int half = length / 2;
   std::vector<double> lags(static_cast<std::size_t>(half) + 1);
-  for (int n = 0; n <= half; ++n) lags[static_cast<std::size_t>(n)] = kernel(n, low);
+  for (int n = 0; n <= half; ++n) lags[n] = kernel(n, low);
   std::vector<double> cosines(static_cast<std::size_t>(length));
-  for (int i = 0; i < length; ++i) cosines[static_cast<std::size_t>(i)] = std::cos(2 * pi * i / length);
+  for (int i = 0; i < length; ++i) cosines[i] = std::cos(2 * pi * i / length);
   std::vector<double> gains(static_cast<std::size_t>(half) + 1);
   parallel_for(half + 1, [&](int m) {
     double sum = lags.front() + (m % 2 == 0 ? 1 : -1) * lags.back();
     for (int n = 1; n < half; ++n) {
       const auto phase = static_cast<std::size_t>(static_cast<long>(m) * n % length);
-      sum += 2 * lags[static_cast<std::size_t>(n)] * cosines[phase];
+      sum += 2 * lags[n] * cosines[phase];
     }
     const double x = static_cast<double>(m) / (half * spec.cutoff);
     // Without a floor the small negative gains below alpha stay: they keep the sampled kernel exact.
     const double gain = sum * window_gain(spec.window, x);
     const double kept = spec.floor > 0 ? std::max(gain, spec.floor * nyquist) : gain;
-    gains[static_cast<std::size_t>(m)] = spec.ceiling < 1 ? std::min(kept, spec.ceiling * nyquist) : kept;
+    gains[m] = spec.ceiling < 1 ? std::min(kept, spec.ceiling * nyquist) : kept;
   });
   return gains;
 }
@@ -91,10 +91,10 @@ const std::vector<std::string>& window_names() {
   return names;
 }
 
-Window window_from_name(const std::string& name) {
+FilterWindow window_from_name(const std::string& name) {
   const auto& names = window_names();
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<Window>(found - names.begin());
+  if (found != names.end()) return static_cast<FilterWindow>(found - names.begin());
   std::string list;
   for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
   throw Error{Fault::usage, "filter '" + name + "' is unknown; there are " + list};
@@ -116,7 +116,7 @@ Filter::Filter(int columns, const FilterSpec& spec) {
   const int length = fft_length(std::max(2 * columns, 4));
   state_ = std::make_unique<State>(columns, length);
   const auto half = static_cast<std::size_t>(length) / 2;
-  state_->identity = spec.window == Window::none;
+  state_->identity = spec.window == FilterWindow::none;
   state_->gains = state_->identity ? std::vector<double>(half + 1, 1.0) : make_gains(length, spec);
   for (int m = 0; m < length; ++m) {
     const auto folded = static_cast<std::size_t>(std::min(m, length - m));
@@ -134,15 +134,15 @@ const std::vector<double>& Filter::gains() const { return state_->gains; }
 void Filter::State::filter_row(float* row, Row& work) const {
   for (int lane = 0; lane < lanes; lane += 2) {
     const float* from = row + lane;
-    for (int c = 0; c < columns; ++c, from += lanes) work[static_cast<std::size_t>(c)] = {from[0], from[1]};
+    for (int c = 0; c < columns; ++c, from += lanes) work[c] = {from[0], from[1]};
     std::fill(work.begin() + columns, work.end(), std::complex<float>{});
     fft.forward(work.data());
     for (std::size_t m = 0; m < work.size(); ++m) work[m] *= row_factors[m];
     fft.backward(work.data());
     float* to = row + lane;
     for (int c = 0; c < columns; ++c, to += lanes) {
-      to[0] = work[static_cast<std::size_t>(c)].real();
-      to[1] = work[static_cast<std::size_t>(c)].imag();
+      to[0] = work[c].real();
+      to[1] = work[c].imag();
     }
   }
 }

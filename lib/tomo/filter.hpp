@@ -12,16 +12,16 @@ namespace vam::tomo {
 /// `none` leaves the sinogram as it is. `ram_lak` is the plain ramp; the others multiply it, with x = f / (cutoff *
 /// Nyquist), by sin(pi x/2)/(pi x/2), cos(pi x/2), 0.54 + 0.46 cos(pi x), 0.5 + 0.5 cos(pi x), each 0 beyond x = 1, or
 /// by e^{-x^2} and e^{-|x|} [Kelly et al. 2017, CAL17 eq 3], which have no edge.
-enum class Window { none, ram_lak, shepp_logan, cosine, hamming, hann, gaussian, exponential };
+enum class FilterWindow { none, ram_lak, shepp_logan, cosine, hamming, hann, gaussian, exponential };
 
 /// The names of the windows as the user writes them, in the order of the enumeration: "none", "ram-lak", ...
 [[nodiscard]] const std::vector<std::string>& window_names();
 
 /// The window of that name. Throws Error{Fault::usage} listing the names.
-[[nodiscard]] Window window_from_name(const std::string& name);
+[[nodiscard]] FilterWindow window_from_name(const std::string& name);
 
 struct FilterSpec {
-  Window window = Window::ram_lak;
+  FilterWindow window = FilterWindow::ram_lak;
   double cutoff = 1;        // of the window, as a fraction of the Nyquist frequency, > 0
   double floor = 0;         // least gain, as a fraction of the ramp's at the Nyquist frequency, 0..1 (preconditioner)
   double alpha_per_px = 0;  // |k| < |alpha| is blocked: the inverse of the exponential Radon transform [TM80]

@@ -80,7 +80,7 @@ class Forward {
   [[nodiscard]] int minor_size(const Block& block) const { return block.x_major ? geometry_.ny : geometry_.nx; }
 
   [[nodiscard]] View make_view(const Block& block, int angle) const {
-    const Ray& ray = plan_.rays[static_cast<std::size_t>(angle)];
+    const Ray& ray = plan_.rays[angle];
     View view{};
     view.angle = angle;
     view.cp = block.x_major ? ray.cosine : ray.sine;
@@ -99,7 +99,7 @@ class Forward {
     const auto along = [alpha](int pixels, double axis, double slope) {
       std::vector<float> factors(static_cast<std::size_t>(pixels));
       for (int i = 0; i < pixels; ++i) {
-        factors[static_cast<std::size_t>(i)] = static_cast<float>(std::exp(alpha * (i - axis) * slope));
+        factors[i] = static_cast<float>(std::exp(alpha * (i - axis) * slope));
       }
       return factors;
     };
@@ -112,7 +112,7 @@ class Forward {
     view.minor.resize(view.minor.size() + rows);
   }
 
-  void work_out_block(const Group& group, const Block& block) const {
+  void work_out_block(const SlabGroup& group, const Block& block) const {
     std::vector<View> views;
     for (const int angle : block.angles) {
       views.push_back(make_view(block, angle));
@@ -162,7 +162,7 @@ class Forward {
   }
 
   /// Adds the band's pixels to these bins.
-  void project(const Group& group, const Block& block, const View& view, int p0, int q0, Bins bins,
+  void project(const SlabGroup& group, const Block& block, const View& view, int p0, int q0, Bins bins,
                const float* pixels) const {
     if (bins.first >= bins.last) return;
     const double t0 = p0 * view.cp + q0 * view.cq + view.offset;  // of the band's first pixel
@@ -191,12 +191,12 @@ class Forward {
   }
 
   /// Where eight rows of pixels lie; rows beyond the image have no pixels.
-  [[nodiscard]] Rows find(const Group& group, const Block& block, int p0, int q0) const {
+  [[nodiscard]] Rows find(const SlabGroup& group, const Block& block, int p0, int q0) const {
     const int np = std::min(band, major_size(block) - p0);
     const int nq = std::min(gather_rows, minor_size(block) - q0);
     Rows found{};
     for (int r = 0; r < gather_rows; ++r) {
-      Interleave& job = found[static_cast<std::size_t>(r)];
+      Interleave& job = found[r];
       job.slabs = static_cast<int>(group.slabs);
       job.count = r < nq ? np : 0;
       job.from_step = block.x_major ? lanes : static_cast<long>(geometry_.nx) * lanes;
@@ -221,7 +221,7 @@ class Forward {
     return any;
   }
 
-  void mirror(const Group& group, int angle) const {
+  void mirror(const SlabGroup& group, int angle) const {
     for (Slab& slab : sinograms_.subspan(group.first, group.slabs)) {
       const float* from = slab.at(0, angle);
       float* to = slab.at(geometry_.columns - 1, angle + geometry_.angles / 2);
@@ -233,7 +233,7 @@ class Forward {
   std::span<const Slab> images_;
   std::span<Slab> sinograms_;
   Plan plan_;
-  std::vector<Group> groups_;
+  std::vector<SlabGroup> groups_;
   const RadonKernels& kernels_;
   std::vector<Block> blocks_;
 };

@@ -17,7 +17,7 @@ FilterSpec matched(FilterSpec filter, const ParallelGeometry& geometry) {
 /// Unit of the values, and the light at the wall, e^{alpha sqrt(R^2 - t^2)} times that at the axis [CAL19;
 /// physics §5]; columns beyond the wall get the factor of the axis plane, 1.
 std::vector<float> column_weights(const ProjectionSpec& spec) {
-  const double unit = spec.filter.window == Window::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
+  const double unit = spec.filter.window == FilterWindow::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
   std::vector<float> weights;
   for (int c = 0; c < spec.geometry.columns; ++c) {
     double weight = unit;
@@ -55,8 +55,7 @@ float lowest(const Slab& slab) {
   std::vector<float> rows(static_cast<std::size_t>(slab.height), 0.0F);
   parallel_for(slab.height, [&](int y) {
     const float* values = slab.at(0, y);
-    rows[static_cast<std::size_t>(y)] =
-        *std::min_element(values, values + static_cast<std::ptrdiff_t>(slab.width) * lanes);
+    rows[y] = *std::min_element(values, values + static_cast<std::ptrdiff_t>(slab.width) * lanes);
   });
   return std::min(0.0F, *std::min_element(rows.begin(), rows.end()));
 }
@@ -74,8 +73,8 @@ const std::vector<std::string>& negative_names() {
 }
 
 int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes) {
-  const std::size_t image = static_cast<std::size_t>(geometry.nx) * static_cast<std::size_t>(geometry.ny);
-  const std::size_t sinogram = static_cast<std::size_t>(geometry.columns) * static_cast<std::size_t>(geometry.angles);
+  const std::size_t image = static_cast<std::size_t>(geometry.nx) * geometry.ny;
+  const std::size_t sinogram = static_cast<std::size_t>(geometry.columns) * geometry.angles;
   const std::size_t slab_bytes =
       (2 * image + 3 * sinogram) * lanes * sizeof(float);  // slabs, slices read, images written
   return static_cast<int>(std::clamp<std::size_t>(budget_bytes / slab_bytes, 1, 4));

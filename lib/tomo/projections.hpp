@@ -17,7 +17,7 @@ enum class Negative { keep, clip, offset };
 struct ProjectionSpec {
   ParallelGeometry geometry;  // alpha_per_px != 0: the exponential transform and its inverse filter
   double voxel_mm = 1;
-  FilterSpec filter{Window::none, 1, 0, 0};
+  FilterSpec filter{FilterWindow::none, 1, 0, 0};
   std::optional<double> wall_radius_mm;  // give the light at this radius instead of at the axis, in an absorber
 };
 

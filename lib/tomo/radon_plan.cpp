@@ -68,8 +68,8 @@ void set_footprint(Footprints& footprints, std::size_t r, double wide, double na
   }
 }
 
-std::vector<Group> make_groups(std::size_t slabs) {
-  std::vector<Group> groups;
+std::vector<SlabGroup> make_groups(std::size_t slabs) {
+  std::vector<SlabGroup> groups;
   for (std::size_t first = 0; first < slabs;) {
     const std::size_t left = slabs - first;
     const std::size_t take = left >= 4 ? 4 : left >= 2 ? 2 : 1;
@@ -88,7 +88,7 @@ bool Ahead::next_stream() {
   const int slabs = rows_[0].slabs;
   do {
     if (++stream_ >= gather_rows * slabs) return false;
-    row_ = &rows_[static_cast<std::size_t>(stream_ / slabs)];
+    row_ = &rows_[stream_ / slabs];
   } while (row_->count == 0);
   left_ = row_->count;
   from_ = row_->from[stream_ % slabs];

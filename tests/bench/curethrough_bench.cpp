@@ -14,7 +14,7 @@ constexpr int slices = 200;
 // Blocks of 40 slices every 60, shifted from column to column so that edges come up in every slice.
 const vam::resin::PartColumns& part() {
   static const auto built = [] {
-    vam::resin::PartColumns columns(width, height, slices, vam::resin::Exposure::continuous);
+    vam::resin::PartColumns columns(width, height, slices, vam::resin::ExposureMode::continuous);
     std::vector<float> slice(static_cast<std::size_t>(width) * height);
     for (int k = 0; k < slices; ++k) {
       for (int y = 0; y < height; ++y) {
@@ -31,7 +31,7 @@ const vam::resin::PartColumns& part() {
 }
 
 void corrected_slice(benchmark::State& state) {
-  const vam::resin::Limits limits = vam::resin::limits_of({});
+  const vam::resin::CureLimits limits = vam::resin::limits_of({});
   vam::Image slice(width, height);
   for (auto _ : state) {
     state.PauseTiming();
@@ -46,7 +46,7 @@ BENCHMARK(corrected_slice)->Unit(benchmark::kMillisecond);
 void packed_slice(benchmark::State& state) {
   const std::vector<float> slab(static_cast<std::size_t>(width) * height * 16, 0.7F);
   for (auto _ : state) {
-    vam::resin::PartColumns columns(width, height, 64, vam::resin::Exposure::continuous);
+    vam::resin::PartColumns columns(width, height, 64, vam::resin::ExposureMode::continuous);
     for (int k = 0; k < 4; ++k) columns.append(16, slab.data(), 0.5F);
     benchmark::DoNotOptimize(columns.solid(0, 0));
   }

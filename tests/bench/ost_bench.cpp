@@ -7,8 +7,8 @@
 
 namespace {
 
-std::vector<vam::metrology::View> views(int count) {
-  std::vector<vam::metrology::View> all;
+std::vector<vam::metrology::CameraView> views(int count) {
+  std::vector<vam::metrology::CameraView> all;
   for (int a = 0; a < count; ++a) {
     vam::Image image(480, 300);
     for (int y = 0; y < image.height; ++y) {

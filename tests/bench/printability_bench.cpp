@@ -56,9 +56,7 @@ void target(const std::string& method) {
 /// The resolution target in one of 64 places: mirrored in x, in y, along the diagonal, and moved by up to 7 pixels.
 std::vector<float> target_in_place(const std::vector<float>& target, int size, int place) {
   std::vector<float> moved(target.size(), 0.0F);
-  const auto at = [size](int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size) + static_cast<std::size_t>(x);
-  };
+  const auto at = [size](int x, int y) { return static_cast<std::size_t>(y) * size + static_cast<std::size_t>(x); };
   const int shift = place / 8;
   for (int y = 0; y < size; ++y) {
     for (int x = shift; x < size; ++x) {

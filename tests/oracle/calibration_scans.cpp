@@ -117,8 +117,7 @@ Image SweepBench::frame(double line_column, double width_px, const std::vector<d
                         Random& random) const {
   Image image(columns, static_cast<int>(height_mm.size()));
   for (int row = 0; row < image.height; ++row) {
-    const double axis =
-        truth_.axis_column + std::tan(truth_.tilt_rad) * height_mm[static_cast<std::size_t>(row)] / truth_.pixel_mm;
+    const double axis = truth_.axis_column + std::tan(truth_.tilt_rad) * height_mm[row] / truth_.pixel_mm;
     double light = 0;
     double weights = 0;
     for (int g = -6; g <= 6; ++g) {  // the blur

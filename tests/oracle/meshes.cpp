@@ -86,7 +86,7 @@ model::TriangleSoup cracked(const model::TriangleSoup& mesh, double amount, std:
   for (const auto& t : mesh.triangles) {
     const int first = static_cast<int>(result.points.size());
     for (const int corner : t) {
-      Point p = mesh.points[static_cast<std::size_t>(corner)];
+      Point p = mesh.points[corner];
       if (amount > 0) {
         for (double& c : p) c += move(random);
       }
@@ -128,7 +128,7 @@ model::TriangleSoup punched(const model::TriangleSoup& mesh, const Point& centre
     double square = 0;
     for (std::size_t a = 0; a < 3; ++a) {
       double mean = 0;
-      for (const int corner : t) mean += mesh.points[static_cast<std::size_t>(corner)][a] / 3;
+      for (const int corner : t) mean += mesh.points[corner][a] / 3;
       square += (mean - centre[a]) * (mean - centre[a]);
     }
     return square > radius * radius;
@@ -138,9 +138,9 @@ model::TriangleSoup punched(const model::TriangleSoup& mesh, const Point& centre
 double signed_volume(const model::TriangleSoup& mesh) {
   double volume = 0;
   for (const auto& t : mesh.triangles) {
-    const Point& a = mesh.points[static_cast<std::size_t>(t[0])];
-    const Point& b = mesh.points[static_cast<std::size_t>(t[1])];
-    const Point& c = mesh.points[static_cast<std::size_t>(t[2])];
+    const Point& a = mesh.points[t[0]];
+    const Point& b = mesh.points[t[1]];
+    const Point& c = mesh.points[t[2]];
     volume +=
         a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   }

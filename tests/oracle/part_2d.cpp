@@ -14,7 +14,7 @@ constexpr double usable = 0.48;
 
 std::vector<float> draw(int size, const std::function<bool(double, double)>& inside) {
   std::vector<float> image;
-  image.reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+  image.reserve(size * static_cast<std::size_t>(size));
   const double centre = 0.5 * (size - 1);
   for (int j = 0; j < size; ++j) {
     for (int i = 0; i < size; ++i) {

@@ -7,9 +7,7 @@ namespace vam::oracle {
 
 SkewResult skew_dose(const SkewDose& setup, const std::function<double(int, int, int)>& intensity) {
   SkewResult result;
-  result.dose.assign(static_cast<std::size_t>(setup.size) * static_cast<std::size_t>(setup.size) *
-                         static_cast<std::size_t>(setup.slices),
-                     0.0);
+  result.dose.assign(static_cast<std::size_t>(setup.size) * setup.size * static_cast<std::size_t>(setup.slices), 0.0);
   const double turn = 2 * std::numbers::pi / setup.angles;
   const double step = 0.2 * setup.voxel;
   const double ray_area = setup.pixel * setup.pixel / (setup.rays * setup.rays);
@@ -49,10 +47,9 @@ SkewResult skew_dose(const SkewDose& setup, const std::function<double(int, int,
             const int j = static_cast<int>(std::floor(part_y / setup.voxel + 0.5 * setup.size));
             const int slice = static_cast<int>(std::floor((p[2] + s * d[2] - setup.first_slice) / setup.height + 0.5));
             if (i < 0 || j < 0 || slice < 0 || i >= setup.size || j >= setup.size || slice >= setup.slices) continue;
-            const auto at =
-                (static_cast<std::size_t>(slice) * static_cast<std::size_t>(setup.size) + static_cast<std::size_t>(j)) *
-                    static_cast<std::size_t>(setup.size) +
-                static_cast<std::size_t>(i);
+            const auto at = (static_cast<std::size_t>(slice) * setup.size + static_cast<std::size_t>(j)) *
+                                static_cast<std::size_t>(setup.size) +
+                            static_cast<std::size_t>(i);
             result.dose[at] +=
                 light * step * (setup.absorption > 0 ? std::exp(-setup.absorption * s) : 1.0) * turn / volume;
           }

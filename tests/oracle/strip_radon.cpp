@@ -43,7 +43,7 @@ void for_each_weight(const StripRadon& g, const Visit& visit) {
           if (bin < 0 || bin >= g.columns) continue;
           const double weight = strip_area(x, y, g.theta_rad[a], bin - 0.5 * (g.columns - 1));
           if (weight == 0) continue;
-          visit(static_cast<std::size_t>(j) * static_cast<std::size_t>(g.nx) + static_cast<std::size_t>(i),
+          visit(static_cast<std::size_t>(j) * g.nx + static_cast<std::size_t>(i),
                 a * static_cast<std::size_t>(g.columns) + static_cast<std::size_t>(bin),
                 weight * std::exp(g.alpha_per_px * (-x * s + y * c)));
         }
@@ -76,7 +76,7 @@ std::vector<double> StripRadon::forward(const std::vector<double>& image) const 
 }
 
 std::vector<double> StripRadon::adjoint(const std::vector<double>& sinogram) const {
-  std::vector<double> image(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), 0.0);
+  std::vector<double> image(static_cast<std::size_t>(nx) * ny, 0.0);
   for_each_weight(*this, [&](std::size_t pixel, std::size_t bin, double w) { image[pixel] += w * sinogram[bin]; });
   return image;
 }

@@ -21,8 +21,7 @@ std::vector<double> walked_dose(const WalkedDose& setup) {
         const int i = static_cast<int>(std::floor((ray.t * c - u * s) / setup.voxel + 0.5 * setup.size));
         const int j = static_cast<int>(std::floor((ray.t * s + u * c) / setup.voxel + 0.5 * setup.size));
         if (i < 0 || j < 0 || i >= setup.size || j >= setup.size) continue;
-        const auto voxel =
-            static_cast<std::size_t>(j) * static_cast<std::size_t>(setup.size) + static_cast<std::size_t>(i);
+        const auto voxel = static_cast<std::size_t>(j) * setup.size + static_cast<std::size_t>(i);
         if (setup.insert[voxel] >= 0.5F) break;
         dose[voxel] +=
             ray.light * step * std::exp(-setup.absorption * (entry + u)) * turn / (setup.voxel * setup.voxel);

@@ -28,7 +28,7 @@ int main(int argc, char** argv) try {
   camera.axis_column += set["offset"];
   camera.tilt_rad = set["tilt"] * 3.14159265358979 / 180;
   std::vector<model::ImageInfo> about;
-  std::vector<metrology::View> views;
+  std::vector<metrology::CameraView> views;
   for (int turn = 0; turn < whole("turns"); ++turn) {
     // A print gels from the axis outwards.
     const double part = set["turns"] > 1 ? set["growth"] + (1 - set["growth"]) * turn / (set["turns"] - 1) : 1.0;

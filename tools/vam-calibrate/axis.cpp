@@ -9,7 +9,7 @@ namespace vam::calibrate_tool {
 Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   metrology::TurnScan scan;
   double pixel_mm = 0;
-  scan.middle.resize(static_cast<std::size_t>(options.bands));
+  scan.middle.resize(options.bands);
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const auto middles = metrology::bright_middles(frame.image, options.bands);
     for (std::size_t b = 0; b < middles.size(); ++b) scan.middle[b].push_back(middles[b]);

@@ -24,7 +24,7 @@ std::string cells(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-Json compare(const Correct& options, const Print& print, const resin::PartColumns& part) {
+Json compare(const CorrectOptions& options, const Print& print, const resin::PartColumns& part) {
   const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "critical_dose_mj_cm3"});
   std::string text = cells(
       {"resin", "h_a um", "D_c mJ/cm3", "limit mm/h", "speed mm/h", "Phi_max", "gap um", "tight gaps", "fused gaps"});
@@ -38,7 +38,7 @@ Json compare(const Correct& options, const Print& print, const resin::PartColumn
     if (speeds.empty()) speeds = {0.2 * limit, 0.4 * limit, 0.6 * limit, 0.8 * limit};
     for (const double speed : speeds) {
       process.speed_mm_h = speed;
-      const resin::Limits limits = resin::limits_of(process);
+      const resin::CureLimits limits = resin::limits_of(process);
       const int gap = resin::narrowest_gap(limits, options.clear);
       const resin::GapReport judged = resin::judge_gaps(part, limits, options.clear);
       const bool prints = speed < limit;

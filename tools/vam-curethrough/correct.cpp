@@ -26,14 +26,14 @@ namespace {
 
 struct Job {
   Print print;
-  Part part;
+  PartFile part;
   resin::PartSurvey survey;
   resin::GapReport gaps;
   model::StackInfo info;
   int slices = 0;  // the extra ones included
 };
 
-Json figures(const Correct& options, const Job& job) {
+Json figures(const CorrectOptions& options, const Job& job) {
   const double seconds = job.slices / frames_per_s(job.print.process);
   Json report{{"process", to_json(job.print.process)}};
   // JSON has no infinity.
@@ -73,7 +73,7 @@ std::vector<model::ImageInfo> time_stamps(const Job& job) {
 }
 
 // Exact intensities, in printing order.
-void write_exact(const Correct& options, const Job& job, const optics::SlicePlace& frame, float dark,
+void write_exact(const CorrectOptions& options, const Job& job, const optics::SlicePlace& frame, float dark,
                  io::StackWriter& out) {
   resin::SliceCorrection correction(job.part.columns(), job.print.limits, options.limit, job.slices);
   Progress progress("correcting", job.slices);
@@ -88,7 +88,7 @@ void write_exact(const Correct& options, const Job& job, const optics::SlicePlac
 }
 
 // Grey levels, chosen from the last slice up; all are kept until the stack can be written from the first down.
-std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
+std::vector<GreyImage> all_levels(const CorrectOptions& options, const Job& job, const resin::GreyLevels& levels,
                                   const io::FrameFolder* folder, const optics::SlicePlace& frame) {
   std::vector<float> steps;
   for (int v = 0; v < levels.count(); ++v) steps.push_back(levels.intensity(v));
@@ -102,17 +102,17 @@ std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const 
     const int count = std::min(end, static_cast<int>(batch.size()));
     for (int i = 0; i < count; ++i) {
       correction.previous(slice.values);
-      batch[static_cast<std::size_t>(i)] = frame.place(slice);
+      batch[i] = frame.place(slice);
     }
     parallel_for(folder != nullptr ? count : 0, [&](int i) {
       const int n = end - 1 - i;
-      folder->write(n, batch[static_cast<std::size_t>(i)],
-                    {{"vam:time_s", format_number(times[static_cast<std::size_t>(n)].time_s, 9)},
+      folder->write(n, batch[i],
+                    {{"vam:time_s", format_number(times[n].time_s, 9)},
                      {"vam:fps", format_number(frames_per_s(job.print.process), 9)},
                      {"vam:history", job.info.history.back()}});
     });
     for (int i = 0; i < (options.quantise ? count : 0); ++i) {
-      kept[static_cast<std::size_t>(end - 1 - i)] = std::move(batch[static_cast<std::size_t>(i)]);
+      kept[end - 1 - i] = std::move(batch[i]);
     }
     end -= count;
     progress.tick(count);
@@ -120,7 +120,7 @@ std::vector<GreyImage> all_levels(const Correct& options, const Job& job, const 
   return kept;
 }
 
-void write_levels(const Correct& options, const Job& job, const resin::GreyLevels& levels,
+void write_levels(const CorrectOptions& options, const Job& job, const resin::GreyLevels& levels,
                   const std::vector<GreyImage>& stack, io::StackWriter& out) {
   Image image(job.info.width, job.info.height);
   for (const GreyImage& slice : stack) {
@@ -140,11 +140,11 @@ void warn_of_gaps(const std::string& name, const Job& job) {
        "(--mask shows them)");
 }
 
-Job prepare(const cli::App& root, const Correct& options, bool writes) {
-  Part source(options.part, exposure_of(options.print));
+Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
+  PartFile source(options.part, exposure_of(options.print));
   const Print print = resolve(options.print, source.slice_um());
   Job job{print, std::move(source), {}, {}, {}, 0};
-  const Part& part = job.part;
+  const PartFile& part = job.part;
   job.survey = resin::survey(part.columns());
   if (job.survey.columns == 0) {
     throw Error{Fault::data, part.name() + ": no voxel reaches a coverage of " + format_number(part.threshold()) +
@@ -172,7 +172,7 @@ Job prepare(const cli::App& root, const Correct& options, bool writes) {
 
 }  // namespace
 
-void declare(cli::App& app, Correct& options) {
+void declare(cli::App& app, CorrectOptions& options) {
   app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.");
   cli::add_output(app, options.output);
   app.option("--png", "FOLDER", options.png,
@@ -210,7 +210,7 @@ void declare(cli::App& app, Correct& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App& root, const cli::App& app, const Correct& options) {
+void run(const cli::App& root, const cli::App& app, const CorrectOptions& options) {
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
   if (stack) io::refuse_same_file(options.part.path, options.output);

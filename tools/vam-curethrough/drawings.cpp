@@ -29,7 +29,7 @@ std::vector<double> sequence(double from, double to, int count) {
   return values;
 }
 
-RgbImage slices_image(const Plane& plane, const resin::Response& response) {
+RgbImage slices_image(const PlaneFigure& plane, const resin::Response& response) {
   RgbImage image(plane.light.width, plane.light.height);
   for (std::size_t p = 0; p < plane.light.size(); ++p) {
     const auto level = static_cast<std::uint8_t>(
@@ -39,7 +39,7 @@ RgbImage slices_image(const Plane& plane, const resin::Response& response) {
   return image;
 }
 
-RgbImage cure_image(const Plane& plane) {
+RgbImage cure_image(const PlaneFigure& plane) {
   RgbImage image(plane.cure.width, plane.cure.height);
   for (std::size_t p = 0; p < plane.cure.size(); ++p) {
     image.values[p] = cure_colours[static_cast<std::size_t>(plane.cure.values[p])];
@@ -64,7 +64,7 @@ void draw_image(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& 
 }
 
 // Grey and dose along the column over a shade where the part is, slice number down.
-void draw_column(plot::Canvas& canvas, plot::Frame frame, const Plane& plane, const Print& print) {
+void draw_column(plot::Canvas& canvas, plot::Frame frame, const PlaneFigure& plane, const Print& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
   frame.x = {"dose / critical dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
@@ -74,7 +74,7 @@ void draw_column(plot::Canvas& canvas, plot::Frame frame, const Plane& plane, co
     if (plane.solid(plane.column, n) > 0) {
       canvas.fill(frame.spot(0, n), frame.spot(frame.x.high, n + 1.0), shade);
     }
-    dose.push_back(frame.spot(plane.omega[static_cast<std::size_t>(n)], n + 0.5));
+    dose.push_back(frame.spot(plane.omega[n], n + 0.5));
     const double grey = print.response.grey(static_cast<double>(plane.light(plane.column, n)));
     const double at = frame.left + 0.98 * grey * (frame.right - frame.left);
     stairs.push_back({at, frame.spot_y(n)});
@@ -91,7 +91,7 @@ void draw_column(plot::Canvas& canvas, plot::Frame frame, const Plane& plane, co
 
 }  // namespace
 
-void draw_plane(const std::string& path, const Plane& plane, const Print& print) {
+void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& print) {
   const int height = std::clamp(plane.light.height * 4, 280, 900);
   const double aspect = static_cast<double>(plane.light.width) / plane.light.height;  // voxels are cubes
   const int width = std::clamp(static_cast<int>(std::lround(height * aspect)), 200, 700);

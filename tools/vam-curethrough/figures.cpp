@@ -24,7 +24,7 @@ std::vector<std::pair<Heights, resin::FeatureErrors>> grouped(const std::vector<
   std::vector<std::pair<Heights, resin::FeatureErrors>> groups;
   std::size_t taken = 0;
   for (int h = 0; h < static_cast<int>(by_height.size()); ++h) {
-    const resin::FeatureErrors& e = by_height[static_cast<std::size_t>(h)];
+    const resin::FeatureErrors& e = by_height[h];
     if (!occurs(e)) continue;
     if (taken++ % each == 0) groups.push_back({{h, h}, {}});
     auto& [heights, sum] = groups.back();

@@ -25,9 +25,9 @@ constexpr int block = resin::StackDose::block_slices;
 bool is_volume(const std::string& path) { return path == "-" || io::file_type(path) == io::FileType::volume; }
 
 // The ordinary slices of a part: full light in it, the least outside.
-Slices plain_slices(const std::shared_ptr<Part>& part, float dark) {
+SliceSource plain_slices(const std::shared_ptr<PartFile>& part, float dark) {
   const model::Grid& grid = part->grid();
-  Slices slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
+  SliceSource slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
   static constexpr int batch = 8;
   auto slab = std::make_shared<std::vector<float>>(grid.slice_size() * batch);
   slices.read = [part, slab, dark](int n, Image& slice) {
@@ -41,13 +41,13 @@ Slices plain_slices(const std::shared_ptr<Part>& part, float dark) {
 }
 
 struct Inputs {
-  std::shared_ptr<Part> part;  // the design, null without one
-  Slices slices;
+  std::shared_ptr<PartFile> part;  // the design, null without one
+  SliceSource slices;
   Print print;
 };
 
 // The stack's facts about its print apply where the command line gives none.
-PrintOptions with_facts(const cli::App& app, PrintOptions options, const Slices& slices) {
+PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSource& slices) {
   const auto fact = [&](const char* name) {
     const auto found = slices.facts.find(name);
     return found == slices.facts.end() ? std::string() : found->second;
@@ -59,7 +59,7 @@ PrintOptions with_facts(const cli::App& app, PrintOptions options, const Slices&
   return options;
 }
 
-double slice_height_um(const Model& options, const Inputs& in) {
+double slice_height_um(const ModelOptions& options, const Inputs& in) {
   if (in.part) return in.part->slice_um();
   if (options.slice_um) return *options.slice_um;
   const auto fact = in.slices.facts.find("vam:slice_mm");
@@ -68,14 +68,14 @@ double slice_height_um(const Model& options, const Inputs& in) {
   throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice or --part"};
 }
 
-Inputs open_inputs(const cli::App& app, const Model& options) {
+Inputs open_inputs(const cli::App& app, const ModelOptions& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
   if (is_volume(options.input) && !design.path.empty()) {
     throw Error{Fault::usage, "--part: " + options.input + " is a part itself; give slices, or omit --part"};
   }
   if (is_volume(options.input)) design.path = options.input;
-  if (!design.path.empty()) in.part = std::make_shared<Part>(design, exposure_of(options.print));
+  if (!design.path.empty()) in.part = std::make_shared<PartFile>(design, exposure_of(options.print));
   const bool plain = is_volume(options.input);
   if (!plain) in.slices = open_slices(options.input, in.print.response);
   const PrintOptions print = with_facts(app, options.print, in.slices);
@@ -98,7 +98,7 @@ Inputs open_inputs(const cli::App& app, const Model& options) {
 // The second reading: everything that is worth knowing of a block of slices.
 class Judge {
  public:
-  Judge(const Model& options, const Inputs& in) : in_(in), grid_(grid_of(in)) {
+  Judge(const ModelOptions& options, const Inputs& in) : in_(in), grid_(grid_of(in)) {
     if (in.part) map_.emplace(grid_.nx, grid_.ny, in.slices.count, in.print.limits);
     if (!options.output.empty()) dose_.emplace("dose", grid_);
     plane_.row = options.row.value_or(grid_.ny / 2);
@@ -109,7 +109,7 @@ class Judge {
                                     std::to_string(grid_.nx) + " x " + std::to_string(grid_.ny) + " pixels"};
     }
     plane_.light = plane_.cure = plane_.solid = Image(grid_.nx, in.slices.count);
-    plane_.omega.assign(static_cast<std::size_t>(in.slices.count), 0);
+    plane_.omega.assign(in.slices.count, 0);
   }
 
   void add(int first, const std::vector<Image>& light, const resin::StackDose& dose) {
@@ -123,7 +123,7 @@ class Judge {
 
   std::optional<resin::CureMap> map_;
   std::optional<io::SparseVolume> dose_;
-  Plane plane_;
+  PlaneFigure plane_;
 
  private:
   static model::Grid grid_of(const Inputs& in) {
@@ -156,7 +156,7 @@ class Judge {
       plane_.solid(x, n) = in_part ? 1.0F : 0.0F;
       const resin::Cure cure = resin::cure_of(omega, in_part);
       plane_.cure(x, n) = static_cast<float>(map_ || cure == resin::Cure::empty ? cure : resin::Cure::correct);
-      if (x == plane_.column) plane_.omega[static_cast<std::size_t>(n)] = omega;
+      if (x == plane_.column) plane_.omega[n] = omega;
     }
   }
 
@@ -193,7 +193,7 @@ void read_twice(const Inputs& in, Judge& judge) {
 
 }  // namespace
 
-void declare(cli::App& app, Model& options) {
+void declare(cli::App& app, ModelOptions& options) {
   options.part.path.clear();
   app.positional("SLICES", options.input,
                  "EXR frame stack, folder of numbered images, or a target volume (.vdb, or standard input): maximum "
@@ -214,7 +214,7 @@ void declare(cli::App& app, Model& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App& root, const cli::App& app, const Model& options) {
+void run(const cli::App& root, const cli::App& app, const ModelOptions& options) {
   if (!options.output.empty()) io::refuse_same_file(options.input, options.output);
   const Inputs in = open_inputs(app, options);
   Judge judge(options, in);

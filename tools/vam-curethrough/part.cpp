@@ -44,7 +44,7 @@ void add_part(cli::App& app, PartOptions& options) {
   app.option("--threshold", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a part voxel.");
 }
 
-Part::Part(const PartOptions& options, resin::Exposure exposure)
+PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
     : options_(options),
       name_(options.path == "-" ? "stdin" : options.path),
       least_(static_cast<float>(options.threshold)) {
@@ -64,7 +64,7 @@ Part::Part(const PartOptions& options, resin::Exposure exposure)
   }
 }
 
-void Part::take_values(const io::VoxelBlock& block) {
+void PartFile::take_values(const io::VoxelBlock& block) {
   const Box box(block, grid());
   const int count = box.z1 - box.z0;
   if (count <= 0) return;
@@ -80,7 +80,7 @@ void Part::take_values(const io::VoxelBlock& block) {
   }
 }
 
-void Part::fill(const io::VoxelBlock& block) {
+void PartFile::fill(const io::VoxelBlock& block) {
   const Box box(block, grid());
   if (box.z1 <= box.z0) return;
   const int first = upside_down() ? grid().nz - box.z1 : box.z0;
@@ -90,14 +90,14 @@ void Part::fill(const io::VoxelBlock& block) {
   }
 }
 
-model::Grid Part::extended(int slices) const {
+model::Grid PartFile::extended(int slices) const {
   model::Grid grid = facts_.grid;
   if (upside_down()) grid.origin_mm[2] -= (slices - grid.nz) * grid.voxel_mm;
   grid.nz = slices;
   return grid;
 }
 
-void Part::write(io::SparseVolume& volume, int first, int count, std::vector<float>& slices) const {
+void PartFile::write(io::SparseVolume& volume, int first, int count, std::vector<float>& slices) const {
   if (!upside_down()) return volume.write_slices(first, count, slices.data());
   reverse_slices(slices.data(), count, grid().slice_size());
   volume.write_slices(volume.grid().nz - first - count, count, slices.data());

@@ -19,9 +19,9 @@ struct PartOptions {
 void add_part(cli::App& app, PartOptions& options);
 
 /// A target volume, one bit a voxel; slice 0 is the one at the platform. Read in one go, file or pipe.
-class Part {
+class PartFile {
  public:
-  Part(const PartOptions& options, resin::Exposure exposure);
+  PartFile(const PartOptions& options, resin::ExposureMode exposure);
   [[nodiscard]] const resin::PartColumns& columns() const { return *columns_; }
   [[nodiscard]] const model::Grid& grid() const { return facts_.grid; }
   [[nodiscard]] const std::vector<std::string>& history() const { return facts_.history; }

@@ -32,8 +32,8 @@ void add_print(cli::App& app, PrintOptions& options) {
   cli::add_printer(app, options.printer);
 }
 
-resin::Exposure exposure_of(const PrintOptions& options) {
-  return options.exposure == "layered" ? resin::Exposure::layered : resin::Exposure::continuous;
+resin::ExposureMode exposure_of(const PrintOptions& options) {
+  return options.exposure == "layered" ? resin::ExposureMode::layered : resin::ExposureMode::continuous;
 }
 
 Print resolve(const PrintOptions& options, double slice_um) {
@@ -66,8 +66,8 @@ Print resolve(const PrintOptions& options, double slice_um) {
 double frames_per_s(const resin::Process& process) { return process.speed_mm_h / 3600 / (process.slice_um * 1e-3); }
 
 Json to_json(const resin::Process& process) {
-  const resin::Limits limits = resin::limits_of(process);
-  return {{"exposure", process.exposure == resin::Exposure::layered ? "layered" : "continuous"},
+  const resin::CureLimits limits = resin::limits_of(process);
+  return {{"exposure", process.exposure == resin::ExposureMode::layered ? "layered" : "continuous"},
           {"slice_um", process.slice_um},
           {"absorbance_height_um", process.absorbance_height_um},
           {"critical_dose_mj_cm3", process.critical_dose_mj_cm3},
@@ -81,7 +81,7 @@ Json to_json(const resin::Process& process) {
 }
 
 std::map<std::string, std::string> attributes(const resin::Process& process) {
-  return {{"vam:exposure", process.exposure == resin::Exposure::layered ? "layered" : "continuous"},
+  return {{"vam:exposure", process.exposure == resin::ExposureMode::layered ? "layered" : "continuous"},
           {"vam:slice_mm", format_number(process.slice_um * 1e-3, 9)},
           {"vam:speed_mm_h", format_number(process.speed_mm_h, 9)},
           {"vam:fps", format_number(frames_per_s(process), 9)}};

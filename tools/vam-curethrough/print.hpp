@@ -30,11 +30,11 @@ void add_print(cli::App& app, PrintOptions& options);
 struct Print {
   model::Printer printer;
   resin::Process process;
-  resin::Limits limits;
+  resin::CureLimits limits;
   resin::Response response;
 };
 [[nodiscard]] Print resolve(const PrintOptions& options, double slice_um);
-[[nodiscard]] resin::Exposure exposure_of(const PrintOptions& options);
+[[nodiscard]] resin::ExposureMode exposure_of(const PrintOptions& options);
 
 [[nodiscard]] Json to_json(const resin::Process& process);
 /// What later tools need to show the slices in time, as text attributes.

@@ -12,7 +12,7 @@
 
 namespace vam::curethrough {
 
-void declare(cli::App& app, GreyResponse& options) {
+void declare(cli::App& app, GreyResponseOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.");
   cli::add_output(app, options.output);
   app.option("--dark", "READING", options.dark, cli::any, "Dark reading of the photodiode; subtracted.");
@@ -21,7 +21,7 @@ void declare(cli::App& app, GreyResponse& options) {
   cli::add_report(app, options.report);
 }
 
-void run(const cli::App& root, const cli::App&, const GreyResponse& options) {
+void run(const cli::App& root, const cli::App&, const GreyResponseOptions& options) {
   const io::CsvTable csv = io::read_csv(options.input, {"grey", "reading"});
   std::vector<resin::PhotodiodeReading> readings;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) readings.push_back({csv.number(row, 0), csv.number(row, 1)});

@@ -12,14 +12,14 @@ namespace vam::curethrough {
 
 namespace {
 
-Slices from_folder(const std::string& path, const resin::Response& response) {
+SliceSource from_folder(const std::string& path, const resin::Response& response) {
   auto folder = std::make_shared<io::ImageFolder>(path);
   const GreyImage first = folder->read(0);
   std::vector<float> light;
   for (int v = 0; v <= first.full(); ++v) {
     light.push_back(static_cast<float>(response.intensity(static_cast<double>(v) / first.full())));
   }
-  Slices slices{path, first.width, first.height, folder->count(), {}, {}, {}};
+  SliceSource slices{path, first.width, first.height, folder->count(), {}, {}, {}};
   slices.read = [folder, light, path](int n, Image& slice) {
     const GreyImage grey = folder->read(n);
     slice = Image(grey.width, grey.height);
@@ -33,11 +33,11 @@ Slices from_folder(const std::string& path, const resin::Response& response) {
   return slices;
 }
 
-Slices from_stack(const std::string& path, const resin::Response& response) {
+SliceSource from_stack(const std::string& path, const resin::Response& response) {
   auto reader = std::make_shared<std::unique_ptr<io::StackReader>>(std::make_unique<io::StackReader>(path));
   const model::StackInfo info = (*reader)->info();
   io::require(path, info, model::Kind::frames, model::Space::projector);
-  Slices slices{path, info.width, info.height, info.count, info.extra, info.history, {}};
+  SliceSource slices{path, info.width, info.height, info.count, info.extra, info.history, {}};
   slices.read = [reader, path, response, grey = info.units == "grey"](int n, Image& slice) {
     if (n == 0) *reader = std::make_unique<io::StackReader>(path);
     model::ImageInfo about;
@@ -65,7 +65,7 @@ void to_grey(Image& slice, const resin::Response& response) {
   });
 }
 
-Slices open_slices(const std::string& path, const resin::Response& response) {
+SliceSource open_slices(const std::string& path, const resin::Response& response) {
   return std::filesystem::is_directory(path) ? from_folder(path, response) : from_stack(path, response);
 }
 

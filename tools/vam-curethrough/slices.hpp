@@ -11,7 +11,7 @@
 
 namespace vam::curethrough {
 
-struct Slices {
+struct SliceSource {
   std::string name;
   int width = 0;
   int height = 0;
@@ -27,6 +27,6 @@ void to_grey(Image& slice, const resin::Response& response);
 
 /// An EXR frame stack or a folder of numbered grey images; grey goes through the response. Not a pipe: slices are
 /// read twice. Throws what io throws.
-[[nodiscard]] Slices open_slices(const std::string& path, const resin::Response& response);
+[[nodiscard]] SliceSource open_slices(const std::string& path, const resin::Response& response);
 
 }  // namespace vam::curethrough

@@ -12,7 +12,7 @@
 
 namespace vam::curethrough {
 
-struct Correct {
+struct CorrectOptions {
   PartOptions part;
   PrintOptions print;
   std::string output = "-";
@@ -29,10 +29,10 @@ struct Correct {
   // Rows are runs of few values, on which ZIP is small and fast; RLE does not see the period of a float's four bytes.
   io::StackOptions stack{false, "zip"};
 };
-void declare(cli::App& app, Correct& options);
-void run(const cli::App& root, const cli::App& app, const Correct& options);
+void declare(cli::App& app, CorrectOptions& options);
+void run(const cli::App& root, const cli::App& app, const CorrectOptions& options);
 
-struct Model {
+struct ModelOptions {
   std::string input = "-";
   PartOptions part;
   PrintOptions print;
@@ -43,19 +43,19 @@ struct Model {
   std::optional<double> slice_um;
   std::string report;
 };
-void declare(cli::App& app, Model& options);
-void run(const cli::App& root, const cli::App& app, const Model& options);
+void declare(cli::App& app, ModelOptions& options);
+void run(const cli::App& root, const cli::App& app, const ModelOptions& options);
 
-struct WorkingCurve {
+struct WorkingCurveOptions {
   std::string input = "-";
   double confidence = 0.95;
   std::string plot;
   std::string report;
 };
-void declare(cli::App& app, WorkingCurve& options);
-void run(const cli::App& root, const cli::App& app, const WorkingCurve& options);
+void declare(cli::App& app, WorkingCurveOptions& options);
+void run(const cli::App& root, const cli::App& app, const WorkingCurveOptions& options);
 
-struct GreyResponse {
+struct GreyResponseOptions {
   std::string input = "-";
   std::string output = "-";
   double dark = 0;
@@ -63,10 +63,10 @@ struct GreyResponse {
   std::string plot;
   std::string report;
 };
-void declare(cli::App& app, GreyResponse& options);
-void run(const cli::App& root, const cli::App& app, const GreyResponse& options);
+void declare(cli::App& app, GreyResponseOptions& options);
+void run(const cli::App& root, const cli::App& app, const GreyResponseOptions& options);
 
-struct Sweep {
+struct SweepOptions {
   PrintOptions print;
   std::string ranges = "dc=1..8,omega_max=1..5";
   std::vector<double> heights{4, 6, 8, 10, 14, 20, 40};
@@ -75,7 +75,7 @@ struct Sweep {
   std::string plot;
   std::string report;
 };
-void declare(cli::App& app, Sweep& options);
-void run(const cli::App& root, const cli::App& app, const Sweep& options);
+void declare(cli::App& app, SweepOptions& options);
+void run(const cli::App& root, const cli::App& app, const SweepOptions& options);
 
 }  // namespace vam::curethrough

@@ -104,7 +104,7 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
 
 }  // namespace
 
-void declare(cli::App& app, Sweep& options) {
+void declare(cli::App& app, SweepOptions& options) {
   app.positional("RANGES", options.ranges,
                  "Parameters to vary: dc, the assumed critical dose in gelation doses, and omega_max. Each is "
                  "FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
@@ -121,7 +121,7 @@ void declare(cli::App& app, Sweep& options) {
   cli::add_threads(app);
 }
 
-void run(const cli::App&, const cli::App&, const Sweep& options) {
+void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   resin::Study study;
   parse(options.ranges, study);
   study.process = resolve(options.print, options.slice_um).process;

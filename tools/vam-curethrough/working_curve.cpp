@@ -75,14 +75,14 @@ std::string table_of(const resin::WorkingCurve& curve, const io::CsvTable& csv,
 
 }  // namespace
 
-void declare(cli::App& app, WorkingCurve& options) {
+void declare(cli::App& app, WorkingCurveOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; one line per measurement.");
   app.option("--confidence", "FRACTION", options.confidence, {0.5, 0.9999}, "Confidence level of the intervals.");
   app.option("--plot", "FILE", options.plot, "PNG of the samples, the line and its interval.");
   cli::add_report(app, options.report);
 }
 
-void run(const cli::App&, const cli::App&, const WorkingCurve& options) {
+void run(const cli::App&, const cli::App&, const WorkingCurveOptions& options) {
   const io::CsvTable csv = io::read_csv(options.input, {"exposure_mj_cm2", "thickness_um"});
   std::vector<resin::CuredSample> samples;
   for (std::size_t row = 0; row < csv.rows.size(); ++row) samples.push_back({csv.number(row, 0), csv.number(row, 1)});

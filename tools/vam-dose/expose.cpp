@@ -51,8 +51,8 @@ class Blurred {
 };
 
 /// Every slice by its own row, a batch at a time.
-light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
-                               int first, Insert& insert, Blurred& sink) {
+light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& simulation,
+                               const light::DisplayRange& light, int first, Insert& insert, Blurred& sink) {
   light::LightSeen seen;
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
@@ -71,8 +71,8 @@ light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& sim
 }
 
 /// Every slice by all rows whose rays come by.
-light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& simulation, const light::Light& light,
-                               int slices, Insert& insert, Blurred& sink) {
+light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& simulation,
+                               const light::DisplayRange& light, int slices, Insert& insert, Blurred& sink) {
   light::LightSeen seen;
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
@@ -106,8 +106,8 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
   const auto climb = options.flat ? light::Climb::flat : light::Climb::follow;
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
-  const light::Light light{projector && !options.keep_negative, options.full_scale,
-                           printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  const light::DisplayRange light{projector && !options.keep_negative, options.full_scale,
+                                  printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
   if (options.exposure_plan) judged = model::writable_circle(place.grid, optics::writable_radius_mm(printer));
   Insert insert(place.insert, place.target, place.grid, info);

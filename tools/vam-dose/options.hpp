@@ -23,7 +23,7 @@ struct Options {
   bool keep_negative = false;
   bool exposure_plan = false;
   double angle_offset_deg = 0;
-  optics::Alignment alignment;
+  optics::AxisAlignment alignment;
   std::string report;
   cli::PrinterOptions printer;
 };

@@ -247,7 +247,7 @@ void settle_window(const cli::App& app, const std::string& path, optimize::Deman
 
 void settle_response(const cli::App& app, Options& options) {
   optimize::Demands& demands = options.demands;
-  const optimize::Window& window = demands.window;
+  const optimize::DoseWindow& window = demands.window;
   if (options.response == "linear") {
     demands.curve = optimize::CureCurve::linear();
   } else if (options.response == "step") {

@@ -48,8 +48,8 @@ Session::Session(const cli::App& app, const Options& options)
   if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design; give --reference"};
 }
 
-metrology::View Session::take(const io::CameraFrame& frame) {
-  metrology::View view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
+metrology::CameraView Session::take(const io::CameraFrame& frame) {
+  metrology::CameraView view{metrology::corrected(frame.image, fields_, options_.binning, frame.name), frame.angle_deg};
   if (width_ == 0) {
     width_ = view.image.width;
     height_ = view.image.height;
@@ -62,7 +62,7 @@ metrology::View Session::take(const io::CameraFrame& frame) {
   return view;
 }
 
-bool Session::ready(std::span<const metrology::View> views, double stack_pixel_mm) {
+bool Session::ready(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
   try {
     if (!rig_ || !certain()) set_up(views, stack_pixel_mm);
   } catch (const Error& error) {
@@ -74,7 +74,7 @@ bool Session::ready(std::span<const metrology::View> views, double stack_pixel_m
 // The bars of the axis: a tenth of a pixel and a twentieth of a degree.
 bool Session::certain() const { return axis_.column_sigma < 0.1 && axis_.tilt_sigma_rad < 0.05 * rad_per_deg; }
 
-model::Volume Session::reconstruct(std::span<const metrology::View> views, double stack_pixel_mm) {
+model::Volume Session::reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
   if (!rig_) set_up(views, stack_pixel_mm);
   return rig_->reconstruct(views);
 }
@@ -131,7 +131,7 @@ std::optional<metrology::Cured> Session::state(const model::Volume& volume) cons
 }
 
 // What the options say, else the calibrated axis, else what the views show.
-void Session::place_axis(std::span<const metrology::View> views) {
+void Session::place_axis(std::span<const metrology::CameraView> views) {
   std::optional<double> column = options_.axis_column;
   if (!column && printer_.camera.axis_column) {
     column = (*printer_.camera.axis_column + 0.5) / options_.binning - 0.5;  // it counts pixels as captured
@@ -145,7 +145,7 @@ void Session::place_axis(std::span<const metrology::View> views) {
   if (tilt_deg) axis_.pose.tilt_rad = *tilt_deg * rad_per_deg;
 }
 
-void Session::set_up(std::span<const metrology::View> views, double stack_pixel_mm) {
+void Session::set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
   place_axis(views);
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;

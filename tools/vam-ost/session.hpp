@@ -24,11 +24,11 @@ class Session {
   Session(const cli::App& app, const Options& options);
 
   /// A frame as a view: its size checked, corrected, binned.
-  metrology::View take(const io::CameraFrame& frame);
+  metrology::CameraView take(const io::CameraFrame& frame);
   /// Live: finds the axis as soon as something is visible, and again until it is certain. False before that.
-  bool ready(std::span<const metrology::View> views, double stack_pixel_mm);
+  bool ready(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// The first call finds the axis and sets up the rig.
-  model::Volume reconstruct(std::span<const metrology::View> views, double stack_pixel_mm);
+  model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
   /// --mesh and --projections. Throws Fault::data when there is no print but must be one.
   void write_print(const model::Volume& volume, bool must) const;
@@ -37,9 +37,9 @@ class Session {
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
 
  private:
-  void place_axis(std::span<const metrology::View> views);
+  void place_axis(std::span<const metrology::CameraView> views);
   [[nodiscard]] bool certain() const;
-  void set_up(std::span<const metrology::View> views, double stack_pixel_mm);
+  void set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm);
 
   const cli::App& app_;
   const Options& options_;

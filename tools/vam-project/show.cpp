@@ -35,7 +35,7 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
     if (!frames.in_order) frame.intensity = frames.light(n);
     frame.time_s = n / frames.fps;
     frame.angle_deg = n * frames.step_deg;
-    tallies[static_cast<std::size_t>(n)] = resin::limit_to_full(frame.intensity, scale);
+    tallies[n] = resin::limit_to_full(frame.intensity, scale);
     optics::orient(frame.intensity, projector.orientation);
     frame.levels = resin::to_levels(frame.intensity, levels);
     if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
@@ -46,9 +46,9 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
     std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(batch, frames.count - first)));
     const int count = static_cast<int>(shown.size());
     for (int i = 0; i < (frames.in_order ? count : 0); ++i) {
-      shown[static_cast<std::size_t>(i)].intensity = frames.light(first + i);
+      shown[i].intensity = frames.light(first + i);
     }
-    parallel_for(count, [&](int i) { develop(first + i, shown[static_cast<std::size_t>(i)]); });
+    parallel_for(count, [&](int i) { develop(first + i, shown[i]); });
     sink.write(shown);
     progress.tick(count);
   }

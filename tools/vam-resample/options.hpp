@@ -22,7 +22,7 @@ struct Options {
   bool jacobian = false;
   bool keep_negative = false;
   double angle_offset_deg = 0;
-  optics::Alignment alignment;
+  optics::AxisAlignment alignment;
   std::optional<double> voxel_mm;
   std::optional<int> columns;
   bool explain = false;

@@ -102,7 +102,7 @@ class LibusbLink final : public UsbLink {
     require(libusb_interrupt_transfer(handle_.get(), report_in_endpoint, reinterpret_cast<unsigned char*>(bytes.data()),
                                       report_bytes, &received, timeout_ms),
             "sent no report");
-    bytes.resize(static_cast<std::size_t>(received));
+    bytes.resize(received);
     return bytes;
   }
 

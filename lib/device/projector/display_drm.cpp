@@ -49,8 +49,7 @@ class DrmDisplay final : public Display {
     }
     mode_ = {output_.mode.hdisplay, output_.mode.vdisplay,
              output_.mode.clock * 1000.0 / (output_.mode.htotal * output_.mode.vtotal)};
-    black_ =
-        load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * static_cast<std::size_t>(mode_.rows)));
+    black_ = load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * mode_.rows));
     if (!show_black()) throw Error{Fault::absent, name_ + ": the connector rejects its own mode" + reason()};
     straighten_gamma(output_, name_);
   }
@@ -76,8 +75,7 @@ class DrmDisplay final : public Display {
 
   Flip present(int index) override {
     watch(index >= 0);
-    const std::uint32_t framebuffer =
-        index < 0 ? black_.framebuffer : frames_[static_cast<std::size_t>(index)].framebuffer;
+    const std::uint32_t framebuffer = index < 0 ? black_.framebuffer : frames_[index].framebuffer;
     flip_.sequence = -1;
     drm_mode_crtc_page_flip order{};
     order.crtc_id = output_.crtc;

@@ -105,7 +105,7 @@ class SdlDisplay final : public Display {
     void* pixels = nullptr;
     int pitch = 0;
     if (SDL_LockTexture(texture_.get(), nullptr, &pixels, &pitch) != 0) throw refused("draw");
-    const auto& bytes = frames_[static_cast<std::size_t>(index)];
+    const auto& bytes = frames_[index];
     for (int y = 0; y < mode_.rows; ++y) {
       auto* row = reinterpret_cast<std::uint32_t*>(static_cast<char*>(pixels) + static_cast<std::ptrdiff_t>(y) * pitch);
       const auto* from = bytes.data() + static_cast<std::ptrdiff_t>(y) * mode_.columns;

@@ -253,7 +253,7 @@ class GrblStage final : public Stage {
     const auto parts = begin == std::string::npos
                            ? std::vector<std::string>{}
                            : split(report.substr(begin + 5, report.find_first_of("|>", begin) - begin - 5), ',');
-    const auto value = parts.size() == 3 ? parse_number(parts[static_cast<std::size_t>(axis_)]) : std::nullopt;
+    const auto value = parts.size() == 3 ? parse_number(parts[axis_]) : std::nullopt;
     if (!value || !std::isfinite(*value)) {
       throw Error{Fault::protocol,
                   port_->name() + ": status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};

@@ -56,7 +56,7 @@ Chunks encode_raw(const Image& image, Imf::PixelType type) {
   const auto width = static_cast<std::size_t>(image.width);
   const std::size_t row_bytes = width * (type == Imf::HALF ? sizeof(half) : sizeof(float));
   Chunks chunks;
-  chunks.bytes.reserve(static_cast<std::size_t>(image.height) * (8 + row_bytes));
+  chunks.bytes.reserve(image.height * (8 + row_bytes));
   std::vector<half> halves(type == Imf::HALF ? width : 0);
   for (int y = 0; y < image.height; ++y) {
     chunks.starts.push_back(chunks.bytes.size());
@@ -84,7 +84,7 @@ void decode_raw(const Imf::Header& layout, const Chunks& chunks, Image& image) {
   const std::size_t row_bytes = width * (is_half ? sizeof(half) : sizeof(float));
   std::vector<half> halves(is_half ? width : 0);
   for (int y = 0; y < image.height; ++y) {
-    const std::size_t start = chunks.starts[static_cast<std::size_t>(y)];
+    const std::size_t start = chunks.starts[y];
     if (number_at<std::int32_t>(chunks.bytes, start + 4) != static_cast<std::int32_t>(row_bytes)) {
       throw std::runtime_error("an uncompressed row has the wrong size");
     }

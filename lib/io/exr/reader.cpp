@@ -230,7 +230,7 @@ void StackReader::State::take_chunk() {
   const auto place = static_cast<std::size_t>(row / rows);
   Arriving& image = arriving[index];
   if (image.chunks.starts.empty()) {
-    image.chunks.starts.assign(static_cast<std::size_t>(layout.chunks), absent);
+    image.chunks.starts.assign(layout.chunks, absent);
     image.missing = layout.chunks;
   }
   if (row < 0 || row >= layout.height || row % rows != 0 || image.chunks.starts[place] != absent || size < 0 ||

@@ -116,7 +116,7 @@ std::string StackWriter::State::head() const {
   exr::append(bytes, exr::magic);
   exr::append(bytes, flags);
   for (int i = 0; i < info.count; ++i) {
-    exr::set_own(header, info, i, about[static_cast<std::size_t>(i)]);
+    exr::set_own(header, info, i, about[i]);
     bytes += exr::serialize(header);
   }
   bytes += '\0';

@@ -98,7 +98,7 @@ class FolderSource : public ImageSource {
   [[nodiscard]] const std::vector<model::ImageInfo>& about() const override { return index_; }
   bool next(Image& image, model::ImageInfo& about) override {
     if (taken_ == folder_.count()) return false;
-    about = index_.empty() ? model::ImageInfo{} : index_[static_cast<std::size_t>(taken_)];
+    about = index_.empty() ? model::ImageInfo{} : index_[taken_];
     image = fractions(folder_.read(taken_++));
     return true;
   }

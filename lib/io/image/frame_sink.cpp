@@ -29,8 +29,7 @@ class FolderSink : public FrameSink {
 
   void write(std::span<const ProjectorFrame> frames) override {
     const int first = static_cast<int>(shown_.size());
-    parallel_for(static_cast<int>(frames.size()),
-                 [&](int i) { folder_.write(first + i, frames[static_cast<std::size_t>(i)].levels, text_); });
+    parallel_for(static_cast<int>(frames.size()), [&](int i) { folder_.write(first + i, frames[i].levels, text_); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
   void commit() override { folder_.commit(shown_); }

@@ -38,7 +38,7 @@ class ImageFolder {
   explicit ImageFolder(const std::string& folder);
 
   [[nodiscard]] int count() const { return static_cast<int>(paths_.size()); }
-  [[nodiscard]] const std::string& path(int index) const { return paths_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const std::string& path(int index) const { return paths_[index]; }
 
   /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a
   /// time.

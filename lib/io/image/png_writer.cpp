@@ -121,7 +121,7 @@ void write(const std::string& path, const Pixels& image, const ImageText& text) 
 
 std::string encode_png(const GreyImage& image, const ImageText& text) {
   const int depth = image.bits > 8 ? 16 : image.bits;
-  const auto bits = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(depth);
+  const auto bits = static_cast<std::size_t>(image.width) * depth;
   const Layout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
   const Bytes significant(image.bits == 10 ? 1 : 0, '\x0a');
   if (depth == 16) return assemble(layout, significant, wide_rows(image), text);

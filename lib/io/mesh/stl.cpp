@@ -79,12 +79,11 @@ void write_stl(const std::string& path, const model::TriangleSoup& mesh) {
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto& points = mesh.points;
     float record[12];
-    const auto normal = normal_of(points[static_cast<std::size_t>(a)], points[static_cast<std::size_t>(b)],
-                                  points[static_cast<std::size_t>(c)]);
+    const auto normal = normal_of(points[a], points[b], points[c]);
     std::memcpy(record, normal.data(), sizeof normal);
     float* next = record + 3;
     for (const int corner : {a, b, c}) {
-      for (const double x : points[static_cast<std::size_t>(corner)]) *next++ = static_cast<float>(x);
+      for (const double x : points[corner]) *next++ = static_cast<float>(x);
     }
     const std::uint16_t attributes = 0;
     file.write(record, sizeof record);

@@ -26,7 +26,7 @@ std::string pipe_head(int descriptor) {
   for (int attempt = 0; attempt < 1000 && head.size() < look; ++attempt) {
     const ssize_t copied = tee(descriptor, copy[1], look, 0);
     if (copied <= 0) break;
-    head.resize(static_cast<std::size_t>(copied));
+    head.resize(copied);
     if (read(copy[0], head.data(), head.size()) != copied) break;
     if (head.size() < look) poll(nullptr, 0, 1);
   }
@@ -51,7 +51,7 @@ std::string file_head(const std::string& path) {
   if (!stream) throw Error{Fault::no_input, path + ": cannot open the file"};
   std::string head(look, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(look));
-  head.resize(static_cast<std::size_t>(stream.gcount()));
+  head.resize(stream.gcount());
   return head;
 }
 

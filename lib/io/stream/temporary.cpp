@@ -136,7 +136,7 @@ int name_temporary(int descriptor, const std::string& target, std::string& name,
 
 void forget_temporary(int slot) {
   if (slot < 0) return;
-  Listed& item = list[static_cast<std::size_t>(slot)];
+  Listed& item = list[slot];
   item.live = false;
   item.taken = false;
 }

@@ -224,13 +224,13 @@ void SparseVolume::write_slices(int k0, int count, const float* in) {
   parallel_for(slab.rows(), [&](int row) {
     ConstAccessor accessor(tree);
     for (int i = 0; i < slab.blocks.x(); ++i) {
-      rows[static_cast<std::size_t>(row)].push_back(block_at(slab.origin(row, i), slab, in, tree, accessor));
+      rows[row].push_back(block_at(slab.origin(row, i), slab, in, tree, accessor));
     }
   });
   Accessor accessor(tree);
   for (int row = 0; row < slab.rows(); ++row) {
     for (int i = 0; i < slab.blocks.x(); ++i) {
-      Block& block = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(i)];
+      Block& block = rows[row][i];
       hang_in(block, slab.origin(row, i), tree.background(), accessor);
     }
   }

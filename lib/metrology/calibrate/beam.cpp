@@ -102,7 +102,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
     std::vector<double> profile(static_cast<std::size_t>(image.height));
     double sum_mm = 0;
     for (std::size_t i = first; i < last; ++i) {
-      for (int r = 0; r < image.height; ++r) profile[static_cast<std::size_t>(r)] += image(inside[i], r);
+      for (int r = 0; r < image.height; ++r) profile[r] += image(inside[i], r);
       sum_mm += plane_mm[i];
     }
     widths.plane_mm.push_back(sum_mm / static_cast<double>(last - first));
@@ -132,7 +132,7 @@ Beam measure_beam(const BeamWidths& widths) {
     }
     return out;
   };
-  const double focus_mm = widths.plane_mm[static_cast<std::size_t>(narrowest - widths.fwhm_mm.begin())];
+  const double focus_mm = widths.plane_mm[narrowest - widths.fwhm_mm.begin()];
   double growth_start = 0;
   for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
     const double away = std::abs(widths.plane_mm[i] - focus_mm);

@@ -281,7 +281,7 @@ std::vector<double> band_means(const Image& frame, int bands) {
     for (int y = b * rows; y < (b + 1) * rows; ++y) {
       for (int x = 0; x < frame.width; ++x) sum += frame(x, y);
     }
-    means[static_cast<std::size_t>(b)] = sum / rows / frame.width;
+    means[b] = sum / rows / frame.width;
   }
   return means;
 }

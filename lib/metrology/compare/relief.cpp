@@ -28,7 +28,7 @@ double otsu(const std::vector<float>& values) {
   if (!(width > 0)) return static_cast<double>(*low);
   for (const float v : values) {
     const int bin = static_cast<int>((static_cast<double>(v) - static_cast<double>(*low)) / width);
-    ++counts[static_cast<std::size_t>(std::clamp(bin, 0, bins - 1))];
+    ++counts[std::clamp(bin, 0, bins - 1)];
   }
   double all = 0;
   for (std::size_t b = 0; b < bins; ++b) all += counts[b] * static_cast<double>(b);

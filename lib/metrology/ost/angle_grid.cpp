@@ -26,7 +26,7 @@ struct Cluster {
 std::vector<Cluster> clusters_of(std::span<const double> angles_deg, double closer_deg) {
   std::vector<int> order(angles_deg.size());
   std::iota(order.begin(), order.end(), 0);
-  const auto angle = [&](int i) { return wrapped(angles_deg[static_cast<std::size_t>(i)]); };
+  const auto angle = [&](int i) { return wrapped(angles_deg[i]); };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return angle(a) < angle(b); });
   std::vector<Cluster> clusters;
   for (const int i : order) {
@@ -70,7 +70,7 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
   }
   summary_ = {angles, static_cast<int>(angles_deg.size()),
               static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size()), gaps[widest]};
-  taps_.resize(static_cast<std::size_t>(angles));
+  taps_.resize(angles);
   for (int a = 0; a < angles; ++a) {
     const double angle = 360.0 * a / angles;
     // The last cluster at or below the angle; before the first one that is the last of all, over the circle.
@@ -81,7 +81,7 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
     const Cluster& low = clusters[before];
     const Cluster& high = clusters[(before + 1) % clusters.size()];
     const double part = wrapped(angle - low.angle_deg) / gaps[before];
-    auto& taps = taps_[static_cast<std::size_t>(a)];
+    auto& taps = taps_[a];
     for (const int i : low.frames)
       taps.push_back({i, static_cast<float>((1 - part) / static_cast<double>(low.frames.size()))});
     for (const int i : high.frames)

@@ -67,7 +67,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& ref
   const model::Grid& g = scatter.grid;
   std::vector<std::array<long, 3>> counts(static_cast<std::size_t>(g.nz), {0, 0, 0});  // both, only print, only design
   parallel_for(g.nz, [&](int k) {
-    auto& count = counts[static_cast<std::size_t>(k)];
+    auto& count = counts[k];
     const float* in = scatter.slice(k);
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {

@@ -7,6 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "base/per_slice.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "optics/resample.hpp"
@@ -21,7 +22,7 @@ namespace {
 constexpr int slices_a_pass = 4 * lanes;  // tomo shares its weights among four slabs
 
 // Camera sinograms of all z slices, k = 0 lowest: columns x angles.
-std::vector<Image> camera_sinograms(std::span<const View> views, const AngleGrid& turn, const AxisPose& axis,
+std::vector<Image> camera_sinograms(std::span<const CameraView> views, const AngleGrid& turn, const AxisPose& axis,
                                     double row_stretch, int slices) {
   std::vector<Image> straight(views.size());
   parallel_for(static_cast<int>(views.size()), [&](int i) {
@@ -32,12 +33,12 @@ std::vector<Image> camera_sinograms(std::span<const View> views, const AngleGrid
   const int angles = turn.summary().angles;
   std::vector<Image> sinograms(static_cast<std::size_t>(slices));
   parallel_for(slices, [&](int k) {
-    Image& sinogram = sinograms[static_cast<std::size_t>(k)];
+    Image& sinogram = sinograms[k];
     sinogram = Image(columns, angles);
     for (int a = 0; a < angles; ++a) {
       float* out = sinogram.row(a);
       for (const auto& tap : turn.taps(a)) {
-        const Image& image = straight[static_cast<std::size_t>(tap.frame)];
+        const Image& image = straight[tap.frame];
         const float* in = image.row(image.height - 1 - k);
         for (int x = 0; x < columns; ++x) out[x] += tap.weight * in[x];
       }
@@ -56,17 +57,6 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
     const auto f = static_cast<float>(at - low);
     for (int a = 0; a < in.height; ++a) out(c, a) = (1 - f) * in(low, a) + f * in(low + 1, a);
   }
-}
-
-// As many slabs as it takes, 16 slices in each.
-std::vector<Slab> packed(std::span<const Image> slices) {
-  const Image& first = slices.front();
-  std::vector<Slab> slabs((slices.size() + lanes - 1) / lanes, Slab(first.width, first.height));
-  for (std::size_t k = 0; k < slices.size(); ++k) {
-    float* out = slabs[k / lanes].values.data() + k % lanes;
-    for (std::size_t i = 0; i < slices[k].size(); ++i) out[i * lanes] = slices[k].values[i];
-  }
-  return slabs;
 }
 
 void scale(std::vector<Slab>& slabs, float factor) {
@@ -210,10 +200,10 @@ std::vector<Slab> OstReconstructor::State::densities(const tomo::ParallelGeometr
   return images;
 }
 
-model::Volume OstReconstructor::reconstruct(std::span<const View> views) const {
+model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) const {
   const State& s = *state_;
   std::vector<double> angles_deg;
-  for (const View& view : views) angles_deg.push_back(view.angle_deg);
+  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
   const AngleGrid turn(angles_deg, 0);
   const auto sinograms = s.virtual_sinograms(camera_sinograms(views, turn, s.axis, s.row_stretch, s.grid.nz));
 
@@ -223,9 +213,9 @@ model::Volume OstReconstructor::reconstruct(std::span<const View> views) const {
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
     const int count = std::min(slices_a_pass, s.grid.nz - first);
     const auto slices = std::span(sinograms).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    const auto images = s.densities(geometry, filter, packed(slices));
+    const auto images = s.densities(geometry, filter, packed(slices, slices.front().width, slices.front().height));
     for (int k = 0; k < count; k += lanes) {
-      const auto& image = images[static_cast<std::size_t>(k / lanes)];
+      const auto& image = images[k / lanes];
       unpack(image, std::min(lanes, count - k), volume.slice(first + k));
     }
   }
@@ -236,15 +226,15 @@ double image_magnification(const model::Printer& printer) {
   return 1 / (1 - model::shortening_mm(printer, printer.camera.index_resin) / printer.camera.distance_mm);
 }
 
-Image mean_view(std::span<const View> views) {
+Image mean_view(std::span<const CameraView> views) {
   std::vector<double> angles_deg;
-  for (const View& view : views) angles_deg.push_back(view.angle_deg);
+  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
   const AngleGrid turn(angles_deg, 0);
   Image mean(views.front().image.width, views.front().image.height);
   const float share = 1.0F / static_cast<float>(turn.summary().angles);
   for (int a = 0; a < turn.summary().angles; ++a) {
     for (const auto& tap : turn.taps(a)) {
-      const Image& image = views[static_cast<std::size_t>(tap.frame)].image;
+      const Image& image = views[tap.frame].image;
       for (std::size_t i = 0; i < mean.size(); ++i) mean.values[i] += share * tap.weight * image.values[i];
     }
   }

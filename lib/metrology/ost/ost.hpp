@@ -36,7 +36,7 @@ class OstReconstructor {
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
   /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.
-  [[nodiscard]] model::Volume reconstruct(std::span<const View> views) const;
+  [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views) const;
 
  private:
   struct State;
@@ -47,6 +47,6 @@ class OstReconstructor {
 [[nodiscard]] double image_magnification(const model::Printer& printer);
 
 /// The mean over even angles of one turn: what find_axis wants.
-[[nodiscard]] Image mean_view(std::span<const View> views);
+[[nodiscard]] Image mean_view(std::span<const CameraView> views);
 
 }  // namespace vam::metrology

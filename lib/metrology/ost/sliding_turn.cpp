@@ -5,7 +5,7 @@
 
 namespace vam::metrology {
 
-bool SlidingTurn::push(View view) {
+bool SlidingTurn::push(CameraView view) {
   if (started_) turned_deg_ += std::abs(std::remainder(view.angle_deg - last_angle_deg_, 360.0));
   started_ = true;
   last_angle_deg_ = view.angle_deg;

@@ -16,10 +16,10 @@ class SlidingTurn {
   explicit SlidingTurn(double every_deg) : every_deg_(every_deg) {}
 
   /// Takes a view; true when the last turn is complete and a volume is due.
-  bool push(View view);
+  bool push(CameraView view);
 
   /// The views of the last turn, oldest first.
-  [[nodiscard]] std::vector<View> views() const { return {views_.begin(), views_.end()}; }
+  [[nodiscard]] std::vector<CameraView> views() const { return {views_.begin(), views_.end()}; }
   /// Degrees turned since the first view.
   [[nodiscard]] double turned_deg() const { return turned_deg_; }
   [[nodiscard]] double turns() const { return turned_deg_ / 360; }
@@ -30,7 +30,7 @@ class SlidingTurn {
   double last_angle_deg_ = 0;
   double next_due_deg_ = 360;
   bool started_ = false;
-  std::deque<View> views_;
+  std::deque<CameraView> views_;
   std::deque<double> at_deg_;  // turned_deg_ of each view
 };
 

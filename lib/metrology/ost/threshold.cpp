@@ -45,7 +45,7 @@ struct Point {
 };
 
 // The steepest place of the profile along a radius, by a parabola through the largest difference.
-bool edge_on_radius(const Image& image, const Circle& c, double angle, double reach, Point& edge) {
+bool edge_on_radius(const Image& image, const FittedCircle& c, double angle, double reach, Point& edge) {
   constexpr double h = 0.5;
   std::vector<double> slope;
   const double begin = c.radius - reach;
@@ -67,7 +67,7 @@ bool edge_on_radius(const Image& image, const Circle& c, double angle, double re
 }
 
 // Kasa's linear least-squares circle: x^2 + y^2 = 2 a x + 2 b y + c.
-Circle fit(const std::vector<Point>& points) {
+FittedCircle fit(const std::vector<Point>& points) {
   cv::Matx33d normal = cv::Matx33d::zeros();
   cv::Vec3d right(0, 0, 0);
   for (const Point& p : points) {
@@ -76,7 +76,7 @@ Circle fit(const std::vector<Point>& points) {
     right += (p.x * p.x + p.y * p.y) * row;
   }
   const cv::Vec3d s = normal.solve(right, cv::DECOMP_CHOLESKY);
-  Circle circle{s[0], s[1], std::sqrt(std::max(0.0, s[2] + s[0] * s[0] + s[1] * s[1])), 0};
+  FittedCircle circle{s[0], s[1], std::sqrt(std::max(0.0, s[2] + s[0] * s[0] + s[1] * s[1])), 0};
   for (const Point& p : points) {
     const double d = std::hypot(p.x - circle.x, p.y - circle.y) - circle.radius;
     circle.sigma += d * d / static_cast<double>(points.size());
@@ -87,7 +87,7 @@ Circle fit(const std::vector<Point>& points) {
 
 }  // namespace
 
-Circle find_circle(const Image& image) {
+FittedCircle find_circle(const Image& image) {
   constexpr int smallest_px = 4;
   const int largest = std::min(image.width, image.height) / 2;
   std::vector<cv::Vec3f> found;
@@ -99,8 +99,8 @@ Circle find_circle(const Image& image) {
     throw Error{Fault::data, "no circle: none with a radius of " + std::to_string(smallest_px) + " to " +
                                  std::to_string(largest) + " px stands out"};
   }
-  Circle circle{static_cast<double>(found[0][0]), static_cast<double>(found[0][1]), static_cast<double>(found[0][2]),
-                0};
+  FittedCircle circle{static_cast<double>(found[0][0]), static_cast<double>(found[0][1]),
+                      static_cast<double>(found[0][2]), 0};
   for (int round = 0; round < 3; ++round) {
     std::vector<Point> edges;
     const double reach = std::max(3.0, (round == 0 ? 0.3 : 0.15) * circle.radius);
@@ -119,8 +119,7 @@ Circle find_circle(const Image& image) {
 OverheadMean overhead_mean(const model::Volume& scatter) {
   const model::Grid& g = scatter.grid;
   std::vector<double> held(static_cast<std::size_t>(g.nz));
-  for (int k = 0; k < g.nz; ++k)
-    held[static_cast<std::size_t>(k)] = std::accumulate(scatter.slice(k), scatter.slice(k) + g.slice_size(), 0.0);
+  for (int k = 0; k < g.nz; ++k) held[k] = std::accumulate(scatter.slice(k), scatter.slice(k) + g.slice_size(), 0.0);
   const double half = 0.5 * *std::max_element(held.begin(), held.end());
   if (!(half > 0)) throw Error{Fault::data, "standard: the volume is empty"};
   const auto full = [half](double value) { return value >= half; };
@@ -141,7 +140,7 @@ OverheadMean overhead_mean(const model::Volume& scatter) {
 
 Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double diameter_mm) {
   Threshold result;
-  const Circle seen = find_circle(overhead_mean);
+  const FittedCircle seen = find_circle(overhead_mean);
   result.apparent_diameter_mm = 2 * seen.radius * pixel_mm;
   result.diameter_mm = diameter_mm;
   result.circle = seen;

@@ -8,7 +8,7 @@
 namespace vam::metrology {
 
 /// A circle in pixels, centre of pixel (0, 0) at (0, 0).
-struct Circle {
+struct FittedCircle {
   double x = 0;
   double y = 0;
   double radius = 0;
@@ -18,7 +18,7 @@ struct Circle {
 /// The strongest circle of an image with one bright (or dark) disc: Hough transform on the gradient (OpenCV), then
 /// least squares on sub-pixel edge points along its radii. Throws Fault::data when there is none with a radius between
 /// 4 pixels and half the image.
-[[nodiscard]] Circle find_circle(const Image& image);
+[[nodiscard]] FittedCircle find_circle(const Image& image);
 
 /// The mean of a volume along z over the standard's own height, and that height: slices that hold at least half of
 /// what the fullest does, without a tenth of them at either end. What lies above and below would thin the mean.
@@ -33,7 +33,7 @@ struct OverheadMean {
 struct Threshold {
   double level = 0;                 // I_p
   double spread = 0;                // standard deviation along the circle
-  Circle circle;                    // in pixels of the overhead projection, with the true radius
+  FittedCircle circle;              // in pixels of the overhead projection, with the true radius
   double diameter_mm = 0;           // true
   double apparent_diameter_mm = 0;  // of the steepest edge in the projection
 };

@@ -51,9 +51,9 @@ float cubic_at(const Image& image, double x, double y) {
     float line = 0;
     for (int i = 0; i < 4; ++i) {
       const int column = std::clamp(static_cast<int>(fx) + i - 1, 0, image.width - 1);
-      line += wx[static_cast<std::size_t>(i)] * image(column, row);
+      line += wx[i] * image(column, row);
     }
-    sum += wy[static_cast<std::size_t>(j)] * line;
+    sum += wy[j] * line;
   }
   return sum;
 }
@@ -102,9 +102,9 @@ void require_exposed(const Image& raw, const std::string& subject) {
   if (!problem.empty()) throw Error{Fault::data, subject + ": " + problem};
 }
 
-void require_alike(std::span<const View> views) {
+void require_alike(std::span<const CameraView> views) {
   std::vector<double> contrast;
-  for (const View& view : views) {
+  for (const CameraView& view : views) {
     double sum = 0;
     double squares = 0;
     for (const float v : view.image.values) {

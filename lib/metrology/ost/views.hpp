@@ -12,7 +12,7 @@
 namespace vam::metrology {
 
 /// One frame: columns along x_c, rows downwards along the axis, and the stage angle at which it was taken.
-struct View {
+struct CameraView {
   Image image;
   double angle_deg = 0;
 };
@@ -36,7 +36,7 @@ void require_exposed(const Image& raw, const std::string& subject);
 
 /// Throws Fault::data when a view has less than a fifth of the contrast (standard deviation) of the median view: the
 /// light failed, and only noise is left.
-void require_alike(std::span<const View> views);
+void require_alike(std::span<const CameraView> views);
 
 /// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
 /// end (last row) is displaced towards higher columns.

@@ -86,7 +86,7 @@ class Apg final : public Method {
     start_at_threshold(problem, light, before_);
     const auto plain = metrics(iterate.dose, problem);
     const auto normalised = metrics(before_.dose, problem);
-    PerSlice better = constant(iterate.g.size(), 0.0F);
+    PerSlice better = filled(iterate.g.size(), 0.0F);
     for (std::size_t k = 0; k < plain.size(); ++k) {
       better[k / lanes][k % lanes] = static_cast<float>(merit(normalised[k]) - merit(plain[k]));
     }
@@ -101,10 +101,10 @@ class Apg final : public Method {
   void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     enter_bounds(light, largest_light(options_, light), iterate);
     before_ = iterate;
-    const Window& window = problem.demands.window;
-    length_ = constant(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
-    momentum_ = constant(iterate.g.size(), momentum);
-    half_width_ = constant(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
+    const DoseWindow& window = problem.demands.window;
+    length_ = filled(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
+    momentum_ = filled(iterate.g.size(), momentum);
+    half_width_ = filled(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
     loss_ = losses(problem, light, iterate);
     while (widen(problem)) loss_ = losses(problem, light, iterate);
   }
@@ -155,7 +155,7 @@ class Apg final : public Method {
                   light);
   }
 
-  [[nodiscard]] Window window(const Problem& problem, std::size_t s, std::size_t lane) const {
+  [[nodiscard]] DoseWindow window(const Problem& problem, std::size_t s, std::size_t lane) const {
     const double middle = problem.demands.window.threshold();
     const auto half = static_cast<double>(half_width_[s][lane]);
     return {middle - half, middle + half};

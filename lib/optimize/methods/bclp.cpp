@@ -33,7 +33,7 @@ class Bclp final : public Descent {
  private:
   /// (|M(D) - f| - epsilon)_+, negative where M(D) is below f.
   static float excess(const Problem& problem, std::size_t s, std::size_t i, float dose) {
-    if (!asked(problem.labels[s][i])) return 0.0F;
+    if (!is_constrained(problem.labels[s][i])) return 0.0F;
     const CureCurve& curve = problem.demands.curve;
     const float target = problem.target[s].values[i];
     const float tolerance = problem.tolerance_at(s, i);

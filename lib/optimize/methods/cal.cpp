@@ -37,8 +37,9 @@ class Cal final : public Method {
     for_values(iterate.dose, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         const float print = problem.demands.curve.response(iterate.dose[s].values[i]);
-        const bool asks = asked(problem.labels[s][i]);
-        before_.dose[s].values[i] = asks ? problem.weight_at(s, i) * (print - problem.target[s].values[i]) : 0.0F;
+        const bool constrained = is_constrained(problem.labels[s][i]);
+        before_.dose[s].values[i] =
+            constrained ? problem.weight_at(s, i) * (print - problem.target[s].values[i]) : 0.0F;
       }
     });
     light.forward(before_.dose, update_);
@@ -71,7 +72,7 @@ class Cal final : public Method {
   /// The line search begins with Newton's step for a resin whose response is the dose: filter is about (A A*)^-1.
   void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     enter_bounds(light, largest_light(options_, light), iterate);
-    length_ = constant(iterate.g.size(), 1.0F);
+    length_ = filled(iterate.g.size(), 1.0F);
     loss_ = losses(problem, light, iterate);
   }
 
@@ -79,7 +80,7 @@ class Cal final : public Method {
   static PerSlice losses(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
     return pooled(summed(iterate.dose,
                          [&](std::size_t s, std::size_t i) {
-                           if (!asked(problem.labels[s][i])) return 0.0F;
+                           if (!is_constrained(problem.labels[s][i])) return 0.0F;
                            const float x = iterate.dose[s].values[i];
                            const float f = problem.target[s].values[i];
                            return problem.weight_at(s, i) * (problem.demands.curve.area(x) - f * x);

@@ -49,7 +49,7 @@ void Descent::prepare(const Problem& problem, const light::Operator& light, Iter
   differentiate(problem, light, iterate);
   light.adjoint(gradient_, before_.dose);
   length_ =
-      ratio(pooled(squares(gradient_), light), pooled(squares(before_.dose), light), constant(gradient_.size(), 0.0F));
+      ratio(pooled(squares(gradient_), light), pooled(squares(before_.dose), light), filled(gradient_.size(), 0.0F));
 }
 
 void Descent::differentiate(const Problem& problem, const light::Operator& light, const Iterate& iterate) {

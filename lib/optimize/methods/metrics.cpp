@@ -19,7 +19,7 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
   double worst = -std::numeric_limits<double>::infinity();
   m.min_part = std::numeric_limits<double>::infinity();
   for (std::size_t i = slice % lanes; i < dose[s].values.size(); i += lanes) {
-    if (!asked(problem.labels[s][i])) continue;
+    if (!is_constrained(problem.labels[s][i])) continue;
     const float d = dose[s].values[i];
     const auto error = static_cast<double>(std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]));
     const double excess = error - static_cast<double>(problem.tolerance_at(s, i));
@@ -45,9 +45,7 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
 
 std::vector<model::DoseMetrics> grey_metrics(std::span<const Slab> dose, const Problem& problem) {
   std::vector<model::DoseMetrics> result(static_cast<std::size_t>(problem.slices));
-  parallel_for(problem.slices, [&](int s) {
-    result[static_cast<std::size_t>(s)] = grey_figures(dose, problem, static_cast<std::size_t>(s));
-  });
+  parallel_for(problem.slices, [&](int s) { result[s] = grey_figures(dose, problem, static_cast<std::size_t>(s)); });
   return result;
 }
 
@@ -90,25 +88,18 @@ std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Proble
   if (problem.demands.grey) return grey_metrics(dose, problem);
   const auto slices = statistics(dose, problem);
   std::vector<model::DoseMetrics> result(slices.size());
-  parallel_for(static_cast<int>(slices.size()),
-               [&](int s) { result[static_cast<std::size_t>(s)] = slices[static_cast<std::size_t>(s)].metrics(); });
+  parallel_for(static_cast<int>(slices.size()), [&](int s) { result[s] = slices[s].metrics(); });
   return result;
 }
 
 namespace {
 
 /// 0 without part.
-float threshold_factor(const model::DoseMetrics& m, const Window& window) {
+float threshold_factor(const model::DoseMetrics& m, const DoseWindow& window) {
   if (m.part == 0 || m.iou_threshold <= 0) return 0;
   double f = window.threshold() / m.iou_threshold;
   if (m.max_void < m.min_part) f = std::min(f, window.high / m.min_part);
   return static_cast<float>(f);
-}
-
-PerSlice filled(std::size_t slabs, float value) {
-  PerSlice factor(slabs);
-  for (auto& lane : factor) lane.fill(value);
-  return factor;
 }
 
 }  // namespace

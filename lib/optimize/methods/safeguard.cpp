@@ -6,7 +6,7 @@
 namespace vam::optimize {
 
 PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now) {
-  PerSlice back = constant(loss.size(), 0.0F);
+  PerSlice back = filled(loss.size(), 0.0F);
   bool any = false;
   for (std::size_t s = 0; s < loss.size(); ++s) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -31,7 +31,7 @@ PerSlice pooled(PerSlice values, const light::Operator& light) {
   for (const auto& lane : values) {
     for (const float v : lane) sum += static_cast<double>(v);
   }
-  return constant(values.size(), static_cast<float>(sum));
+  return filled(values.size(), static_cast<float>(sum));
 }
 
 PerSlice largest_pooled(PerSlice values, const light::Operator& light) {
@@ -40,13 +40,7 @@ PerSlice largest_pooled(PerSlice values, const light::Operator& light) {
   for (const auto& lane : values) {
     for (const float v : lane) most = std::max(most, v);
   }
-  return constant(values.size(), most);
-}
-
-PerSlice constant(std::size_t slabs, float value) {
-  PerSlice result(slabs);
-  for (auto& lane : result) lane.fill(value);
-  return result;
+  return filled(values.size(), most);
 }
 
 void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {

@@ -18,12 +18,12 @@ void Finished::take(std::vector<Image> images) {
   }
   for (Image& image : images) held_.emplace(jobs_++, std::move(image));
   for (; slices_ < static_cast<int>(schedule_.job_of_slice.size()); ++slices_) {
-    const int job = schedule_.job_of_slice[static_cast<std::size_t>(slices_)];
+    const int job = schedule_.job_of_slice[slices_];
     if (job >= jobs_) return;
     const auto found = held_.find(job);
     efficiency_.add(found->second.values);
     write_(slices_, found->second);
-    if (schedule_.last_slice[static_cast<std::size_t>(job)] == slices_) held_.erase(found);
+    if (schedule_.last_slice[job] == slices_) held_.erase(found);
   }
 }
 

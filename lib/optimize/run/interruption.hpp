@@ -9,7 +9,7 @@
 #include "base/image.hpp"
 #include "light/operator.hpp"
 #include "optimize/methods/archive.hpp"
-#include "optimize/run/iterate.hpp"
+#include "optimize/run/run_method.hpp"
 #include "optimize/target/schedule.hpp"
 
 namespace vam::optimize {

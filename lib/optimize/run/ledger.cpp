@@ -14,7 +14,7 @@ void Ledger::note(int iteration, const SliceFigures& figures) {
 }
 
 void Ledger::end(const Outcome& outcome) {
-  if (seen_ >= 0) ends_[static_cast<std::size_t>(seen_)].add(last_);
+  if (seen_ >= 0) ends_[seen_].add(last_);
   seen_ = -1;
   if (outcome.iterations < iterations_) return;
   iterations_ = outcome.iterations;
@@ -30,7 +30,7 @@ void Ledger::exchange(Archive& archive) {
   const auto list = [&](std::vector<SliceFigures>& figures) {
     auto size = static_cast<int>(figures.size());
     archive(size);
-    figures.resize(static_cast<std::size_t>(size));
+    figures.resize(size);
     for (SliceFigures& each : figures) each.exchange(archive);
   };
   list(rows_);

@@ -54,7 +54,7 @@ std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinogra
   std::vector<float> values(one.size() * lanes);
   for (int first = pass.low; first < pass.high; first += lanes) {
     const int used = std::min(lanes, pass.high - first);
-    light.expand(sinograms[static_cast<std::size_t>((first - pass.low) / lanes)], packed);
+    light.expand(sinograms[(first - pass.low) / lanes], packed);
     unpack(packed, used, values.data());
     for (int job = std::max(first, pass.first); job < std::min(first + used, pass.last); ++job) {
       const auto lane = static_cast<std::size_t>(job - first);

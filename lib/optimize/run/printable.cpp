@@ -14,8 +14,7 @@ float largest_inside(const std::vector<float>& slice, light::Shape shape, const 
   float most = 0;
   for (int y = 0; y < shape.height; ++y) {
     for (int x = 0; x < shape.width; ++x) {
-      const float value =
-          slice[static_cast<std::size_t>(y) * static_cast<std::size_t>(shape.width) + static_cast<std::size_t>(x)];
+      const float value = slice[static_cast<std::size_t>(y) * shape.width + static_cast<std::size_t>(x)];
       if (value > most && circle.contains(x, y)) most = value;
     }
   }
@@ -27,7 +26,7 @@ float largest_inside(const std::vector<float>& slice, light::Shape shape, const 
 void require_printable(const VolumeTask& task, light::Shape shape, const std::string& subject) {
   constexpr float half = 0.5F;
   if (task.demands.grey) return;
-  std::vector<float> slice(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height));
+  std::vector<float> slice(static_cast<std::size_t>(shape.width) * shape.height);
   float most = 0;
   for (int k = 0; k < task.source.slices && most < half; ++k) {
     task.source.target(k, 1, slice.data());

@@ -33,7 +33,7 @@ Image Quantiser::quantised(const Image& image, float full_scale) const {
   std::vector<float> left(static_cast<std::size_t>(image.width), 0.0F);
   for (int a = 0; a < image.height; ++a) {
     for (int c = 0; c < image.width; ++c) {
-      float& error = left[static_cast<std::size_t>(c)];
+      float& error = left[c];
       const float wanted = image(c, a) / full_scale + (error_feedback_ ? error : 0.0F);
       const float given = levels_.intensity(levels_.level(wanted));
       // A projector that cannot show a value at all (darker than its black, brighter than white) must not save up.

@@ -35,8 +35,7 @@ struct Work {
 Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, light::Shape image, bool alone) {
   // Slices that share light or dose with their neighbours are not alike because they look alike.
   if (!alone) return make_schedule(digests, -1);
-  const std::size_t bytes =
-      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * sizeof(float);
+  const std::size_t bytes = static_cast<std::size_t>(image.width) * image.height * sizeof(float);
   return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
 }
 
@@ -61,7 +60,7 @@ EvenDose even_dose(const light::Operator& light, const Circle& circle, int slice
     for (int x = 0; x < light.object().width; ++x) {
       if (!circle.contains(x, y)) continue;
       for (int k = 0; k < slices; ++k) {
-        const auto here = static_cast<double>(dose[static_cast<std::size_t>(k / lanes)].at(x, y)[k % lanes]);
+        const auto here = static_cast<double>(dose[k / lanes].at(x, y)[k % lanes]);
         sum += here;
         result.largest = std::max(result.largest, here);
       }
@@ -89,7 +88,7 @@ class Run {
     settle_limit();
     schedule_ = scheduled(task, digests, light.image(), halo_ == 0 && !whole_);
     times_.assign(schedule_.slice_of_job.size(), 0);
-    for (const int job : schedule_.job_of_slice) ++times_[static_cast<std::size_t>(job)];
+    for (const int job : schedule_.job_of_slice) ++times_[job];
   }
 
   VolumeOutcome operator()() {
@@ -111,7 +110,7 @@ class Run {
 
  private:
   [[nodiscard]] int jobs() const { return static_cast<int>(schedule_.slice_of_job.size()); }
-  [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[static_cast<std::size_t>(job)]; }
+  [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[job]; }
 
   static VolumeOutcome broken_off() {
     VolumeOutcome outcome;
@@ -166,8 +165,8 @@ class Run {
     if (task_.watch) {
       watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
     }
-    const Outcome outcome =
-        iterate(*work.method, problem, *light, task_.limits, work.state, work.course, watch, task_.interruption.pause);
+    const Outcome outcome = run_method(*work.method, problem, *light, task_.limits, work.state, work.course, watch,
+                                       task_.interruption.pause);
     if (outcome.reason == "interrupted") {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
@@ -184,7 +183,7 @@ class Run {
     auto light = task_.around(inserts);
     const auto dark = exclude_dark(problem, *light);
     for (int job = pass.first; job < pass.last && !work.method; ++job) {  // once, also when interrupted
-      ledger_.add_dark(dark[static_cast<std::size_t>(job - pass.low)] * times_[static_cast<std::size_t>(job)]);
+      ledger_.add_dark(dark[job - pass.low] * times_[job]);
     }
     return light;
   }
@@ -192,7 +191,7 @@ class Run {
   void note(const Pass& pass, int iteration, const std::vector<model::DoseMetrics>& slices) {
     SliceFigures figures;
     for (int job = pass.first; job < pass.last; ++job) {
-      figures.add(slices[static_cast<std::size_t>(job - pass.low)], times_[static_cast<std::size_t>(job)]);
+      figures.add(slices[job - pass.low], times_[job]);
     }
     ledger_.note(iteration, figures);
   }
@@ -224,7 +223,7 @@ class Run {
     const auto figures = metrics(state.dose, problem);
     for (int job = pass.first; job < pass.last; ++job) {
       const auto i = static_cast<std::size_t>(job - pass.low);
-      ledger_.add(doses[i], figures[i], times_[static_cast<std::size_t>(job)]);
+      ledger_.add(doses[i], figures[i], times_[job]);
     }
     std::vector<Image> images = expand_images(pass, state.g, light);
     if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, images);

@@ -10,7 +10,7 @@
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
 #include "optimize/run/interruption.hpp"
-#include "optimize/run/iterate.hpp"
+#include "optimize/run/run_method.hpp"
 #include "optimize/target/slice_reader.hpp"
 
 namespace vam::optimize {

@@ -81,7 +81,7 @@ float CureCurve::area(float dose) const {
   return from.area + 0.5F * (from.response + response(dose)) * (dose - from.dose);
 }
 
-Bounds CureCurve::doses(float wanted, float tolerance) const {
+DoseRange CureCurve::doses(float wanted, float tolerance) const {
   const float least = wanted - tolerance;
   const float most = wanted + tolerance;
   if (kind_ == Kind::linear) return {least, most};
@@ -95,7 +95,7 @@ Bounds CureCurve::doses(float wanted, float tolerance) const {
   const auto between = [](const Point& a, const Point& b, float m) {
     return a.dose + (m - a.response) / (b.response - a.response) * (b.dose - a.dose);
   };
-  Bounds bounds{-without_limit, without_limit};
+  DoseRange bounds{-without_limit, without_limit};
   if (least > points_.front().response) {  // the lowest dose with at least `least`
     const auto at =
         std::find_if(points_.begin() + 1, points_.end(), [&](const Point& p) { return p.response >= least; });

@@ -8,7 +8,7 @@
 namespace vam::optimize {
 
 /// Doses from low to high; a dose outside misses by its distance.
-struct Bounds {
+struct DoseRange {
   float low;
   float high;
   [[nodiscard]] float miss(float dose) const { return dose < low ? dose - low : dose > high ? dose - high : 0.0F; }
@@ -34,7 +34,7 @@ class CureCurve {
   [[nodiscard]] float area(float dose) const;
   /// The doses whose response is within `tolerance` of `wanted`, without a limit where the curve has none. Where no
   /// dose does it, the nearest.
-  [[nodiscard]] Bounds doses(float wanted, float tolerance) const;
+  [[nodiscard]] DoseRange doses(float wanted, float tolerance) const;
   /// A step: misses are measured in dose.
   [[nodiscard]] bool is_step() const { return kind_ == Kind::step; }
 

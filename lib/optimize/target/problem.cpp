@@ -58,19 +58,19 @@ std::vector<Label> labelled(Slab& slab, int used, const Circle& circle, const De
 void free_weightless(Slab& weight, std::vector<Label>& labels) {
   std::array<float, lanes> most{};
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    if (asked(labels[i])) most[i % lanes] = std::max(most[i % lanes], weight.values[i]);
+    if (is_constrained(labels[i])) most[i % lanes] = std::max(most[i % lanes], weight.values[i]);
   }
   for (std::size_t i = 0; i < labels.size(); ++i) {
     float& w = weight.values[i];
     w = most[i % lanes] > 0 ? w / most[i % lanes] : 0.0F;
-    if (w <= 0 && asked(labels[i])) labels[i] = Label::surface;
+    if (w <= 0 && is_constrained(labels[i])) labels[i] = Label::surface;
   }
 }
 
 }  // namespace
 
 void check(const Demands& demands) {
-  const Window& w = demands.window;
+  const DoseWindow& w = demands.window;
   if (w.low >= 0 && w.low < w.high) return;
   throw Error{Fault::usage, "--dose-low " + format_number(w.low) + " is not below --dose-high " +
                                 format_number(w.high) + "; the void's limit must lie below the part's"};
@@ -96,7 +96,7 @@ Problem make_problem(const float* slices, int count, int width, int height, cons
                      const Demands& demands, const float* weight, const float* tolerance) {
   check(demands);
   Problem problem{.slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
-  const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const auto pixels = static_cast<std::size_t>(width) * height;
   const auto from = [&](const float* images, int first) {
     return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
   };

@@ -16,7 +16,7 @@ using model::Label;
 
 /// The doses between which the print's threshold may lie: void below low, part above high. The printing threshold is
 /// in the middle, the same number for every slice.
-struct Window {
+struct DoseWindow {
   double low = 0.75;
   double high = 0.85;
   [[nodiscard]] double threshold() const { return 0.5 * (low + high); }
@@ -24,10 +24,10 @@ struct Window {
 
 /// The demands on all slices.
 struct Demands {
-  Window window;
+  DoseWindow window;
   bool surface = false;  // voxels on the surface are constrained too: part from half coverage on, else void
   bool grey = false;     // the target is a response for every voxel, to be met within its tolerance
-  CureCurve curve = CureCurve::logistic(Window{}.threshold(), 0.05);  // of the losses that look at the response
+  CureCurve curve = CureCurve::logistic(DoseWindow{}.threshold(), 0.05);  // of the losses that look at the response
   double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
 };
 
@@ -35,7 +35,7 @@ struct Demands {
 void check(const Demands& demands);
 
 /// Whether such a voxel is constrained.
-[[nodiscard]] constexpr bool asked(Label label) { return label == Label::part || label == Label::void_; }
+[[nodiscard]] constexpr bool is_constrained(Label label) { return label == Label::part || label == Label::void_; }
 
 struct Problem {
   int slices = 0;                          // lanes in use, from the first

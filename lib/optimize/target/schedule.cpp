@@ -31,7 +31,7 @@ Schedule make_schedule(std::span<const Digest> slices, int keep) {
     int job = jobs;
     if (found != known.end() && jobs - found->second.jobs_then <= keep) {
       job = found->second.job;
-      schedule.last_slice[static_cast<std::size_t>(job)] = static_cast<int>(k);
+      schedule.last_slice[job] = static_cast<int>(k);
     } else {
       schedule.slice_of_job.push_back(static_cast<int>(k));
       schedule.last_slice.push_back(static_cast<int>(k));

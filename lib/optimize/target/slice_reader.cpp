@@ -88,7 +88,7 @@ void judge(int k, const Findings& found, const Circle& circle) {
 }  // namespace
 
 SliceReader::SliceReader(const VolumeSource& source, light::Shape shape)
-    : source_(source), pixels_(static_cast<std::size_t>(shape.width) * static_cast<std::size_t>(shape.height)) {
+    : source_(source), pixels_(static_cast<std::size_t>(shape.width) * shape.height) {
   if (source.band_px > 0) band_.emplace(source.target, source.slices, shape.width, shape.height, source.band_px);
 }
 
@@ -109,7 +109,7 @@ std::vector<SliceData> SliceReader::read(int k, int count) const {
   take(source_.weight, &SliceData::weight);
   take(source_.tolerance, &SliceData::tolerance);
   for (int i = 0; band_ && i < count; ++i) {
-    std::vector<float>& weight = slices[static_cast<std::size_t>(i)].weight;
+    std::vector<float>& weight = slices[i].weight;
     if (weight.empty()) weight.assign(pixels_, 1.0F);
     band_->clear(k + i, weight.data());
   }
@@ -125,11 +125,9 @@ std::vector<Digest> check(const VolumeSource& source, light::Shape shape, const 
     const int count = std::min(lanes, source.slices - first);
     const std::vector<SliceData> slices = reader.read(first, count);
     std::vector<Findings> found(slices.size());
-    parallel_for(count, [&](int i) {
-      found[static_cast<std::size_t>(i)] = look(slices[static_cast<std::size_t>(i)], shape, circle);
-    });
+    parallel_for(count, [&](int i) { found[i] = look(slices[i], shape, circle); });
     for (int i = 0; i < count; ++i) {
-      const Findings& f = found[static_cast<std::size_t>(i)];
+      const Findings& f = found[i];
       judge(first + i, f, circle);
       any_part = any_part || f.reach >= 0;
       any_void = any_void || f.has_void;

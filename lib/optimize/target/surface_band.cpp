@@ -49,7 +49,7 @@ SurfaceBand::Distances SurfaceBand::to_kind(const std::vector<float>& slice, boo
 }
 
 void SurfaceBand::clear(int k, float* values) const {
-  const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
   const int reach = static_cast<int>(reach_);
   std::vector<float> here(pixels);
   std::vector<float> slice(pixels);

@@ -27,18 +27,18 @@ FeatureErrors CureTotals::all() const {
   return sum;
 }
 
-CureMap::CureMap(int width, int height, int slices, const Limits& limits)
+CureMap::CureMap(int width, int height, int slices, const CureLimits& limits)
     : width_(width),
       limits_(limits),
-      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+      pixels_(static_cast<std::size_t>(width) * height),
       rows_(static_cast<std::size_t>(height)) {
-  for (CureTotals& row : rows_) row.by_height.resize(static_cast<std::size_t>(slices) + 1);
+  for (CureTotals& row : rows_) row.by_height.resize(slices + 1);
 }
 
 // Books the pending feature; `extra` is what was cured below it when it is the last of its column.
 void CureMap::settle(Pixel& pixel, float extra, CureTotals& totals) {
   if (pixel.pending == 0) return;
-  FeatureErrors& errors = totals.by_height[static_cast<std::size_t>(pixel.pending)];
+  FeatureErrors& errors = totals.by_height[pixel.pending];
   const double through = static_cast<double>(pixel.above) + static_cast<double>(extra);
   ++errors.features;
   errors.under += static_cast<double>(pixel.under);
@@ -67,8 +67,8 @@ void CureMap::step(Pixel& pixel, bool solid, double cured, CureTotals& totals) c
 }
 
 void CureMap::add_row(int y, const float* phi, double full, const float* below, const float* solid) {
-  CureTotals& totals = rows_[static_cast<std::size_t>(y)];
-  Pixel* pixel = pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+  CureTotals& totals = rows_[y];
+  Pixel* pixel = pixels_.data() + static_cast<std::size_t>(y) * width_;
   for (int x = 0; x < width_; ++x) {
     const double light = full * static_cast<double>(phi[x]);
     const auto next = static_cast<double>(below[x]);
@@ -105,7 +105,8 @@ CureTotals CureMap::finish() {
   return sum;
 }
 
-CureTotals judge_column(const std::vector<std::uint8_t>& part, const std::vector<double>& phi, const Limits& limits) {
+CureTotals judge_column(const std::vector<std::uint8_t>& part, const std::vector<double>& phi,
+                        const CureLimits& limits) {
   const std::vector<double> omega = dose_at_nodes(phi, limits);
   CureMap map(1, 1, static_cast<int>(part.size()), limits);
   for (std::size_t n = 0; n < phi.size(); ++n) {

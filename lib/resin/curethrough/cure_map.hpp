@@ -36,7 +36,7 @@ struct CureTotals {
 /// Takes a print slice by slice in printing order.
 class CureMap {
  public:
-  CureMap(int width, int height, int slices, const Limits& limits);
+  CureMap(int width, int height, int slices, const CureLimits& limits);
 
   /// Row y of the next slice. phi: Phi / full; below: Omega at the node below the slice (StackDose::replay_row); solid:
   /// values >= 0.5 are in the part. Rows may be added by many threads at once.
@@ -55,13 +55,13 @@ class CureMap {
   void step(Pixel& pixel, bool solid, double cured, CureTotals& totals) const;
   static void settle(Pixel& pixel, float extra, CureTotals& totals);
   int width_;
-  Limits limits_;
+  CureLimits limits_;
   std::vector<Pixel> pixels_;
   std::vector<CureTotals> rows_;
 };
 
 /// One column: phi per slice, at least as many as the part has.
 [[nodiscard]] CureTotals judge_column(const std::vector<std::uint8_t>& part, const std::vector<double>& phi,
-                                      const Limits& limits);
+                                      const CureLimits& limits);
 
 }  // namespace vam::resin

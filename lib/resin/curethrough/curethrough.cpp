@@ -40,34 +40,34 @@ void check(const Process& p) {
 double critical_intensity_mw_cm2(const Process& process) {
   const double speed_cm_s = process.speed_mm_h / 36000.0;
   const double continuous = speed_cm_s * process.critical_dose_mj_cm3;  // I_c = s D_c
-  if (process.exposure == Exposure::continuous) return continuous;
+  if (process.exposure == ExposureMode::continuous) return continuous;
   return continuous * process.absorbance_height_um / (std::numbers::ln10 * process.slice_um);
 }
 
-Limits limits_of(const Process& process) {
+CureLimits limits_of(const Process& process) {
   check(process);
   const double q = std::pow(10.0, -process.slice_um / process.absorbance_height_um);
   const double critical = critical_intensity_mw_cm2(process);
-  return {process.exposure, q, process.exposure == Exposure::continuous ? 1 - q : q,
+  return {process.exposure, q, process.exposure == ExposureMode::continuous ? 1 - q : q,
           process.min_intensity_mw_cm2 / critical, process.max_intensity_mw_cm2 / critical};
 }
 
-std::vector<double> dose_at_nodes(std::span<const double> phi, const Limits& limits) {
+std::vector<double> dose_at_nodes(std::span<const double> phi, const CureLimits& limits) {
   std::vector<double> omega(phi.size() + 1, 0.0);
   for (std::size_t n = phi.size(); n-- > 0;)
     omega[n] = limits.gain * phi[n] + limits.q * omega[n + 1];  // [CURE19 eq 5]
   return omega;
 }
 
-double dose_at_centre(double phi, double next_node, const Limits& limits) {
+double dose_at_centre(double phi, double next_node, const CureLimits& limits) {
   const double half = std::sqrt(limits.q);
-  if (limits.exposure == Exposure::layered) return half * (phi + next_node);
+  if (limits.exposure == ExposureMode::layered) return half * (phi + next_node);
   return phi * (1 - half) + half * next_node;
 }
 
-double cured_fraction(double phi, double next_node, double threshold, const Limits& limits) {
+double cured_fraction(double phi, double next_node, double threshold, const CureLimits& limits) {
   // u in [0, 1] = distance from the window side of the slice, in slices; the dose there is far + (near - far) q^u.
-  const bool layered = limits.exposure == Exposure::layered;
+  const bool layered = limits.exposure == ExposureMode::layered;
   const double near = layered ? phi + next_node : next_node;  // a layer's own light arrives without loss
   const double settled = layered ? 0.0 : phi;
   const double back = settled + (near - settled) * limits.q;
@@ -77,7 +77,7 @@ double cured_fraction(double phi, double next_node, double threshold, const Limi
   return std::clamp(near >= threshold ? crossing : 1 - crossing, 0.0, 1.0);
 }
 
-int burst_slices(const Limits& limits) {
+int burst_slices(const CureLimits& limits) {
   const double settled = limits.settled(limits.phi_max);
   if (!(settled > 1)) return 0;
   const double count = std::log(1 - 1 / settled) / std::log(limits.q);  // settled (1 - q^count) = 1

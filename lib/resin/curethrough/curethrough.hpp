@@ -15,12 +15,12 @@
 
 namespace vam::resin {
 
-enum class Exposure { continuous, layered };
+enum class ExposureMode { continuous, layered };
 
 /// Resin, motion and light of a print. The defaults are the worked example of [CURE19 fig 2 and 4]; the paper gives no
 /// intensities: these are what makes its figures (undercured from slice 38 of 41, 3 extra slices).
 struct Process {
-  Exposure exposure = Exposure::continuous;
+  ExposureMode exposure = ExposureMode::continuous;
   double slice_um = 50;                // h_s
   double absorbance_height_um = 2000;  // h_a: the depth in which the intensity falls to a tenth (base 10)
   double critical_dose_mj_cm3 = 576;   // D_c
@@ -32,8 +32,8 @@ struct Process {
 /// What the mathematics needs of a process. Omega(node) = gain * Phi(node) + q * Omega(node + 1), Omega beyond the last
 /// slice = 0 [CURE19 eq 5]: Omega = D / D_c, Phi = I / I_c, q = 10^(-h_s/h_a), gain = 1 - q (continuous) or q
 /// (layered).
-struct Limits {
-  Exposure exposure = Exposure::continuous;
+struct CureLimits {
+  ExposureMode exposure = ExposureMode::continuous;
   double q = 0;
   double gain = 0;
   double phi_min = 0;
@@ -50,20 +50,20 @@ struct Limits {
 [[nodiscard]] double critical_intensity_mw_cm2(const Process& process);
 
 /// Throws Fault::data: a value not finite or not positive, min >= max intensity, h_s > 10 h_a.
-[[nodiscard]] Limits limits_of(const Process& process);
+[[nodiscard]] CureLimits limits_of(const Process& process);
 
 /// Omega at every node for one Phi per slice; result[n] for n in 0..phi.size(), the last one 0.
-[[nodiscard]] std::vector<double> dose_at_nodes(std::span<const double> phi, const Limits& limits);
+[[nodiscard]] std::vector<double> dose_at_nodes(std::span<const double> phi, const CureLimits& limits);
 
 /// Omega half way through a slice, from its Phi and Omega at the node below it (exact for both exposures).
-[[nodiscard]] double dose_at_centre(double phi, double next_node, const Limits& limits);
+[[nodiscard]] double dose_at_centre(double phi, double next_node, const CureLimits& limits);
 
 /// Fraction of the slice's thickness, in [0, 1], with Omega >= threshold. Exact: inside a slice the dose runs
 /// monotonically between its two planes.
-[[nodiscard]] double cured_fraction(double phi, double next_node, double threshold, const Limits& limits);
+[[nodiscard]] double cured_fraction(double phi, double next_node, double threshold, const CureLimits& limits);
 
 /// The fewest slices at phi_max that raise the dose from 0 to 1; 0 when no number does.
-[[nodiscard]] int burst_slices(const Limits& limits);
+[[nodiscard]] int burst_slices(const CureLimits& limits);
 
 /// Below this, differences of Omega are rounding: what counts as cured is Omega >= 1 - dose_tolerance.
 inline constexpr double dose_tolerance = 1e-6;

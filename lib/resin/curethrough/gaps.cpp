@@ -8,11 +8,11 @@
 
 namespace vam::resin {
 
-double lowest_gap_dose(const Limits& limits, int slices) {
+double lowest_gap_dose(const CureLimits& limits, int slices) {
   const double lowest = limits.settled(limits.phi_min);
   const double highest = limits.settled(limits.phi_max);
   if (!(lowest < 1 && highest > 1)) return 1;
-  const int nodes = limits.exposure == Exposure::continuous ? slices - 1 : slices;
+  const int nodes = limits.exposure == ExposureMode::continuous ? slices - 1 : slices;
   double least = 1;
   for (int d = 1; d <= nodes; ++d) {  // d nodes above the lower feature, nodes + 1 - d below the upper one
     const double fall = lowest + (1 - lowest) * std::pow(limits.q, d);
@@ -23,7 +23,7 @@ double lowest_gap_dose(const Limits& limits, int slices) {
   return least;
 }
 
-int narrowest_gap(const Limits& limits, double clear) {
+int narrowest_gap(const CureLimits& limits, double clear) {
   const double lowest = limits.settled(limits.phi_min);
   if (!(lowest < clear) || !(limits.settled(limits.phi_max) > 1)) return 0;
   int high = 2;
@@ -36,35 +36,34 @@ int narrowest_gap(const Limits& limits, double clear) {
     const int middle = low + (high - low) / 2;
     (lowest_gap_dose(limits, middle) > clear ? low : high) = middle;
   }
-  return low == 1 && limits.exposure == Exposure::layered && lowest_gap_dose(limits, 1) <= clear ? 1 : high;
+  return low == 1 && limits.exposure == ExposureMode::layered && lowest_gap_dose(limits, 1) <= clear ? 1 : high;
 }
 
 double speed_limit_mm_h(const Process& process) {
   Process at_one = process;
   at_one.speed_mm_h = 1;
-  const Limits limits = limits_of(at_one);  // Phi falls as 1 / speed
+  const CureLimits limits = limits_of(at_one);  // Phi falls as 1 / speed
   return limits.settled(limits.phi_max);
 }
 
-GapReport judge_gaps(const PartColumns& part, const Limits& limits, double clear) {
+GapReport judge_gaps(const PartColumns& part, const CureLimits& limits, double clear) {
   const int slices = part.slices();
   std::vector<double> least(static_cast<std::size_t>(slices) + 1, 1.0);  // by the length of the gap
   for (int gap = 1; gap <= slices; ++gap) {
     // Wider gaps reach ever less; beyond the first that reaches the limit of the light nothing changes.
-    least[static_cast<std::size_t>(gap)] =
-        gap > 2 && least[static_cast<std::size_t>(gap - 1)] == 0 ? 0 : lowest_gap_dose(limits, gap);
+    least[gap] = gap > 2 && least[gap - 1] == 0 ? 0 : lowest_gap_dose(limits, gap);
   }
   GapReport report;
   report.mask = Image(part.width(), part.height());
   std::vector<GapReport> rows(static_cast<std::size_t>(part.height()));
   parallel_for(part.height(), [&](int y) {
-    GapReport& row = rows[static_cast<std::size_t>(y)];
+    GapReport& row = rows[y];
     for (int x = 0; x < part.width(); ++x) {
       const std::size_t column = report.mask.index(x, y);
       float verdict = 0;
       int end = part.next_slice(column, part.next_slice(column, 0, true), false);
       for (int begin = part.next_slice(column, end, true); begin < slices; begin = part.next_slice(column, end, true)) {
-        const double dose = least[static_cast<std::size_t>(begin - end)];
+        const double dose = least[begin - end];
         const bool tight = dose > clear || dose >= 1;
         row.infeasible_gaps += dose >= 1;
         row.tight_gaps += tight;

@@ -12,11 +12,11 @@ namespace vam::resin {
 /// The least dose that can be reached anywhere in a gap of this many slices between two features, when both its edges
 /// are at 1: the dose falls at phi_min from the feature below and rises at phi_max to the one above [CURE19 fig 3].
 /// 1 when the gap has no node of its own, or when the light cannot fall or rise at all.
-[[nodiscard]] double lowest_gap_dose(const Limits& limits, int slices);
+[[nodiscard]] double lowest_gap_dose(const CureLimits& limits, int slices);
 
 /// The fewest slices of a gap in which the dose falls to `clear` (0 < clear < 1) somewhere; 0 when no gap does, because
 /// the dark alone settles above it or the light is too weak to cure at all.
-[[nodiscard]] int narrowest_gap(const Limits& limits, double clear);
+[[nodiscard]] int narrowest_gap(const CureLimits& limits, double clear);
 
 /// The speed at which the maximum intensity only just keeps the critical dose: I_max / D_c when continuous. Below it
 /// everything can be cured, the more slowly the narrower the gaps.
@@ -35,6 +35,6 @@ struct GapReport {
 };
 
 /// `clear` in (0, 1]. Gaps are between two features of a column.
-[[nodiscard]] GapReport judge_gaps(const PartColumns& part, const Limits& limits, double clear);
+[[nodiscard]] GapReport judge_gaps(const PartColumns& part, const CureLimits& limits, double clear);
 
 }  // namespace vam::resin

@@ -19,13 +19,13 @@ void set(std::uint64_t& word, std::uint64_t mask, std::uint64_t bits) { word = (
 
 }  // namespace
 
-PartColumns::PartColumns(int width, int height, int slices, Exposure exposure)
+PartColumns::PartColumns(int width, int height, int slices, ExposureMode exposure)
     : width_(width),
       height_(height),
       slices_(slices),
-      nodes_(exposure == Exposure::continuous ? slices + 1 : slices),
-      planes_(exposure == Exposure::continuous),
-      pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)),
+      nodes_(exposure == ExposureMode::continuous ? slices + 1 : slices),
+      planes_(exposure == ExposureMode::continuous),
+      pixels_(static_cast<std::size_t>(width) * height),
       stride_(static_cast<std::size_t>(nodes_ + 63) / 64),
       words_(pixels_ * stride_) {}
 
@@ -65,9 +65,8 @@ void PartColumns::unpack_row(int y, int first, int count, float* out, std::size_
 }
 
 void PartColumns::unpack(int first, int count, float* out) const {
-  parallel_for(height_, [&](int y) {
-    unpack_row(y, first, count, out + static_cast<std::size_t>(y) * static_cast<std::size_t>(width_), pixels_);
-  });
+  parallel_for(height_,
+               [&](int y) { unpack_row(y, first, count, out + static_cast<std::size_t>(y) * width_, pixels_); });
 }
 
 void PartColumns::append(int count, const float* values, float threshold) {
@@ -96,7 +95,7 @@ void PartColumns::append(int count, const float* values, float threshold) {
 void PartColumns::flush() {
   const auto index = static_cast<std::size_t>(filled_ - 1) / 64;
   parallel_for(height_, [&](int y) {
-    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_);
+    const std::size_t start = static_cast<std::size_t>(y) * width_;
     for (std::size_t p = start; p < start + static_cast<std::size_t>(width_); ++p) {
       words_[p * stride_ + index] = staged_[p];
       staged_[p] = 0;
@@ -145,9 +144,9 @@ int PartColumns::next_slice(std::size_t column, int n, bool solid) const {
 PartSurvey survey(const PartColumns& part) {
   std::vector<PartSurvey> rows(static_cast<std::size_t>(part.height()));
   parallel_for(part.height(), [&](int y) {
-    PartSurvey& row = rows[static_cast<std::size_t>(y)];
-    row.gaps.resize(static_cast<std::size_t>(part.slices()) + 1);
-    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(part.width());
+    PartSurvey& row = rows[y];
+    row.gaps.resize(part.slices() + 1);
+    const std::size_t start = static_cast<std::size_t>(y) * part.width();
     for (std::size_t p = start; p < start + static_cast<std::size_t>(part.width()); ++p) {
       int begin = part.next_slice(p, 0, true);
       if (begin < part.slices()) ++row.columns;
@@ -156,12 +155,12 @@ PartSurvey survey(const PartColumns& part) {
         ++row.features;
         row.last_slice = std::max(row.last_slice, end - 1);
         begin = part.next_slice(p, end, true);
-        if (begin < part.slices()) ++row.gaps[static_cast<std::size_t>(begin - end)];
+        if (begin < part.slices()) ++row.gaps[begin - end];
       }
     }
   });
   PartSurvey sum;
-  sum.gaps.resize(static_cast<std::size_t>(part.slices()) + 1);
+  sum.gaps.resize(part.slices() + 1);
   for (const PartSurvey& row : rows) {
     sum.columns += row.columns;
     sum.features += row.features;

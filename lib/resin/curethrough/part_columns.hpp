@@ -20,7 +20,7 @@ struct NodeRun {
 /// width x height columns (index y * width + x) of `slices` slices; slice 0 is the one at the platform.
 class PartColumns {
  public:
-  PartColumns(int width, int height, int slices, Exposure exposure);
+  PartColumns(int width, int height, int slices, ExposureMode exposure);
 
   /// Slices first .. first + count - 1 of a column, at most 64: slice first + b is in the part where bit b is set.
   void put(std::size_t column, int first, int count, std::uint64_t bits);

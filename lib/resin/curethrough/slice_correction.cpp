@@ -71,7 +71,7 @@ void ColumnCursor::step_up(int y, int node) {
   }
 }
 
-void require_printable(const Limits& limits) {
+void require_printable(const CureLimits& limits) {
   if (limits.settled(limits.phi_min) >= 1) {
     throw Error{Fault::data, "intensity range: the minimum alone settles at " +
                                  format_number(limits.settled(limits.phi_min), 3) +
@@ -85,11 +85,11 @@ void require_printable(const Limits& limits) {
   }
 }
 
-SliceCorrection::SliceCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices)
+SliceCorrection::SliceCorrection(const PartColumns& part, const CureLimits& limits, const DoseLimit& limit, int slices)
     : part_(part), limits_(limits), dose_(limits, limit, slices), cursor_(part, dose_), omega_(part.columns()) {
   parallel_for(part_.height(), [&](int y) {
     cursor_.place(y, 0);
-    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(part_.width());
+    const std::size_t start = static_cast<std::size_t>(y) * part_.width();
     for (int x = 0; x < part_.width(); ++x) {
       const double low = dose_.table()[cursor_.below(y)[x]];
       const double high = dose_.table()[cursor_.above(y)[x]];
@@ -106,12 +106,12 @@ void SliceCorrection::next(Image& slice) {
   parallel_for(part_.height(), [&](int y) {
     cursor_.step_down(y, node);
     kernel.forward({dose_.table(), cursor_.below(y), cursor_.above(y),
-                    omega_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(part_.width()), slice.row(y),
-                    part_.width(), node, limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
+                    omega_.data() + static_cast<std::size_t>(y) * part_.width(), slice.row(y), part_.width(), node,
+                    limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
   });
 }
 
-LevelCorrection::LevelCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices,
+LevelCorrection::LevelCorrection(const PartColumns& part, const CureLimits& limits, const DoseLimit& limit, int slices,
                                  std::span<const float> levels)
     : part_(part),
       limits_(limits),
@@ -130,7 +130,7 @@ LevelCorrection::LevelCorrection(const PartColumns& part, const Limits& limits, 
     const double phi = limits.phi_max * bin / guess_bins;
     while (lowest + 1 < phi_.size() && phi_[lowest] < phi) ++lowest;
     // One below, so that rounding of the bin number cannot skip the right level.
-    first_guess_[static_cast<std::size_t>(bin)] = static_cast<int>(lowest > 0 ? lowest - 1 : 0);
+    first_guess_[bin] = static_cast<int>(lowest > 0 ? lowest - 1 : 0);
   }
   parallel_for(part_.height(), [&](int y) { cursor_.place(y, slices); });
 }
@@ -140,7 +140,7 @@ int LevelCorrection::level_for(double phi) const {
   const double need = phi - 0.5 * dose_tolerance / limits_.gain;
   const double bin = std::clamp(need / limits_.phi_max * guess_bins, 0.0, static_cast<double>(guess_bins));
   int level = first_guess_[static_cast<std::size_t>(bin)];
-  while (level + 1 < static_cast<int>(phi_.size()) && phi_[static_cast<std::size_t>(level)] < need) ++level;
+  while (level + 1 < static_cast<int>(phi_.size()) && phi_[level] < need) ++level;
   return level;
 }
 
@@ -151,15 +151,15 @@ void LevelCorrection::previous(std::vector<std::uint16_t>& slice) {
   const CorrectionKernels& kernel = kernels();
   parallel_for(part_.height(), [&](int y) {
     cursor_.step_up(y, node);
-    const std::size_t start = static_cast<std::size_t>(y) * static_cast<std::size_t>(part_.width());
+    const std::size_t start = static_cast<std::size_t>(y) * part_.width();
     std::vector<float> wanted(static_cast<std::size_t>(part_.width()));
     double* omega = omega_.data() + start;
     kernel.wanted({dose_.table(), cursor_.below(y), cursor_.above(y), omega, wanted.data(), part_.width(), node,
                    limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
     for (int x = 0; x < part_.width(); ++x) {
-      const int level = level_for(static_cast<double>(wanted[static_cast<std::size_t>(x)]));
+      const int level = level_for(static_cast<double>(wanted[x]));
       slice[start + static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(level);
-      omega[x] = limits_.gain * phi_[static_cast<std::size_t>(level)] + limits_.q * omega[x];
+      omega[x] = limits_.gain * phi_[level] + limits_.q * omega[x];
     }
   });
 }

@@ -24,9 +24,7 @@ class ColumnCursor {
   [[nodiscard]] const int* above(int y) const { return above_.data() + start(y); }
 
  private:
-  [[nodiscard]] std::size_t start(int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(part_.width());
-  }
+  [[nodiscard]] std::size_t start(int y) const { return static_cast<std::size_t>(y) * part_.width(); }
   void place_column(std::size_t column, int node);
   const PartColumns& part_;
   const TargetDose& dose_;
@@ -38,20 +36,20 @@ class ColumnCursor {
 
 /// Throws Fault::data when the light is too weak to cure at this speed (settled(phi_max) <= 1) or the dark is bright
 /// enough to cure (settled(phi_min) >= 1): then no column with a feature has a solution.
-void require_printable(const Limits& limits);
+void require_printable(const CureLimits& limits);
 
 /// The exact correction in printing order: slice 0 first. Intensities are fractions of the maximum, as floats.
 class SliceCorrection {
  public:
   /// `part` must outlive this. slices = the part's own and the extra ones.
-  SliceCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices);
+  SliceCorrection(const PartColumns& part, const CureLimits& limits, const DoseLimit& limit, int slices);
   [[nodiscard]] int slices() const { return dose_.slices(); }
   /// Intensity / maximum intensity of the next slice, in [phi_min / phi_max, 1].
   void next(Image& slice);
 
  private:
   const PartColumns& part_;
-  Limits limits_;
+  CureLimits limits_;
   TargetDose dose_;
   ColumnCursor cursor_;
   std::vector<double> omega_;
@@ -66,7 +64,7 @@ class LevelCorrection {
  public:
   /// levels[v] = intensity of grey level v as a fraction of the maximum, rising; the first is phi_min / phi_max, the
   /// last 1. Throws Fault::data when they fall anywhere or there are more than 65536.
-  LevelCorrection(const PartColumns& part, const Limits& limits, const DoseLimit& limit, int slices,
+  LevelCorrection(const PartColumns& part, const CureLimits& limits, const DoseLimit& limit, int slices,
                   std::span<const float> levels);
   [[nodiscard]] int slices() const { return dose_.slices(); }
   /// Grey levels of the slice before the one given last, row-major; begins with slice slices() - 1.
@@ -75,7 +73,7 @@ class LevelCorrection {
  private:
   [[nodiscard]] int level_for(double phi) const;
   const PartColumns& part_;
-  Limits limits_;
+  CureLimits limits_;
   TargetDose dose_;
   ColumnCursor cursor_;
   std::vector<double> phi_;       // of each level

@@ -8,7 +8,7 @@
 
 namespace vam::resin {
 
-StackDose::StackDose(const Limits& limits, double full) : limits_(limits), full_(full) {}
+StackDose::StackDose(const CureLimits& limits, double full) : limits_(limits), full_(full) {}
 
 void StackDose::add(const Image& slice) {
   if (slices_ % block_slices == 0) {

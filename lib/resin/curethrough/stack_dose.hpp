@@ -14,7 +14,7 @@ namespace vam::resin {
 class StackDose {
  public:
   /// `full`: the Phi of a pixel of value 1 (pixels are intensities as fractions of the maximum, so phi_max).
-  StackDose(const Limits& limits, double full);
+  StackDose(const CureLimits& limits, double full);
 
   /// First reading: every slice in printing order. Throws Fault::data when a slice differs in size from the first.
   void add(const Image& slice);
@@ -29,7 +29,7 @@ class StackDose {
   [[nodiscard]] int slices() const { return slices_; }
 
  private:
-  Limits limits_;
+  CureLimits limits_;
   double full_;
   int slices_ = 0;
   double weight_ = 1;             // q^(slices since the block's first)

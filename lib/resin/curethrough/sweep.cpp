@@ -29,7 +29,7 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
   point.omega_max = omega_max;
   Process assumed = study.process;
   assumed.critical_dose_mj_cm3 = factor * study.gel_dose_mj_cm3;
-  const Limits limits = limits_of(assumed);
+  const CureLimits limits = limits_of(assumed);
   point.printable = burst_slices(limits) > 0 && limits.settled(limits.phi_min) < 1;
   if (!point.printable) return point;
   point.extra_slices = extra_slices(part, limits);
@@ -68,7 +68,7 @@ std::vector<StudyPoint> run_study(const std::vector<std::uint8_t>& part, const S
   if (std::find(part.begin(), part.end(), std::uint8_t{1}) == part.end()) {
     throw Error{Fault::data, "parameter study: the part is empty"};
   }
-  const Limits truth = limits_of(study.process);
+  const CureLimits truth = limits_of(study.process);
   const CureTotals plain = judge_column(part, plain_column(part, truth), truth);
   std::vector<StudyPoint> points(study.dose_factors.size() * study.omega_max.size());
   parallel_for(static_cast<int>(points.size()), [&](int i) {

@@ -22,7 +22,7 @@ struct Run {
 std::vector<Run> runs_of(std::span<const std::uint8_t> nodes) {
   std::vector<Run> runs;
   for (int n = 0; n < static_cast<int>(nodes.size()); ++n) {
-    const bool inside = nodes[static_cast<std::size_t>(n)] != 0;
+    const bool inside = nodes[n] != 0;
     if (runs.empty() || runs.back().inside != inside) runs.push_back({n, n, inside});
     runs.back().last = n;
   }
@@ -44,7 +44,7 @@ std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose
       above = r > 0 ? dose.above_outside(runs[r - 1].last) : dose.above_none();
     }
     for (int n = run.first; n <= run.last; ++n) {
-      target[static_cast<std::size_t>(n)] = std::fabs(std::min(dose.table()[below - n], dose.table()[above + n]));
+      target[n] = std::fabs(std::min(dose.table()[below - n], dose.table()[above + n]));
     }
   }
   return target;
@@ -57,12 +57,12 @@ double excess(const std::vector<Run>& runs, const std::vector<double>& omega, co
     const bool unlimited = limit.strong_base && run.first == 0;
     const double omega_max = unlimited ? unreachable : limit.omega_max;
     for (int n = run.first; n <= run.last; ++n) {
-      const double dose = omega[static_cast<std::size_t>(n)];
+      const double dose = omega[n];
       worst = std::max(worst, run.inside ? std::max(1 - dose, dose - omega_max) : dose - 1);
     }
     if (!run.inside) continue;
-    worst = std::max(worst, omega[static_cast<std::size_t>(run.last)] - 1);  // Omega = 1 at both edges;
-    if (run.first > 0) worst = std::max(worst, omega[static_cast<std::size_t>(run.first)] - 1);  // the platform is none
+    worst = std::max(worst, omega[run.last] - 1);                      // Omega = 1 at both edges;
+    if (run.first > 0) worst = std::max(worst, omega[run.first] - 1);  // the platform is none
   }
   return worst;
 }
@@ -75,7 +75,7 @@ int single_slice_gaps(std::span<const std::uint8_t> part) {
 
 }  // namespace
 
-TargetDose::TargetDose(const Limits& limits, const DoseLimit& limit, int slices)
+TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int slices)
     : slices_(slices), strong_base_(limit.strong_base) {
   const double omega_max = limit.omega_max;
   if (!(omega_max >= 1)) {
@@ -84,7 +84,7 @@ TargetDose::TargetDose(const Limits& limits, const DoseLimit& limit, int slices)
   }
   const double lowest = limits.settled(limits.phi_min);
   const double highest = limits.settled(limits.phi_max);
-  values_.resize(static_cast<std::size_t>(sections) * static_cast<std::size_t>(slices + 1));
+  values_.resize(sections * static_cast<std::size_t>(slices + 1));
   for (int d = 0; d <= slices; ++d) {
     const double power = std::pow(limits.q, d);
     const auto put = [&](Section s, double value) {
@@ -103,50 +103,50 @@ TargetDose::TargetDose(const Limits& limits, const DoseLimit& limit, int slices)
   }
 }
 
-Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
+Column correct_column(std::span<const std::uint8_t> part, const CureLimits& limits, const DoseLimit& limit,
                       int extra_slices) {
   const int slices = static_cast<int>(part.size()) + extra_slices;
   const TargetDose dose(limits, limit, slices);
   std::vector<std::uint8_t> nodes = nodes_of(part, limits.exposure);
-  nodes.resize(static_cast<std::size_t>(slices) + 1, 0);
-  if (limits.exposure == Exposure::continuous && extra_slices == 0 && !part.empty()) nodes.back() = part.back();
+  nodes.resize(slices + 1, 0);
+  if (limits.exposure == ExposureMode::continuous && extra_slices == 0 && !part.empty()) nodes.back() = part.back();
   const std::vector<Run> runs = runs_of(nodes);
   const std::vector<double> target = targets(runs, dose);
 
   Column column;
-  column.phi.resize(static_cast<std::size_t>(slices));
-  column.omega.resize(static_cast<std::size_t>(slices) + 1, 0.0);
+  column.phi.resize(slices);
+  column.omega.resize(slices + 1, 0.0);
   for (std::size_t n = column.phi.size(); n-- > 0;) {
     const double carried = limits.q * column.omega[n + 1];
     column.phi[n] = std::clamp((target[n] - carried) / limits.gain, limits.phi_min, limits.phi_max);
     column.omega[n] = limits.gain * column.phi[n] + carried;  // [CURE19 eq 5]
   }
   column.worst_excess = excess(runs, column.omega, limit);
-  column.fused_gaps = limits.exposure == Exposure::continuous ? single_slice_gaps(part) : 0;
+  column.fused_gaps = limits.exposure == ExposureMode::continuous ? single_slice_gaps(part) : 0;
   return column;
 }
 
-int extra_slices(int last_slice, int slices, const Limits& limits) {
+int extra_slices(int last_slice, int slices, const CureLimits& limits) {
   if (last_slice < 0) return 0;
-  const int last_node = last_slice + (limits.exposure == Exposure::continuous ? 1 : 0);
+  const int last_node = last_slice + (limits.exposure == ExposureMode::continuous ? 1 : 0);
   return std::max(0, last_node + burst_slices(limits) - slices);
 }
 
-int extra_slices(std::span<const std::uint8_t> part, const Limits& limits) {
+int extra_slices(std::span<const std::uint8_t> part, const CureLimits& limits) {
   int last = static_cast<int>(part.size()) - 1;
-  while (last >= 0 && part[static_cast<std::size_t>(last)] == 0) --last;
+  while (last >= 0 && part[last] == 0) --last;
   return extra_slices(last, static_cast<int>(part.size()), limits);
 }
 
-std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits) {
+std::vector<double> plain_column(std::span<const std::uint8_t> part, const CureLimits& limits) {
   std::vector<double> phi(part.size());
   for (std::size_t n = 0; n < part.size(); ++n) phi[n] = part[n] != 0 ? limits.phi_max : limits.phi_min;
   return phi;
 }
 
-std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, Exposure exposure) {
+std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, ExposureMode exposure) {
   std::vector<std::uint8_t> nodes(part.begin(), part.end());
-  if (exposure == Exposure::layered) return nodes;
+  if (exposure == ExposureMode::layered) return nodes;
   nodes.push_back(0);
   for (std::size_t n = part.size(); n-- > 0;) {
     if (part[n] != 0) nodes[n + 1] = 1;

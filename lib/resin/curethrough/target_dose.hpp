@@ -33,7 +33,7 @@ struct DoseLimit {
 class TargetDose {
  public:
   /// For columns of up to `slices` slices, the extra ones included. Throws Fault::usage when omega_max is below 1.
-  TargetDose(const Limits& limits, const DoseLimit& limit, int slices);
+  TargetDose(const CureLimits& limits, const DoseLimit& limit, int slices);
 
   [[nodiscard]] const double* table() const { return values_.data(); }
   [[nodiscard]] int slices() const { return slices_; }
@@ -69,18 +69,18 @@ struct Column {
 /// The exact solution for part[n] = "slice n is in the part", followed by extra_slices empty slices. When no Phi
 /// satisfies every constraint the column is marked infeasible and holds the nearest attempt; nothing is clipped
 /// silently.
-[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const Limits& limits, const DoseLimit& limit,
-                                    int extra_slices);
+[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const CureLimits& limits,
+                                    const DoseLimit& limit, int extra_slices);
 
 /// Slices after the part's own that the burst below its last feature needs; 0 for an empty column or without a burst.
-[[nodiscard]] int extra_slices(std::span<const std::uint8_t> part, const Limits& limits);
+[[nodiscard]] int extra_slices(std::span<const std::uint8_t> part, const CureLimits& limits);
 /// The same for a part of `slices` slices whose deepest one in the part is last_slice (-1: none).
-[[nodiscard]] int extra_slices(int last_slice, int slices, const Limits& limits);
+[[nodiscard]] int extra_slices(int last_slice, int slices, const CureLimits& limits);
 
 /// The conventional column: phi_max in the part, phi_min elsewhere.
-[[nodiscard]] std::vector<double> plain_column(std::span<const std::uint8_t> part, const Limits& limits);
+[[nodiscard]] std::vector<double> plain_column(std::span<const std::uint8_t> part, const CureLimits& limits);
 
 /// Nodes of a column: 1 inside a feature. part.size() + 1 nodes when continuous, part.size() when layered.
-[[nodiscard]] std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, Exposure exposure);
+[[nodiscard]] std::vector<std::uint8_t> nodes_of(std::span<const std::uint8_t> part, ExposureMode exposure);
 
 }  // namespace vam::resin

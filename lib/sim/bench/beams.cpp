@@ -34,10 +34,10 @@ std::vector<double> blurred(const std::vector<double>& light, double sigma) {
   }
   std::vector<double> out(light.size());
   for (std::ptrdiff_t c = 0; c < n; ++c) {
-    const double value = light[static_cast<std::size_t>(c)] / sum;
+    const double value = light[c] / sum;
     if (value == 0) continue;
     for (std::ptrdiff_t i = std::max(-half, -c); i <= std::min(half, n - 1 - c); ++i) {
-      out[static_cast<std::size_t>(c + i)] += value * kernel[static_cast<std::size_t>(i + half)];
+      out[c + i] += value * kernel[i + half];
     }
   }
   return out;
@@ -132,8 +132,8 @@ int LitImage::uniform(double top, double bottom, double sigma_px) const {
   const auto last = static_cast<int>(std::floor(bottom + more + 0.5));
   if (last < 0 || first >= image_.height) return image_.height;  // all dark
   if (first < 0 || last >= image_.height) return -1;
-  const int twin = twin_[static_cast<std::size_t>(first)];
-  return twin_[static_cast<std::size_t>(last)] == twin ? twin : -1;
+  const int twin = twin_[first];
+  return twin_[last] == twin ? twin : -1;
 }
 
 LitRow LitImage::between(double top, double bottom, double sigma_px) const {
@@ -142,7 +142,7 @@ LitRow LitImage::between(double top, double bottom, double sigma_px) const {
   const auto last = std::min(static_cast<int>(std::floor(bottom + more + 0.5)), image_.height - 1);
   for (int row = std::max(static_cast<int>(std::floor(top - more + 0.5)), 0); row <= last; ++row) {
     const double part = share(row, top, bottom, sigma_px);
-    for (int c = 0; c < image_.width; ++c) sum[static_cast<std::size_t>(c)] += part * light(c, row);
+    for (int c = 0; c < image_.width; ++c) sum[c] += part * light(c, row);
   }
   return LitRow(sigma_px > 0 ? blurred(sum, sigma_px) : sum);
 }

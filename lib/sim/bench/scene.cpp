@@ -207,7 +207,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
       double value = printed(from, z_mm, moment.angle_deg, growth);
       for (const auto& [column, weight] : {std::pair(left, 1 - part), std::pair(left + 1, part)}) {
         if (column < 0 || column >= columns) continue;
-        value += weight * row_glow[static_cast<std::size_t>(column)];
+        value += weight * row_glow[column];
       }
       image(c, r) = static_cast<float>(value);
     }

@@ -22,8 +22,7 @@ Similarity to_similarity(const Pose& pose) {
   Similarity result;
   result.scale = pose.scale;
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c)
-      result.rotation[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = pose.rotation(r, c);
+    for (int c = 0; c < 3; ++c) result.rotation[r][c] = pose.rotation(r, c);
   }
   result.shift_mm = from_eigen(pose.shift);
   return result;
@@ -174,7 +173,7 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   // Fewer and fewer starts are refined more and more.
   const auto keep = [&](std::size_t count, const auto& rms_of) {
     parallel_for(static_cast<int>(starts.size()), [&](int i) {
-      Start& start = starts[static_cast<std::size_t>(i)];
+      Start& start = starts[i];
       start.rms = rms_of(start.pose);
     });
     std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });

@@ -36,7 +36,7 @@ std::vector<Matrix3d> cube_rotations() {
   do {
     for (int signs = 0; signs < 8; ++signs) {
       Matrix3d m = Matrix3d::Zero();
-      for (int r = 0; r < 3; ++r) m(r, order[static_cast<std::size_t>(r)]) = (signs >> r & 1) != 0 ? -1 : 1;
+      for (int r = 0; r < 3; ++r) m(r, order[r]) = (signs >> r & 1) != 0 ? -1 : 1;
       if (m.determinant() > 0) rotations.push_back(m);
     }
   } while (std::next_permutation(order.begin(), order.end()));

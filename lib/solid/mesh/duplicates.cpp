@@ -30,7 +30,7 @@ std::vector<Key> sorted_keys(const model::TriangleSoup& mesh) {
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     const bool even = t[1] < t[2];
     if (!even) std::swap(t[1], t[2]);
-    keys[next[static_cast<std::size_t>(t[0])]++] = {t, static_cast<int>(i), even};
+    keys[next[t[0]]++] = {t, static_cast<int>(i), even};
   }
   for (std::size_t low = 0; low + 1 < first.size(); ++low) {
     std::sort(keys.begin() + static_cast<std::ptrdiff_t>(first[low]),
@@ -61,7 +61,7 @@ class Patches {
     EdgeTable(rest, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
       std::vector<std::size_t> patch;
       for (const HalfEdge& half : edge) {
-        const std::size_t t = original[static_cast<std::size_t>(half.triangle)];
+        const std::size_t t = original[half.triangle];
         if (doubtful[t] != 0) patch.push_back(t);
       }
       if (!patch.empty()) join(patch, edge.size() - patch.size());
@@ -111,7 +111,7 @@ long drop_duplicates(model::TriangleSoup& mesh) {
     for (; stop != keys.end() && stop->sorted == group->sorted; ++stop) balance += stop->even ? 1 : -1;
     const auto keep =
         std::find_if(group, stop, [&](const Key& key) { return balance == 0 || key.even == (balance > 0); });
-    for (auto key = group; key != stop; ++key) drop[static_cast<std::size_t>(key->index)] = key != keep ? 1 : 0;
+    for (auto key = group; key != stop; ++key) drop[key->index] = key != keep ? 1 : 0;
     if (balance == 0) cancelling.push_back(static_cast<std::size_t>(keep->index));
     group = stop;
   }

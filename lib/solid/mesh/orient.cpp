@@ -72,7 +72,7 @@ std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>&
       }
     }
     if (2 * turned > component.triangles.size()) {
-      for (const int t : component.triangles) turn[static_cast<std::size_t>(t)] ^= 1;
+      for (const int t : component.triangles) turn[t] ^= 1;
     }
     components.push_back(std::move(component));
   }
@@ -83,12 +83,12 @@ Triangle turned_over(const Triangle& t) { return {t[0], t[2], t[1]}; }
 
 void measure(const model::TriangleSoup& mesh, Component& component) {
   for (const int t : component.triangles) {
-    for (const int corner : mesh.triangles[static_cast<std::size_t>(t)]) {
-      component.bounds.add(mesh.points[static_cast<std::size_t>(corner)]);
+    for (const int corner : mesh.triangles[t]) {
+      component.bounds.add(mesh.points[corner]);
     }
   }
   for (const int t : component.triangles) {
-    add(component.measure, mesh, mesh.triangles[static_cast<std::size_t>(t)], component.bounds.centre());
+    add(component.measure, mesh, mesh.triangles[t], component.bounds.centre());
   }
   // The vector area of a surface is minus that of its holes; a half sphere has a half of its area, a closed surface 0.
   component.solid =
@@ -106,7 +106,7 @@ class Nesting {
     if (winding_[outer] == nullptr) {
       model::TriangleSoup surface{mesh_.points, {}};
       for (const int t : components_[outer].triangles) {
-        surface.triangles.push_back(mesh_.triangles[static_cast<std::size_t>(t)]);
+        surface.triangles.push_back(mesh_.triangles[t]);
       }
       winding_[outer] = std::make_unique<WindingNumber>(surface);
     }
@@ -115,7 +115,7 @@ class Nesting {
     std::size_t inside = 0;
     for (std::size_t s = 0; s < samples; ++s) {
       const auto t = static_cast<std::size_t>(triangles[s * (triangles.size() - 1) / (samples - 1)]);
-      const Point& p = mesh_.points[static_cast<std::size_t>(mesh_.triangles[t][0])];
+      const Point& p = mesh_.points[mesh_.triangles[t][0]];
       if (std::abs((*winding_[outer])(p)) > 0.5) ++inside;
     }
     return inside == samples;
@@ -171,7 +171,7 @@ void turn_pieces(const model::TriangleSoup& mesh, std::vector<Component>& compon
   Measure all;
   for (const Component& piece : components) {
     if (piece.solid) continue;
-    for (const int t : piece.triangles) add(all, mesh, mesh.triangles[static_cast<std::size_t>(t)], bounds.centre());
+    for (const int t : piece.triangles) add(all, mesh, mesh.triangles[t], bounds.centre());
   }
   if (all.volume >= 0) return;
   for (Component& piece : components) piece.turn = piece.turn || !piece.solid;

@@ -33,8 +33,7 @@ Border border(const model::TriangleSoup& mesh) {
     const int high = edge.front().high;
     result.points.push_back(low);
     result.points.push_back(high);
-    result.lengths.push_back(
-        length(mesh.points[static_cast<std::size_t>(low)] - mesh.points[static_cast<std::size_t>(high)]));
+    result.lengths.push_back(length(mesh.points[low] - mesh.points[high]));
   });
   std::sort(result.points.begin(), result.points.end());
   result.points.erase(std::unique(result.points.begin(), result.points.end()), result.points.end());

@@ -14,8 +14,7 @@ namespace {
 
 Corners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
-  return {mesh.points[static_cast<std::size_t>(t[0])], mesh.points[static_cast<std::size_t>(t[1])],
-          mesh.points[static_cast<std::size_t>(t[2])]};
+  return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
 }
 
 Vector3 twice_area(const Corners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
@@ -37,7 +36,7 @@ Surface::~Surface() = default;
 
 Foot Surface::closest(const Vector3& point, int start) const {
   const Nearest nearest = state_->tree->nearest(point, start);
-  const Vector3 normal = twice_area(state_->tree->triangles[static_cast<std::size_t>(nearest.triangle)]);
+  const Vector3 normal = twice_area(state_->tree->triangles[nearest.triangle]);
   return {nearest.point, (1 / length(normal)) * normal, nearest.triangle};
 }
 
@@ -70,7 +69,7 @@ std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int c
   for (std::size_t i = 0; i < running.size(); ++i) running[i] = total += length(twice_area(corners(mesh, i)));
   std::vector<SurfaceSample> samples;
   if (!(total > 0)) return samples;
-  samples.reserve(static_cast<std::size_t>(count));
+  samples.reserve(count);
   std::mt19937 random(20220613);
   std::uniform_real_distribution<double> unit(0, 1);
   std::size_t triangle = 0;
@@ -95,7 +94,7 @@ Box bounding_box(const model::TriangleSoup& mesh) {
   Box box{mesh.points.front(), mesh.points.front()};
   for (const auto& t : mesh.triangles) {
     for (const int index : t) {
-      const Vector3& p = mesh.points[static_cast<std::size_t>(index)];
+      const Vector3& p = mesh.points[index];
       for (std::size_t d = 0; d < 3; ++d) {
         box.low[d] = std::min(box.low[d], p[d]);
         box.high[d] = std::max(box.high[d], p[d]);

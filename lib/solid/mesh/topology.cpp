@@ -35,7 +35,7 @@ EdgeTable::EdgeTable(std::span<const Triangle> triangles, std::size_t points) : 
 
 void add(Measure& measure, const model::TriangleSoup& mesh, const Triangle& triangle,
          const std::array<double, 3>& origin) {
-  const auto corner = [&](std::size_t c) { return mesh.points[static_cast<std::size_t>(triangle[c])] - origin; };
+  const auto corner = [&](std::size_t c) { return mesh.points[triangle[c]] - origin; };
   const Vector3 a = corner(0);
   const Vector3 b = corner(1);
   const Vector3 c = corner(2);

@@ -22,9 +22,7 @@ class Builder {
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
 
  private:
-  [[nodiscard]] std::size_t at(int position) const {
-    return static_cast<std::size_t>(order_[static_cast<std::size_t>(position)]);
-  }
+  [[nodiscard]] std::size_t at(int position) const { return static_cast<std::size_t>(order_[position]); }
 
   void build(int begin, int end) {
     const std::size_t index = nodes_.size();
@@ -55,9 +53,8 @@ class Builder {
     const Vector3 size = high - low;
     const auto axis = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
     const int middle = (begin + end) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
-      return centroids_[static_cast<std::size_t>(a)][axis] < centroids_[static_cast<std::size_t>(b)][axis];
-    });
+    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                     [&](int a, int b) { return centroids_[a][axis] < centroids_[b][axis]; });
     return middle;
   }
 
@@ -88,13 +85,13 @@ double distance2(const TriangleNode& node, const Vector3& p) {
 TriangleTree::TriangleTree(std::vector<Corners> soup) {
   const Builder builder(soup, nodes);
   triangles.reserve(soup.size());
-  for (const int i : builder.order()) triangles.push_back(soup[static_cast<std::size_t>(i)]);
+  for (const int i : builder.order()) triangles.push_back(soup[i]);
 }
 
 Nearest TriangleTree::nearest(const Vector3& point, int start) const {
   Nearest best;
   const auto look = [&](int triangle) {
-    const Vector3 foot = nearest_on(triangles[static_cast<std::size_t>(triangle)], point);
+    const Vector3 foot = nearest_on(triangles[triangle], point);
     const Vector3 way = point - foot;
     const double d2 = dot(way, way);
     if (d2 < best.distance2) best = {foot, d2, triangle};
@@ -111,13 +108,13 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (next.distance2 >= best.distance2) continue;
-    const TriangleNode& node = nodes[static_cast<std::size_t>(next.node)];
+    const TriangleNode& node = nodes[next.node];
     if (node.right == 0) {
       for (int i = node.begin; i < node.end; ++i) look(i);
       continue;
     }
     Waiting near{next.node + 1, distance2(nodes[static_cast<std::size_t>(next.node) + 1], point)};
-    Waiting far{node.right, distance2(nodes[static_cast<std::size_t>(node.right)], point)};
+    Waiting far{node.right, distance2(nodes[node.right], point)};
     if (far.distance2 < near.distance2) std::swap(near, far);
     if (far.distance2 < best.distance2) stack[waiting++] = far;
     if (near.distance2 < best.distance2) stack[waiting++] = near;
@@ -129,8 +126,7 @@ std::vector<Corners> corners_of(const model::TriangleSoup& mesh) {
   std::vector<Corners> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
-    const Corners c{mesh.points[static_cast<std::size_t>(t[0])], mesh.points[static_cast<std::size_t>(t[1])],
-                    mesh.points[static_cast<std::size_t>(t[2])]};
+    const Corners c{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
     const Vector3 normal = cross(c[1] - c[0], c[2] - c[0]);
     if (dot(normal, normal) > 0) triangles.push_back(c);
   }

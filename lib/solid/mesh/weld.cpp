@@ -32,7 +32,7 @@ void renumber(model::TriangleSoup& mesh, std::vector<int>& target) {
   points.reserve(mesh.points.size());
   for (Triangle& triangle : mesh.triangles) {
     for (int& corner : triangle) {
-      const auto old = static_cast<std::size_t>(target[static_cast<std::size_t>(corner)]);
+      const auto old = static_cast<std::size_t>(target[corner]);
       if (number[old] < 0) {
         number[old] = static_cast<int>(points.size());
         points.push_back(mesh.points[old]);
@@ -53,7 +53,7 @@ long weld_equal_points(model::TriangleSoup& mesh) {
   long welded = 0;
   for (std::size_t i = 0; i < before; ++i) {
     std::size_t slot = hash(mesh.points[i]) & (slots - 1);
-    while (table[slot] >= 0 && mesh.points[static_cast<std::size_t>(table[slot])] != mesh.points[i]) {
+    while (table[slot] >= 0 && mesh.points[table[slot]] != mesh.points[i]) {
       slot = (slot + 1) & (slots - 1);
     }
     if (table[slot] < 0) table[slot] = static_cast<int>(i);
@@ -67,15 +67,15 @@ long weld_equal_points(model::TriangleSoup& mesh) {
 long weld_near_points(model::TriangleSoup& mesh, std::span<const int> candidates, double distance) {
   // Sweep along x: only candidates within `distance` in x can be near.
   std::vector<int> order(candidates.begin(), candidates.end());
-  const auto point = [&](int index) -> const Vector3& { return mesh.points[static_cast<std::size_t>(index)]; };
+  const auto point = [&](int index) -> const Vector3& { return mesh.points[index]; };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return point(a) < point(b); });
   std::vector<int> target(mesh.points.size());
   std::iota(target.begin(), target.end(), 0);
   long welded = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (target[static_cast<std::size_t>(order[i])] != order[i]) continue;  // has joined another
+    if (target[order[i]] != order[i]) continue;  // has joined another
     for (std::size_t j = i + 1; j < order.size() && point(order[j])[0] - point(order[i])[0] <= distance; ++j) {
-      int& joined = target[static_cast<std::size_t>(order[j])];
+      int& joined = target[order[j]];
       if (joined != order[j] || length(point(order[j]) - point(order[i])) > distance) continue;
       joined = order[i];
       ++welded;

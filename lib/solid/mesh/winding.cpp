@@ -55,8 +55,7 @@ WindingNumber::WindingNumber(std::shared_ptr<const TriangleTree> tree) : tree_(s
   const auto& nodes = tree_->nodes;
   clusters_.resize(nodes.size());
   for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parent
-    clusters_[i] = nodes[i].right == 0 ? of_leaf(nodes[i])
-                                       : merged(clusters_[i + 1], clusters_[static_cast<std::size_t>(nodes[i].right)]);
+    clusters_[i] = nodes[i].right == 0 ? of_leaf(nodes[i]) : merged(clusters_[i + 1], clusters_[nodes[i].right]);
     clusters_[i].reach = far * farthest_corner(nodes[i], clusters_[i].centre);
   }
 }
@@ -64,7 +63,7 @@ WindingNumber::WindingNumber(std::shared_ptr<const TriangleTree> tree) : tree_(s
 WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
   Cluster leaf;
   for (int i = node.begin; i < node.end; ++i) {
-    const Corners& t = tree_->triangles[static_cast<std::size_t>(i)];
+    const Corners& t = tree_->triangles[i];
     const Vector3 a = area_vector(t);
     leaf.weight += length(a);
     leaf.area = leaf.area + a;
@@ -72,7 +71,7 @@ WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
   }
   leaf.centre = (1 / leaf.weight) * leaf.centre;
   for (int i = node.begin; i < node.end; ++i) {
-    const Corners& t = tree_->triangles[static_cast<std::size_t>(i)];
+    const Corners& t = tree_->triangles[i];
     const Vector3 offset = centroid(t) - leaf.centre;
     for (std::size_t d = 0; d < 3; ++d) leaf.second[d] = leaf.second[d] + offset[d] * area_vector(t);
   }

@@ -165,7 +165,7 @@ class Lattice {
   [[nodiscard]] Corners corners(int i, int j, int k) const {
     Corners corners{};
     for (int c = 0; c < 8; ++c) {
-      corners[static_cast<std::size_t>(c)] = values_[index(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
+      corners[c] = values_[index(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
     }
     return corners;
   }

@@ -130,7 +130,7 @@ Field make_shape(const std::string& text) {
     }
     const ShapeParameter& parameter =
         named(kind.parameters, std::string_view{item}.substr(0, equals), subject + ": parameter");
-    values[static_cast<std::size_t>(&parameter - kind.parameters.data())] =
+    values[&parameter - kind.parameters.data()] =
         number(std::string_view{item}.substr(equals + 1), parameter, subject + ": " + std::string{parameter.name});
   }
   return kind.build(values);

@@ -84,8 +84,8 @@ double farthest_mm(const model::Grid& grid, int count, const float* slices) {
 
 }  // namespace
 
-Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
-  Content content;
+FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
+  FillSummary content;
   double voxels = 0;
   content.vote = part.fill(grid, [&](int k0, int count, const float* slices) {
     const std::size_t size = grid.slice_size() * static_cast<std::size_t>(count);
@@ -108,7 +108,7 @@ Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink) {
   return content;
 }
 
-Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
+Json figures(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
              const Writable& room) {
   const Point size = part.extent.box.size();
   Json report{{"volume_mm3", content.volume_mm3 / stretch_z},  // of the print, not of the stretched target

@@ -18,7 +18,7 @@ namespace vam::solid {
 /// A placed part: where it is, and how to cover a grid with it.
 struct Part {
   std::string subject;  // begins messages: the file's name, or "--shape gyroid"
-  Extent extent;
+  PlacedExtent extent;
   Affine map;                    // from the file's coordinates to the target's frame
   std::optional<Repair> repair;  // of a mesh
   bool voted = false;            // inside is found by vote
@@ -50,7 +50,7 @@ struct ImageStack {
 [[nodiscard]] Part image_part(ImageStack stack, const std::string& subject, double voxel_mm, double stretch_z);
 
 /// What a filled grid holds.
-struct Content {
+struct FillSummary {
   double volume_mm3 = 0;    // in the target's frame, stretched along z
   long solid_voxels = 0;    // coverage 1
   long surface_voxels = 0;  // coverage between 0 and 1
@@ -59,10 +59,10 @@ struct Content {
 };
 
 /// Fills the grid and hands each slab on. Throws Fault::data when nothing is covered.
-Content fill(const Part& part, const model::Grid& grid, const SliceSink& sink);
+FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sink);
 
 /// Contents of --report: volume and size of the print (not of the stretched target), the grid, repairs.
-[[nodiscard]] Json figures(const Part& part, const Content& content, const model::Grid& grid, double stretch_z,
+[[nodiscard]] Json figures(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
                            const Writable& room);
 
 }  // namespace vam::solid

@@ -19,8 +19,8 @@ Offsets offsets(const ImageStack& stack, const model::Grid& grid) {
           static_cast<int>(std::floor((grid.ny - stack.height) / 2.0))};
 }
 
-Extent image_extent(const ImageStack& stack, double voxel_mm, double stretch_z) {
-  Extent result;
+PlacedExtent image_extent(const ImageStack& stack, double voxel_mm, double stretch_z) {
+  PlacedExtent result;
   for (int k = 0; k < stack.count; ++k) {
     const Image image = stack.read(k);
     for (int row = 0; row < image.height; ++row) {

@@ -16,12 +16,12 @@ constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the bo
 // A voxel's centre may be that far beyond the surface that cuts the voxel, in voxels: half the diagonal in the plane.
 constexpr double beyond_surface = 0.5 * std::numbers::sqrt2;
 
-using ExtentUnder = std::function<Extent(const Affine&)>;
+using ExtentUnder = std::function<PlacedExtent(const Affine&)>;
 
 Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room, const std::string& subject) {
   Affine map = rotation(placement.rotate_deg) * scaling({placement.scale, placement.scale, placement.scale});
-  Extent part = under(map);
-  const auto centred = [](const Affine& m, const Extent& e) {
+  PlacedExtent part = under(map);
+  const auto centred = [](const Affine& m, const PlacedExtent& e) {
     Affine moved = m;
     moved.shift = moved.shift - e.box.centre();
     return moved;
@@ -66,11 +66,11 @@ Writable writable(const model::Printer& printer, double radius_mm) {
           (projector.axis_row + 0.5) * projector.pixel_mm};
 }
 
-Extent extent(const model::TriangleSoup& soup) {
-  Extent result;
+PlacedExtent extent(const model::TriangleSoup& soup) {
+  PlacedExtent result;
   for (const auto& triangle : soup.triangles) {
     for (const int index : triangle) {
-      const Point& p = soup.points[static_cast<std::size_t>(index)];
+      const Point& p = soup.points[index];
       result.box.add(p);
       result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
     }
@@ -78,15 +78,15 @@ Extent extent(const model::TriangleSoup& soup) {
   return result;
 }
 
-Extent extent(const Field& field) { return {field.box, field.radius_mm}; }
+PlacedExtent extent(const Field& field) { return {field.box, field.radius_mm}; }
 
 Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
              const std::string& subject) {
   const auto under = [&](const Affine& map) {
-    Extent result;
+    PlacedExtent result;
     for (const auto& triangle : soup.triangles) {
       for (const int index : triangle) {
-        const Point p = map(soup.points[static_cast<std::size_t>(index)]);
+        const Point p = map(soup.points[index]);
         result.box.add(p);
         result.radius_mm = std::max(result.radius_mm, std::hypot(p[0], p[1]));
       }
@@ -108,7 +108,7 @@ void transform(model::TriangleSoup& soup, const Affine& map) {
   }
 }
 
-model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
+model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
                         const std::string& subject) {
   const double odd = lattice.odd_side ? 1 : 0;
   const double half = std::ceil(std::max(part.radius_mm, radius_mm) / voxel_mm - 0.5 * odd - 1e-9) + 1;
@@ -129,7 +129,7 @@ void require_lit(double farthest_mm, const Writable& room, double voxel_mm, cons
   require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach");
 }
 
-void require_writable(const Extent& part, const Writable& room, double voxel_mm, const std::string& subject) {
+void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject) {
   require_radius(part.radius_mm, room, voxel_mm, subject + ": reaches");
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
@@ -139,7 +139,7 @@ void require_writable(const Extent& part, const Writable& room, double voxel_mm,
   }
 }
 
-void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject) {
+void require_within(const PlacedExtent& insert, double vial_radius_mm, const std::string& subject) {
   if (insert.radius_mm <= vial_radius_mm) return;
   throw Error{Fault::data, subject + ": reaches " + format_number(insert.radius_mm, 4) +
                                " mm from the axis, beyond the vial's inner radius of " +

@@ -33,12 +33,12 @@ struct Writable {
 [[nodiscard]] Writable writable(const model::Printer& printer, double radius_mm);
 
 /// Extent of a placed part.
-struct Extent {
+struct PlacedExtent {
   Bounds box;
   double radius_mm = 0;  // about the z axis
 };
-[[nodiscard]] Extent extent(const model::TriangleSoup& soup);
-[[nodiscard]] Extent extent(const Field& field);
+[[nodiscard]] PlacedExtent extent(const model::TriangleSoup& soup);
+[[nodiscard]] PlacedExtent extent(const Field& field);
 
 /// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size, or when
 /// voxels are too large for fit_writable.
@@ -59,16 +59,16 @@ struct Lattice {
 
 /// The smallest grid around the axis that holds the part with one voxel to spare in x and y, and at least `radius_mm`
 /// in every direction; nx = ny. Throws Fault::data above 4096 voxels a side.
-[[nodiscard]] model::Grid grid_around(const Extent& part, double voxel_mm, double radius_mm, const Lattice& lattice,
-                                      const std::string& subject);
+[[nodiscard]] model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm,
+                                      const Lattice& lattice, const std::string& subject);
 
 /// Throws Fault::data, with both numbers, also in voxels, and the remedy, when the part leaves the writable cylinder.
-void require_writable(const Extent& part, const Writable& room, double voxel_mm, const std::string& subject);
+void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject);
 
 /// The same for the centre of the farthest voxel that the part covers: what vam-optimize looks at.
 void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject);
 
 /// Throws Fault::data when an insert is wider than the vial.
-void require_within(const Extent& insert, double vial_radius_mm, const std::string& subject);
+void require_within(const PlacedExtent& insert, double vial_radius_mm, const std::string& subject);
 
 }  // namespace vam::solid

@@ -39,7 +39,7 @@ std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Gri
   triangles.reserve(mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
     Corners corners{};
-    for (std::size_t c = 0; c < 3; ++c) corners[c] = points[static_cast<std::size_t>(triangle[c])];
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = points[triangle[c]];
     const double low = std::min({corners[0][2], corners[1][2], corners[2][2]});
     const double high = std::max({corners[0][2], corners[1][2], corners[2][2]});
     if (low > -rounding && high < grid.nz + rounding) {
@@ -72,7 +72,7 @@ Bins::Bins(const std::vector<Corners>& triangles, std::size_t axis, int layers)
   members_.resize(first_.back());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = spans[t].first; k <= spans[t].last; ++k) {
-      members_[next[static_cast<std::size_t>(k)]++] = static_cast<int>(t);
+      members_[next[k]++] = static_cast<int>(t);
     }
   }
 }
@@ -88,7 +88,7 @@ Moment moment(const Polygon& piece, std::size_t axis) {
   const Vector3& a = piece.corners[0];
   Moment result;
   for (int i = 1; i + 1 < piece.count; ++i) {
-    const Vector3& b = piece.corners[static_cast<std::size_t>(i)];
+    const Vector3& b = piece.corners[i];
     const Vector3& c = piece.corners[static_cast<std::size_t>(i) + 1];
     const double area = 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]));
     result.area += area;
@@ -99,14 +99,14 @@ Moment moment(const Polygon& piece, std::size_t axis) {
 
 void Rows::reset(int rows, int voxels) {
   length_ = voxels + 1;
-  values_.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length_));
-  touched_.assign(static_cast<std::size_t>(rows), 0);
+  values_.resize(rows * static_cast<std::size_t>(length_));
+  touched_.assign(rows, 0);
 }
 
 double* Rows::operator[](int row) {
   double* begin = values_.data() + static_cast<std::ptrdiff_t>(row) * length_;
   if (!touched(row)) {
-    touched_[static_cast<std::size_t>(row)] = 1;
+    touched_[row] = 1;
     std::fill(begin, begin + length_, 0.0);
   }
   return begin;

@@ -21,7 +21,7 @@ struct SliceSums {
 };
 
 std::size_t column(const model::Grid& grid, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) + static_cast<std::size_t>(i);
+  return static_cast<std::size_t>(j) * grid.nx + static_cast<std::size_t>(i);
 }
 
 // For every column along z the total of its pieces, which is 0 unless a hole lies above or below.
@@ -30,7 +30,7 @@ std::vector<double> column_totals(const std::vector<Corners>& triangles, const m
   const Bins bins(triangles, 1, grid.ny);
   parallel_for(grid.ny, [&](int j) {
     for (const int t : bins[j]) {
-      const Polygon strip = layer(polygon(triangles[static_cast<std::size_t>(t)]), 1, j, grid.ny);
+      const Polygon strip = layer(polygon(triangles[t]), 1, j, grid.ny);
       if (strip.count < 3) continue;
       for_each_layer(strip, 0, grid.nx,
                      [&](int i, const Polygon& piece) { totals[column(grid, i, j)] -= moment(piece, 2).area; });
@@ -46,7 +46,7 @@ void enter_slice(const std::vector<Corners>& triangles, std::span<const int> mem
   sums.z_own.assign(grid.slice_size(), 0.0);
   sums.z_behind.assign(grid.slice_size(), 0.0);
   for (const int t : members) {
-    const Polygon slice = layer(polygon(triangles[static_cast<std::size_t>(t)]), 2, k, grid.nz);
+    const Polygon slice = layer(polygon(triangles[t]), 2, k, grid.nz);
     if (slice.count < 3) continue;
     for_each_layer(slice, 1, grid.ny, [&](int j, const Polygon& strip) {
       for_each_layer(strip, 0, grid.nx, [&](int i, const Polygon& piece) {
@@ -79,7 +79,7 @@ float median(Ends x, Ends y, Ends z) {
 void decide_slice(const model::Grid& grid, const std::vector<double>& z_totals, SliceSums& sums, float* out) {
   std::vector<double> y_totals(static_cast<std::size_t>(grid.nx), 0.0);
   for (int i = 0; i < grid.nx; ++i) {
-    if (sums.y.touched(i)) y_totals[static_cast<std::size_t>(i)] = sums.y.accumulate(i);
+    if (sums.y.touched(i)) y_totals[i] = sums.y.accumulate(i);
   }
   for (int j = 0; j < grid.ny; ++j) {
     const bool any_x = sums.x.touched(j);
@@ -88,7 +88,7 @@ void decide_slice(const model::Grid& grid, const std::vector<double>& z_totals, 
     for (int i = 0; i < grid.nx; ++i) {
       const std::size_t at = column(grid, i, j);
       const Ends x = any_x ? ends(x_sums[i], x_total) : Ends{0, 0};
-      const Ends y = sums.y.touched(i) ? ends(sums.y[i][j], y_totals[static_cast<std::size_t>(i)]) : Ends{0, 0};
+      const Ends y = sums.y.touched(i) ? ends(sums.y[i][j], y_totals[i]) : Ends{0, 0};
       out[at] = median(x, y, ends(sums.z_own[at], z_totals[at]));
     }
   }
@@ -144,12 +144,11 @@ Vote vote(const std::vector<Corners>& triangles, const model::Grid& grid, const 
   Vote all;
   for (int k0 = 0; k0 < grid.nz; k0 += slab) {
     const int count = std::min(slab, grid.nz - k0);
-    parallel_for(count,
-                 [&](int s) { enter_slice(triangles, bins[k0 + s], grid, k0 + s, sums[static_cast<std::size_t>(s)]); });
+    parallel_for(count, [&](int s) { enter_slice(triangles, bins[k0 + s], grid, k0 + s, sums[s]); });
     parallel_for(grid.ny, [&](int j) {
       for (std::size_t at = column(grid, 0, j); at < column(grid, 0, j + 1); ++at) {
         for (int s = 0; s < count; ++s) {
-          SliceSums& slice = sums[static_cast<std::size_t>(s)];
+          SliceSums& slice = sums[s];
           slice.z_own[at] += below[at];
           below[at] += slice.z_behind[at];
         }
@@ -157,14 +156,13 @@ Vote vote(const std::vector<Corners>& triangles, const model::Grid& grid, const 
     });
     parallel_for(count, [&](int s) {
       float* out = slices.data() + static_cast<std::size_t>(s) * grid.slice_size();
-      decide_slice(grid, z_totals, sums[static_cast<std::size_t>(s)], out);
+      decide_slice(grid, z_totals, sums[s], out);
       const long open = settle_undecided(grid, out);
-      votes[static_cast<std::size_t>(s)] = {
-          std::count_if(out, out + grid.slice_size(), [](float c) { return c > 0.5F; }), open};
+      votes[s] = {std::count_if(out, out + grid.slice_size(), [](float c) { return c > 0.5F; }), open};
     });
     for (int s = 0; s < count; ++s) {
-      all.inside += votes[static_cast<std::size_t>(s)].inside;
-      all.undecided += votes[static_cast<std::size_t>(s)].undecided;
+      all.inside += votes[s].inside;
+      all.undecided += votes[s].undecided;
     }
     sink(k0, count, slices.data());
   }

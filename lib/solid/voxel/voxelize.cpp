@@ -15,7 +15,7 @@ void slice_exact(const std::vector<Corners>& triangles, std::span<const int> mem
                  Rows& rows, float* out) {
   rows.reset(grid.ny, grid.nx);
   for (const int t : members) {
-    const Polygon slice = layer(polygon(triangles[static_cast<std::size_t>(t)]), 2, k, grid.nz);
+    const Polygon slice = layer(polygon(triangles[t]), 2, k, grid.nz);
     if (slice.count < 3) continue;
     for_each_layer(slice, 1, grid.ny, [&](int j, const Polygon& strip) {
       double* row = rows[j];
@@ -46,7 +46,7 @@ Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fil
     const int count = std::min(slab, grid.nz - k0);
     parallel_for(count, [&](int s) {
       float* out = slices.data() + static_cast<std::size_t>(s) * grid.slice_size();
-      slice_exact(triangles, bins[k0 + s], grid, k0 + s, rows[static_cast<std::size_t>(s)], out);
+      slice_exact(triangles, bins[k0 + s], grid, k0 + s, rows[s], out);
     });
     sink(k0, count, slices.data());
   }

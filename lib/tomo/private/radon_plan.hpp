@@ -46,13 +46,13 @@ inline void set_first(Gather& job, std::size_t r, double centre) {
 inline constexpr int segment = 16;
 
 /// Slabs are taken 4, 2 or 1 at a time.
-struct Group {
+struct SlabGroup {
   std::size_t first;
   std::size_t slabs;
   [[nodiscard]] std::size_t log2() const { return slabs / 2; }
   [[nodiscard]] std::ptrdiff_t pitch() const { return static_cast<std::ptrdiff_t>(slabs) * lanes; }
 };
-std::vector<Group> make_groups(std::size_t slabs);
+std::vector<SlabGroup> make_groups(std::size_t slabs);
 
 /// Where the kernel's eight input rows come from.
 using Rows = std::array<Interleave, gather_rows>;

@@ -104,7 +104,7 @@ double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, P
   std::nth_element(errors.begin(),
                    errors.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(errors.size())),
                    errors.end());
-  return errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size()))];
+  return errors[errors.size() * 99 / 100];
 }
 
 }  // namespace

@@ -40,14 +40,14 @@ void write_by_openexr(const std::string& path, const model::StackInfo& info, Imf
   Imf::MultiPartOutputFile file(path.c_str(), headers.data(), info.count);
   std::vector<Image> images;
   std::vector<Imf::OutputPart> parts;
-  std::vector<std::uint16_t> alpha(static_cast<std::size_t>(info.width) * static_cast<std::size_t>(info.height));
+  std::vector<std::uint16_t> alpha(static_cast<std::size_t>(info.width) * info.height);
   for (int i = 0; i < info.count; ++i) images.push_back(pattern(info.width, info.height, i));
   for (int i = 0; i < info.count; ++i) {
     parts.emplace_back(file, i);
     Imf::FrameBuffer pixels;
-    const auto window = headers[static_cast<std::size_t>(i)].dataWindow();
+    const auto window = headers[i].dataWindow();
     pixels.insert("A", Imf::Slice::Make(Imf::HALF, alpha.data(), window));
-    pixels.insert("Y", Imf::Slice::Make(Imf::FLOAT, images[static_cast<std::size_t>(i)].values.data(), window));
+    pixels.insert("Y", Imf::Slice::Make(Imf::FLOAT, images[i].values.data(), window));
     parts.back().setFrameBuffer(pixels);
   }
   const int step = interleaved ? 1 : info.height;

@@ -116,11 +116,11 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
   info.space = model::Space::camera;
   std::vector<model::ImageInfo> facts(6);
   for (int i = 0; i < 6; ++i) {
-    facts[static_cast<std::size_t>(i)] = {1.5, 60.0 * i + 0.01 * i * i, 0.1 * i, true, true};
+    facts[i] = {1.5, 60.0 * i + 0.01 * i * i, 0.1 * i, true, true};
   }
   const auto write = [&](const std::string& path, bool known) {
     StackWriter writer = known ? StackWriter(path, info, facts) : StackWriter(path, info);
-    for (int i = 0; i < 6; ++i) writer.write(pattern(4, 3, i), facts[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 6; ++i) writer.write(pattern(4, 3, i), facts[i]);
     writer.commit();
   };
   for (const bool known : {true, false}) {
@@ -138,13 +138,13 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
       Image image;
       model::ImageInfo about;
       for (int i = 0; reader.next(image, about); ++i) {
-        const auto& wanted = facts[static_cast<std::size_t>(i)];
+        const auto& wanted = facts[i];
         CHECK(about.has_angle);
         CHECK(about.has_time);
         CHECK(about.angle_deg == wanted.angle_deg);
         CHECK(about.time_s == wanted.time_s);
         CHECK(about.z_mm == 1.5);
-        CHECK(reader.about()[static_cast<std::size_t>(i)].angle_deg == wanted.angle_deg);
+        CHECK(reader.about()[i].angle_deg == wanted.angle_deg);
         CHECK(image.values == pattern(4, 3, i).values);
       }
       CHECK(read_by_openexr(folder / "a.exr", 5).values == pattern(4, 3, 5).values);

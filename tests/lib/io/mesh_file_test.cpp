@@ -29,9 +29,9 @@ const std::vector<std::array<int, 4>> box_faces{{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 
 double volume(const TriangleSoup& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
-    const auto& a = mesh.points[static_cast<std::size_t>(t[0])];
-    const auto& b = mesh.points[static_cast<std::size_t>(t[1])];
-    const auto& c = mesh.points[static_cast<std::size_t>(t[2])];
+    const auto& a = mesh.points[t[0]];
+    const auto& b = mesh.points[t[1]];
+    const auto& c = mesh.points[t[2]];
     sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
   return sum / 6;
@@ -86,7 +86,7 @@ std::string box_ascii_stl() {
   for (const auto& t : mesh.triangles) {
     text += " facet normal 0 0 0\n  outer loop\n";
     for (const int i : t) {
-      const auto& p = mesh.points[static_cast<std::size_t>(i)];
+      const auto& p = mesh.points[i];
       text += "   vertex " + std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + "\n";
     }
     text += "  endloop\n endfacet\n";

@@ -73,10 +73,9 @@ inline std::vector<float> by_blocks(const std::string& path, const std::string& 
       for (int x = std::max(block.i, 0); x < std::min(block.i + block.edge, grid.nx); ++x) {
         for (int y = std::max(block.j, 0); y < std::min(block.j + block.edge, grid.ny); ++y) {
           for (int z = std::max(block.k, 0); z < std::min(block.k + block.edge, grid.nz); ++z) {
-            const auto at =
-                (static_cast<std::size_t>(z) * static_cast<std::size_t>(grid.ny) + static_cast<std::size_t>(y)) *
-                    static_cast<std::size_t>(grid.nx) +
-                static_cast<std::size_t>(x);
+            const auto at = (static_cast<std::size_t>(z) * grid.ny + static_cast<std::size_t>(y)) *
+                                static_cast<std::size_t>(grid.nx) +
+                            static_cast<std::size_t>(x);
             const int place = ((x - block.i) * 8 + (y - block.j)) * 8 + (z - block.k);
             values[at] = block.values != nullptr ? block.values[place] : block.value;
             ++times[at];

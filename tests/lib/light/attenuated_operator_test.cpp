@@ -62,7 +62,7 @@ TEST_CASE("1/mu = R: a gyroid keeps its process window when absorption is in the
   const AttenuatedOperator absorbing(turn, 2.0 / size, size / 2.0);
   const auto solve = [&](const Operator& light, Iterate& state) {
     const auto method = make_method("apg", {});
-    iterate(*method, problem, light, {.iterations = 40, .until = {}, .patience = 0}, state);
+    run_method(*method, problem, light, {.iterations = 40, .until = {}, .patience = 0}, state);
     return metrics(state.dose, problem)[0].pw;
   };
   Iterate without;

@@ -20,7 +20,7 @@ std::vector<Image> blurred(const std::vector<Image>& in, double sigma_px) {
 
 std::vector<Image> point(int n, int x, int y, int z) {
   std::vector<Image> volume(static_cast<std::size_t>(n), Image(n, n));
-  volume[static_cast<std::size_t>(z)](x, y) = 1;
+  volume[z](x, y) = 1;
   return volume;
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("a point becomes a Gaussian, wherever it is") {
       for (int j = 0; j < 17; ++j) {
         for (int i = 0; i < 17; ++i) {
           const double want = at(i - 9) * at(j - 2) * at(k - z);
-          most = std::max(most, std::abs(out[static_cast<std::size_t>(k)](i, j) - want));
+          most = std::max(most, std::abs(out[k](i, j) - want));
         }
       }
     }

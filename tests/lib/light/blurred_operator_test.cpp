@@ -160,7 +160,7 @@ TEST_CASE("the blur agrees with that of the oracle") {
   float worst = 0;
   light::VolumeBlur blur(1.3, [&](const vam::Image& slice) {
     for (std::size_t i = 0; i < slice.values.size(); ++i) {
-      worst = std::max(worst, std::abs(slice.values[i] - want[static_cast<std::size_t>(k)].values[i]));
+      worst = std::max(worst, std::abs(slice.values[i] - want[k].values[i]));
     }
     ++k;
   });
@@ -183,7 +183,7 @@ TEST_CASE("a part compensated for the blur prints better under it than one that 
   const BlurredOperator blurred(sharp, sigma_px, lanes);
   const auto run = [&](const Operator& light) {
     Iterate state;
-    iterate(*make_method("apg", {}), problem, light, {.iterations = 40, .until = {}, .patience = 0}, state);
+    run_method(*make_method("apg", {}), problem, light, {.iterations = 40, .until = {}, .patience = 0}, state);
     return judged(sharp, state.g, problem, sigma_px);
   };
   const auto without = run(sharp);
@@ -208,7 +208,7 @@ TEST_CASE("slices that share dose decide together, so that doses stay those of t
   for (const std::string name : {"apg", "cal", "pm", "bclp"}) {
     CAPTURE(name);
     Iterate state;
-    iterate(*make_method(name, {}), problem, light, {.iterations = 12, .until = {}, .patience = 0}, state);
+    run_method(*make_method(name, {}), problem, light, {.iterations = 12, .until = {}, .patience = 0}, state);
     auto dose = slabs(1, size, size);
     light.adjoint(state.g, dose);
     float worst = 0;

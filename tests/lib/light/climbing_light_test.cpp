@@ -64,7 +64,7 @@ Difference compare(const Bench& b, const std::function<double(int, int, int)>& i
   for (int r = 0; r < b.slow.rows; ++r) {
     for (int a = 0; a < b.slow.angles; ++a) {
       for (int c = 0; c < b.slow.columns; ++c) {
-        rows[static_cast<std::size_t>(r)](c, a) = static_cast<float>(intensity(c, r, a));
+        rows[r](c, a) = static_cast<float>(intensity(c, r, a));
       }
     }
   }
@@ -119,7 +119,7 @@ TEST_CASE("projections that jump from pixel to pixel are read over the pixel's o
   std::mt19937 random(7);
   std::vector<double> noise(48 * 20 * 30);
   for (double& v : noise) v = static_cast<double>(random() % 1000) / 500;
-  const auto rough = [&](int c, int r, int a) { return noise[static_cast<std::size_t>((a * 20 + r) * 48 + c)]; };
+  const auto rough = [&](int c, int r, int a) { return noise[(a * 20 + r) * 48 + c]; };
   const Difference d = compare(bench(90, -1.8, 0, 1, 0), rough);
   CHECK(d.rms < 7e-3);  // no more than of smooth light: the grain again
   CHECK(std::abs(d.mean) < 2e-3);

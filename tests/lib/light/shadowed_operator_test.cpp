@@ -97,7 +97,7 @@ TEST_CASE("a handle around a screwdriver's shaft: at least 98 % of the voxels ar
   CHECK(exclude_dark(problem, light) ==
         std::vector<std::int64_t>(lanes, 0));  // round a convex insert everything can be lit from half the angles
   Iterate state;
-  iterate(*make_method("apg", {}), problem, light, {.iterations = 20, .until = {}, .patience = 0}, state);
+  run_method(*make_method("apg", {}), problem, light, {.iterations = 20, .until = {}, .patience = 0}, state);
   const auto m = metrics(state.dose, problem)[0];
   vam::model::DoseStatistics at(m.iou_threshold);
   for (std::size_t i = 0; i < problem.labels[0].size(); i += lanes)

@@ -38,8 +38,7 @@ SweepScan swept(const vam::oracle::SweepTruth& truth, double pitch_px, double fi
   for (double column = first; column <= last; column += pitch_px) {
     scan.column.push_back(column);
     const auto means = band_means(bench.frame(column, scan.width_px, height_mm, 32, random), bands);
-    for (int b = 0; b < bands; ++b)
-      scan.signal[static_cast<std::size_t>(b)].push_back(means[static_cast<std::size_t>(b)]);
+    for (int b = 0; b < bands; ++b) scan.signal[b].push_back(means[b]);
   }
   return scan;
 }

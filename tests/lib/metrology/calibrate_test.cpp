@@ -244,8 +244,7 @@ TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
 
 TEST_CASE("Half maximum: between pixels, and only with dark on both sides") {
   std::vector<double> profile(40);
-  for (int i = 0; i < 40; ++i)
-    profile[static_cast<std::size_t>(i)] = 5 + 100 * std::clamp(10.0 - std::abs(i - 20.25), 0.0, 4.0) / 4;
+  for (int i = 0; i < 40; ++i) profile[i] = 5 + 100 * std::clamp(10.0 - std::abs(i - 20.25), 0.0, 4.0) / 4;
   const auto extent = half_maximum(profile);
   REQUIRE(extent);
   CHECK(extent->middle() == doctest::Approx(20.25));

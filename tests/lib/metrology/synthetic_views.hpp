@@ -43,22 +43,21 @@ struct Summing {
 };
 
 /// Noise is Gaussian, seeded, its deviation in the units of the views.
-inline std::vector<metrology::View> take_views(const vam::oracle::CameraBench& camera,
-                                               const vam::oracle::Density& density,
-                                               const std::vector<double>& angles_deg, double noise, int binning,
-                                               const Summing& summing = {}) {
+inline std::vector<metrology::CameraView> take_views(const vam::oracle::CameraBench& camera,
+                                                     const vam::oracle::Density& density,
+                                                     const std::vector<double>& angles_deg, double noise, int binning,
+                                                     const Summing& summing = {}) {
   const vam::oracle::Camera eye(camera, summing.step_mm, summing.reach_mm);
-  std::vector<metrology::View> views(angles_deg.size());
+  std::vector<metrology::CameraView> views(angles_deg.size());
   parallel_for(static_cast<int>(views.size()), [&](int i) {
     Image raw(camera.columns, camera.rows);
-    raw.values = eye.view(density, angles_deg[static_cast<std::size_t>(i)]);
+    raw.values = eye.view(density, angles_deg[i]);
     std::mt19937 random(static_cast<unsigned>(i) + 1);
     std::normal_distribution<float> normal(0, static_cast<float>(noise));
     if (noise > 0) {
       for (float& value : raw.values) value += normal(random);
     }
-    views[static_cast<std::size_t>(i)] = {metrology::corrected(raw, {}, binning, "view"),
-                                          angles_deg[static_cast<std::size_t>(i)]};
+    views[i] = {metrology::corrected(raw, {}, binning, "view"), angles_deg[i]};
   });
   return views;
 }
@@ -95,7 +94,7 @@ class FineDensity {
     const auto j = static_cast<long>((y - low_[1]) / pitch_mm_ + 0.5);
     const auto k = static_cast<long>((z - low_[2]) / pitch_mm_ + 0.5);
     if (i < 0 || j < 0 || k < 0 || i >= count_[0] || j >= count_[1] || k >= count_[2]) return 0;
-    return inside_[static_cast<std::size_t>((k * count_[1] + j) * count_[0] + i)];
+    return inside_[(k * count_[1] + j) * count_[0] + i];
   }
 
  private:

@@ -100,7 +100,7 @@ TEST_CASE("uniform angles from non-uniform ones reproduce a sinusoid") {
     double sum = 0;
     double weight = 0;
     for (const auto& tap : grid.taps(a)) {
-      sum += static_cast<double>(tap.weight) * std::cos(angles[static_cast<std::size_t>(tap.frame)] * rad_per_deg);
+      sum += static_cast<double>(tap.weight) * std::cos(angles[tap.frame] * rad_per_deg);
       weight += static_cast<double>(tap.weight);
     }
     CHECK(weight == doctest::Approx(1));

@@ -207,7 +207,7 @@ TEST_CASE("flatland: the frames of a turn add up to the dose in closed form") {
     const double t = (c - 100) * detector_mm;
     projection.push_back(static_cast<float>(std::exp(-t * t / (2 * s_mm * s_mm))));
   }
-  const Canvas canvas{61, 41, 0.2, 28, 22.5};
+  const ImagePlane canvas{61, 41, 0.2, 28, 22.5};
   const int frames = 360;
   std::vector<double> sum(61 * 41, 0.0);
   for (int n = 0; n < frames; ++n) {
@@ -221,7 +221,7 @@ TEST_CASE("flatland: the frames of a turn add up to the dose in closed form") {
       const double r_mm = 0.2 * std::hypot(x - 28, y - 22.5);
       const double q = r_mm * r_mm / (4 * s_mm * s_mm);
       const double dose = 2 * std::numbers::pi * std::exp(-q) * std::cyl_bessel_i(0.0, q);
-      worst = std::max(worst, std::abs(sum[static_cast<std::size_t>(y * 61 + x)] - dose) / (2 * std::numbers::pi));
+      worst = std::max(worst, std::abs(sum[y * 61 + x] - dose) / (2 * std::numbers::pi));
     }
   }
   CHECK(worst < 1e-3);  // linear interpolation errs by h^2 / 8 s^2 = 5.6e-4 at the crest
@@ -237,7 +237,7 @@ TEST_CASE("flatland: the frames of a made-up sinogram add up to a plain back-pro
       sinogram(c, a) = static_cast<float>(std::exp(-t * t / 0.02));
     }
   }
-  const Canvas canvas{31, 31, 0.1, 15, 15};
+  const ImagePlane canvas{31, 31, 0.1, 15, 15};
   Image sum(31, 31);
   for (int n = 0; n < 24; ++n) {
     const Image frame = smear(projection_at(sinogram, info, n * 15.0, 15), 0.1, n * std::numbers::pi / 12, canvas);

@@ -62,7 +62,7 @@ TEST_CASE("A sweep lights every column exactly once") {
   std::vector<int> times(64);
   for (int n = 0; n < pattern_frames(plan, projector); ++n) {
     const GreyImage image = pattern_frame(plan, projector, n);
-    for (int x = 0; x < 64; ++x) times[static_cast<std::size_t>(x)] += image(x, 7) > 0 ? 1 : 0;
+    for (int x = 0; x < 64; ++x) times[x] += image(x, 7) > 0 ? 1 : 0;
   }
   CHECK(times == std::vector<int>(64, 1));
 }

@@ -33,7 +33,7 @@ Problem problem_of(const std::vector<float>& slice, const Demands& demands, cons
 Iterate solve(const Problem& problem, const std::string& name, int iterations) {
   const ParallelOperator light(parts::turn(size, 180));
   Iterate state;
-  iterate(*make_method(name, {}), problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
+  run_method(*make_method(name, {}), problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
   return state;
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("the band around the surface: every voxel against every other") {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> uniform(0, 1);
   std::vector<float> volume(static_cast<std::size_t>(n * n * slices));
-  const auto at = [&](int x, int y, int z) -> float& { return volume[static_cast<std::size_t>((z * n + y) * n + x)]; };
+  const auto at = [&](int x, int y, int z) -> float& { return volume[(z * n + y) * n + x]; };
   for (int z = 0; z < slices; ++z) {  // a ball and grains
     for (int y = 0; y < n; ++y) {
       for (int x = 0; x < n; ++x) {
@@ -101,7 +101,7 @@ TEST_CASE("the band around the surface: every voxel against every other") {
               }
             }
           }
-          const bool free = weight[static_cast<std::size_t>(y * n + x)] == 0.0F;
+          const bool free = weight[y * n + x] == 0.0F;
           if (free != (nearest - 0.5 <= reach + 1e-6)) ++wrong;
         }
       }
@@ -115,7 +115,7 @@ TEST_CASE("weights: voxels of weight 0 are unconstrained, and errors move to whe
   std::vector<float> weight(target.size(), 1.0F);
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
-      if (x >= size / 2) weight[static_cast<std::size_t>(y * size + x)] = 0.02F;
+      if (x >= size / 2) weight[y * size + x] = 0.02F;
     }
   }
   // Few angles and a wide window, so that errors remain.
@@ -182,7 +182,7 @@ TEST_CASE("response curves: slope and area are derivative and integral, doses() 
             doctest::Approx((curve.area(dose + h) - curve.area(dose - h)) / (2 * h)).epsilon(0.02).scale(1));
     }
     for (const float wanted : {0.0F, 0.3F, 0.6F, 1.0F}) {
-      const Bounds b = curve.doses(wanted, 0.1F);
+      const DoseRange b = curve.doses(wanted, 0.1F);
       CAPTURE(wanted);
       if (std::isfinite(b.low)) CHECK(curve.response(b.low) == doctest::Approx(wanted - 0.1F).epsilon(1e-4));
       if (std::isfinite(b.high)) CHECK(curve.response(b.high) == doctest::Approx(wanted + 0.1F).epsilon(1e-4));

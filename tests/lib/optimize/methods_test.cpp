@@ -161,7 +161,7 @@ TEST_CASE("osmo's and cal's loss never rises: osmo's by itself, cal's by line se
   const CureCurve& curve = problem.demands.curve;
   // cal's: the integral of M(x) - f, for part less its value at a dose of 2 so that 0 is the least.
   const auto cross = [&](std::size_t s, std::size_t i, float x) {
-    if (!asked(problem.labels[s][i])) return 0.0F;
+    if (!is_constrained(problem.labels[s][i])) return 0.0F;
     const float f = problem.target[s].values[i];
     return curve.area(x) - f * x - (f > 0 ? curve.area(2) - 2 * f : 0.0F);
   };
@@ -195,7 +195,7 @@ TEST_CASE("projections are never negative") {
     const auto part = vam::oracle::wheel(64);
     const auto problem = make_problem(part.data(), 1, 64, 64, parts::circle(64), {});
     Iterate state;
-    iterate(*make_method(name, {}), problem, light, {.iterations = 3, .until = {}, .patience = 0}, state);
+    run_method(*make_method(name, {}), problem, light, {.iterations = 3, .until = {}, .patience = 0}, state);
     CHECK(*std::min_element(state.g[0].values.begin(), state.g[0].values.end()) >= 0.0F);
   }
 }

@@ -8,7 +8,7 @@
 
 #include "light/parallel.hpp"
 #include "optimize/methods/metrics.hpp"
-#include "optimize/run/iterate.hpp"
+#include "optimize/run/run_method.hpp"
 
 namespace parts {
 
@@ -35,7 +35,7 @@ inline std::vector<vam::model::DoseMetrics> run(const std::vector<std::vector<fl
       vam::optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, circle(size), demands);
   const auto method = vam::optimize::make_method(name, options);
   vam::optimize::Iterate state;
-  vam::optimize::iterate(*method, problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
+  vam::optimize::run_method(*method, problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
   return vam::optimize::metrics(state.dose, problem);
 }
 

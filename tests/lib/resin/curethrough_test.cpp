@@ -9,7 +9,7 @@
 #include "oracle/beer_law.hpp"
 
 using namespace vam;
-using resin::Exposure;
+using resin::ExposureMode;
 
 namespace {
 
@@ -24,7 +24,7 @@ std::vector<double> random_intensities(int count, double low, double high, unsig
 // Omega at every node by the oracle, against the recursion. The midpoint rule errs by (eta ln 10 / steps)^2 / 24 of the
 // dose: below 1e-9 for the thickest slice here with 2000 steps; 1e-6 is required.
 void compare(const resin::Process& process, std::uint32_t seed) {
-  const resin::Limits limits = resin::limits_of(process);
+  const resin::CureLimits limits = resin::limits_of(process);
   const double critical = resin::critical_intensity_mw_cm2(process);
   const int slices = 30;
   vam::oracle::Print print{process.slice_um * 1e-3, process.absorbance_height_um * 1e-3, process.speed_mm_h / 3600, {}};
@@ -36,17 +36,17 @@ void compare(const resin::Process& process, std::uint32_t seed) {
   CHECK(omega.back() == 0);
   for (int n = 0; n < slices; ++n) {
     const double z = n * print.slice_mm;
-    const double dose = process.exposure == Exposure::continuous ? vam::oracle::continuous_dose_mj_cm3(print, z)
-                                                                 : vam::oracle::layered_dose_mj_cm3(print, z);
+    const double dose = process.exposure == ExposureMode::continuous ? vam::oracle::continuous_dose_mj_cm3(print, z)
+                                                                     : vam::oracle::layered_dose_mj_cm3(print, z);
     const double expected = dose / process.critical_dose_mj_cm3;
-    CHECK(std::fabs(omega[static_cast<std::size_t>(n)] - expected) <= 1e-6 * expected);
+    CHECK(std::fabs(omega[n] - expected) <= 1e-6 * expected);
   }
 }
 
 }  // namespace
 
 TEST_CASE("the recursion is Beer's law integrated over time") {
-  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+  for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
     for (const double absorbance_um : {150.0, 500.0, 2000.0}) {
       resin::Process process;
       process.exposure = exposure;
@@ -61,7 +61,7 @@ TEST_CASE("the recursion is Beer's law integrated over time") {
 TEST_CASE("the dose half way through a slice and the cured thickness agree with Beer's law") {
   resin::Process process;
   process.absorbance_height_um = 300;
-  const resin::Limits limits = resin::limits_of(process);
+  const resin::CureLimits limits = resin::limits_of(process);
   const double critical = resin::critical_intensity_mw_cm2(process);
   vam::oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
   std::vector<double> phi;
@@ -83,8 +83,8 @@ TEST_CASE("the dose half way through a slice and the cured thickness agree with 
 
 TEST_CASE("cured fraction of a layer") {
   resin::Process process;
-  process.exposure = Exposure::layered;
-  const resin::Limits limits = resin::limits_of(process);
+  process.exposure = ExposureMode::layered;
+  const resin::CureLimits limits = resin::limits_of(process);
   CHECK(resin::cured_fraction(2, 0, 1, limits) == 1);
   CHECK(resin::cured_fraction(0.5, 0.1, 1, limits) == 0);
   // Dose 1.02 at the window side falls to 1 after h_a log10(1.02) = 17.2 um = 0.344 slices.
@@ -94,7 +94,7 @@ TEST_CASE("cured fraction of a layer") {
 TEST_CASE("the worked example of the paper") {
   const resin::Process process;
   CHECK(resin::critical_intensity_mw_cm2(process) == doctest::Approx(16.0));  // [physics §9]
-  const resin::Limits limits = resin::limits_of(process);
+  const resin::CureLimits limits = resin::limits_of(process);
   CHECK(limits.q == doctest::Approx(std::pow(10, -0.025)));
   CHECK(limits.hold() == 1);
   CHECK(resin::burst_slices(limits) == 3);  // [CURE19 fig 4]: slices 51..53 beyond the 50
@@ -102,7 +102,7 @@ TEST_CASE("the worked example of the paper") {
 
 TEST_CASE("a burst is the fewest slices that reach the critical dose") {
   for (const double phi_max : {1.001, 1.1, 2.0, 6.3, 17.0, 100.0}) {
-    resin::Limits limits = resin::limits_of({});
+    resin::CureLimits limits = resin::limits_of({});
     limits.phi_max = phi_max;
     const int count = resin::burst_slices(limits);
     const auto reached = [&](int slices) {
@@ -111,7 +111,7 @@ TEST_CASE("a burst is the fewest slices that reach the critical dose") {
     CHECK(reached(count) >= 1 - 1e-9);
     CHECK(reached(count - 1) < 1);
   }
-  resin::Limits weak = resin::limits_of({});
+  resin::CureLimits weak = resin::limits_of({});
   weak.phi_max = 1;
   CHECK(resin::burst_slices(weak) == 0);
 }

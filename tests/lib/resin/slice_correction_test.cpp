@@ -11,7 +11,7 @@
 #include "base/parallel.hpp"
 
 using namespace vam;
-using resin::Exposure;
+using resin::ExposureMode;
 
 namespace {
 
@@ -30,7 +30,7 @@ std::vector<float> random_part(int slices, unsigned seed) {
       const int end = std::min(slices, k + length(random));
       for (; k < end; ++k) {
         const bool kept = solid && p != 7 && (p % 3 != 0 || k < slices - 30);
-        values[static_cast<std::size_t>(k * width * height + p)] = kept ? 0.75F : 0.25F;
+        values[k * width * height + p] = kept ? 0.75F : 0.25F;
       }
       solid = !solid;
     }
@@ -40,11 +40,11 @@ std::vector<float> random_part(int slices, unsigned seed) {
 
 std::vector<std::uint8_t> column_of(const std::vector<float>& values, int slices, int p) {
   std::vector<std::uint8_t> column;
-  for (int k = 0; k < slices; ++k) column.push_back(values[static_cast<std::size_t>(k * width * height + p)] > 0.5F);
+  for (int k = 0; k < slices; ++k) column.push_back(values[k * width * height + p] > 0.5F);
   return column;
 }
 
-resin::PartColumns part_of(const std::vector<float>& values, int slices, Exposure exposure, int batch) {
+resin::PartColumns part_of(const std::vector<float>& values, int slices, ExposureMode exposure, int batch) {
   resin::PartColumns part(width, height, slices, exposure);
   for (int k = 0; k < slices; k += batch) {
     part.append(std::min(batch, slices - k), values.data() + static_cast<std::size_t>(k * width * height), 0.5F);
@@ -52,7 +52,7 @@ resin::PartColumns part_of(const std::vector<float>& values, int slices, Exposur
   return part;
 }
 
-resin::Limits limits_for(Exposure exposure) {
+resin::CureLimits limits_for(ExposureMode exposure) {
   resin::Process process;
   process.exposure = exposure;
   process.absorbance_height_um = 700;
@@ -63,7 +63,7 @@ resin::Limits limits_for(Exposure exposure) {
 
 TEST_CASE("runs of a column are found from any of their nodes") {
   for (const int slices : {1, 63, 64, 65, 200}) {
-    for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+    for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
       const auto values = random_part(slices, static_cast<unsigned>(slices));
       const resin::PartColumns part = part_of(values, slices, exposure, 16);
       for (int p = 0; p < width * height; ++p) {
@@ -71,9 +71,7 @@ TEST_CASE("runs of a column are found from any of their nodes") {
         const auto nodes = resin::nodes_of(slice_bits, exposure);
         REQUIRE(static_cast<int>(nodes.size()) == part.nodes());
         for (int n = 0; n < part.nodes(); ++n) {
-          const auto same = [&](int m) {
-            return nodes[static_cast<std::size_t>(m)] == nodes[static_cast<std::size_t>(n)];
-          };
+          const auto same = [&](int m) { return nodes[m] == nodes[n]; };
           int first = n;
           int last = n;
           while (first > 0 && same(first - 1)) --first;
@@ -81,7 +79,7 @@ TEST_CASE("runs of a column are found from any of their nodes") {
           const resin::NodeRun run = part.run(static_cast<std::size_t>(p), n);
           REQUIRE(run.first == first);
           REQUIRE(run.last == last);
-          REQUIRE(run.inside == (nodes[static_cast<std::size_t>(n)] != 0));
+          REQUIRE(run.inside == (nodes[n] != 0));
         }
       }
     }
@@ -92,8 +90,8 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
   for (const int slices : {1, 63, 64, 65, 200}) {
     CAPTURE(slices);
     const auto values = random_part(slices, static_cast<unsigned>(slices));
-    const resin::PartColumns judge = part_of(values, slices, Exposure::layered, 16);
-    resin::PartColumns part(width, height, slices, Exposure::layered);
+    const resin::PartColumns judge = part_of(values, slices, ExposureMode::layered, 16);
+    resin::PartColumns part(width, height, slices, ExposureMode::layered);
     std::mt19937 random(3);
     for (int p = 0; p < width * height; ++p) {
       const auto column = column_of(values, slices, p);
@@ -105,7 +103,7 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
         const int count = std::min(37, slices - first);
         std::uint64_t bits = ~std::uint64_t{0} << count;  // those beyond `count` do not matter
         for (int b = 0; b < count; ++b) {
-          bits |= static_cast<std::uint64_t>(column[static_cast<std::size_t>(first + b)]) << b;
+          bits |= static_cast<std::uint64_t>(column[first + b]) << b;
         }
         part.put(static_cast<std::size_t>(p), first, count, bits);
       }
@@ -127,7 +125,7 @@ TEST_CASE("columns filled piece by piece, in any order, are those of dense slice
 TEST_CASE("a survey counts features and gaps") {
   const int slices = 150;
   const auto values = random_part(slices, 9);
-  const resin::PartSurvey survey = resin::survey(part_of(values, slices, Exposure::continuous, 50));
+  const resin::PartSurvey survey = resin::survey(part_of(values, slices, ExposureMode::continuous, 50));
   resin::PartSurvey expected;
   expected.gaps.resize(slices + 1);
   for (int p = 0; p < width * height; ++p) {
@@ -135,11 +133,11 @@ TEST_CASE("a survey counts features and gaps") {
     int end = -1;
     bool any = false;
     for (int k = 0; k < slices; ++k) {
-      if (bits[static_cast<std::size_t>(k)] == 0) continue;
+      if (bits[k] == 0) continue;
       any = true;
-      if (k == 0 || bits[static_cast<std::size_t>(k - 1)] == 0) {
+      if (k == 0 || bits[k - 1] == 0) {
         ++expected.features;
-        if (end >= 0) ++expected.gaps[static_cast<std::size_t>(k - end)];
+        if (end >= 0) ++expected.gaps[k - end];
       }
       end = k + 1;
       expected.last_slice = std::max(expected.last_slice, k);
@@ -153,13 +151,13 @@ TEST_CASE("a survey counts features and gaps") {
 }
 
 TEST_CASE("slices in printing order are the columns' exact solutions, on any number of threads") {
-  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+  for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
     const int slices = 130;
-    const resin::Limits limits = limits_for(exposure);
+    const resin::CureLimits limits = limits_for(exposure);
     const auto values = random_part(slices, 77);
     const resin::PartColumns part = part_of(values, slices, exposure, 16);
     const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
-    CHECK(extra == resin::burst_slices(limits) - (exposure == Exposure::layered ? 1 : 0));
+    CHECK(extra == resin::burst_slices(limits) - (exposure == ExposureMode::layered ? 1 : 0));
     for (const double omega_max : {1.0, 2.5, std::numeric_limits<double>::infinity()}) {
       std::vector<std::vector<float>> runs;
       for (const int threads : {1, 3}) {
@@ -177,9 +175,9 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
       for (int p = 0; p < width * height; ++p) {
         const resin::Column column = resin::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
         for (int k = 0; k < slices + extra; ++k) {
-          const double phi = runs[0][static_cast<std::size_t>(k * width * height + p)] * limits.phi_max;
+          const double phi = runs[0][k * width * height + p] * limits.phi_max;
           // float storage of a value up to phi_max: half a unit in the last place
-          CHECK(std::fabs(phi - column.phi[static_cast<std::size_t>(k)]) <= 1e-7 * limits.phi_max);
+          CHECK(std::fabs(phi - column.phi[k]) <= 1e-7 * limits.phi_max);
         }
       }
     }
@@ -187,9 +185,9 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
 }
 
 TEST_CASE("grey levels: rounding never undercures and does not add up") {
-  for (const auto exposure : {Exposure::continuous, Exposure::layered}) {
+  for (const auto exposure : {ExposureMode::continuous, ExposureMode::layered}) {
     const int slices = 130;
-    const resin::Limits limits = limits_for(exposure);
+    const resin::CureLimits limits = limits_for(exposure);
     const auto values = random_part(slices, 3);
     const resin::PartColumns part = part_of(values, slices, exposure, 16);
     const int extra = resin::extra_slices(resin::survey(part).last_slice, slices, limits);
@@ -201,12 +199,12 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     const double bound = limits.gain * widest * limits.phi_max;
     resin::LevelCorrection correction(part, limits, {1}, slices + extra, levels);
     std::vector<std::vector<std::uint16_t>> stack(static_cast<std::size_t>(slices + extra));
-    for (int k = slices + extra; k-- > 0;) correction.previous(stack[static_cast<std::size_t>(k)]);
+    for (int k = slices + extra; k-- > 0;) correction.previous(stack[k]);
     for (int p = 0; p < width * height; ++p) {
       const auto bits = column_of(values, slices, p);
       const resin::Column column = resin::correct_column(bits, limits, {1}, extra);
       std::vector<double> phi;
-      for (const auto& slice : stack) phi.push_back(levels[slice[static_cast<std::size_t>(p)]] * limits.phi_max);
+      for (const auto& slice : stack) phi.push_back(levels[slice[p]] * limits.phi_max);
       const std::vector<double> omega = resin::dose_at_nodes(phi, limits);
       const auto nodes = resin::nodes_of(bits, exposure);
       for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -220,8 +218,8 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
 }
 
 TEST_CASE("an intensity range that cannot print is refused with a remedy") {
-  const resin::PartColumns part = part_of(random_part(40, 1), 40, Exposure::continuous, 8);
-  resin::Limits limits = limits_for(Exposure::continuous);
+  const resin::PartColumns part = part_of(random_part(40, 1), 40, ExposureMode::continuous, 8);
+  resin::CureLimits limits = limits_for(ExposureMode::continuous);
   limits.phi_max = 0.5;
   CHECK_THROWS_WITH_AS(resin::require_printable(limits),
                        "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; increase "
@@ -231,5 +229,5 @@ TEST_CASE("an intensity range that cannot print is refused with a remedy") {
   limits.phi_min = 1.5;
   CHECK_THROWS_AS(resin::require_printable(limits), Error);
   const std::vector<float> falling{0.1F, 0.5F, 0.4F, 1.0F};
-  CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(Exposure::continuous), {1}, 50, falling), Error);
+  CHECK_THROWS_AS(resin::LevelCorrection(part, limits_for(ExposureMode::continuous), {1}, 50, falling), Error);
 }

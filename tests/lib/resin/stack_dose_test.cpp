@@ -27,7 +27,7 @@ std::vector<Image> random_stack(int slices, unsigned seed) {
   return stack;
 }
 
-std::vector<Image> doses(const std::vector<Image>& stack, const resin::Limits& limits) {
+std::vector<Image> doses(const std::vector<Image>& stack, const resin::CureLimits& limits) {
   resin::StackDose dose(limits, limits.phi_max);
   for (const Image& slice : stack) dose.add(slice);
   dose.turn();
@@ -48,7 +48,7 @@ std::vector<Image> doses(const std::vector<Image>& stack, const resin::Limits& l
 
 TEST_CASE("a stack read twice has the doses of its columns") {
   for (const int slices : {1, 31, 32, 33, 64, 150}) {
-    const resin::Limits limits = resin::limits_of({});
+    const resin::CureLimits limits = resin::limits_of({});
     const auto stack = random_stack(slices, static_cast<unsigned>(slices));
     const auto below = doses(stack, limits);
     REQUIRE(below.size() == stack.size());
@@ -71,7 +71,7 @@ TEST_CASE("slices of different sizes are refused") {
 }
 
 TEST_CASE("height errors of the paper's ladder") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   std::vector<std::uint8_t> part(50, 0);
   for (std::size_t n = 0; n < 50; ++n) part[n] = (n / 10) % 2 == 1;
   const auto plain = resin::judge_column(part, resin::plain_column(part, limits), limits);
@@ -98,11 +98,11 @@ TEST_CASE("height errors of the paper's ladder") {
 TEST_CASE("height errors are attributed to the feature whose light cures the gap") {
   // Layered, opaque resin: what is exposed is cured and nothing else.
   resin::Process process;
-  process.exposure = resin::Exposure::layered;
+  process.exposure = resin::ExposureMode::layered;
   process.slice_um = 1000;
   process.absorbance_height_um = 100;
   process.speed_mm_h = 10;
-  const resin::Limits limits = resin::limits_of(process);
+  const resin::CureLimits limits = resin::limits_of(process);
   const double on = 2 / limits.q;
   const std::vector<std::uint8_t> part{0, 0, 0, 1, 1, 0, 0, 1, 0, 0};
   //                                   cured: slice 1 above the first, slice 4 missing, slice 6 above the second, 8

@@ -52,11 +52,11 @@ TEST_CASE("a study needs values in range") {
 }
 
 TEST_CASE("the least dose in a gap is the one that a correction reaches") {
-  for (const auto exposure : {resin::Exposure::continuous, resin::Exposure::layered}) {
+  for (const auto exposure : {resin::ExposureMode::continuous, resin::ExposureMode::layered}) {
     resin::Process process;
     process.exposure = exposure;
     process.absorbance_height_um = 600;
-    const resin::Limits limits = resin::limits_of(process);
+    const resin::CureLimits limits = resin::limits_of(process);
     for (int gap = 2; gap < 60; gap += 3) {
       std::vector<std::uint8_t> part(static_cast<std::size_t>(gap + 20), 0);
       for (std::size_t n = 0; n < 10; ++n) part[n] = part[part.size() - 1 - n] = 1;
@@ -81,17 +81,17 @@ TEST_CASE("gaps of a part: what must fuse, what is tight, what is fine") {
   for (int x = 0; x + 1 < width; ++x) {
     int n = 4;
     const auto put = [&](int count) {
-      for (const int end = n + count; n < end; ++n) values[static_cast<std::size_t>(n * width + x)] = 1;
+      for (const int end = n + count; n < end; ++n) values[n * width + x] = 1;
     };
     put(5);
-    for (const int gap : gaps[static_cast<std::size_t>(x)]) {
+    for (const int gap : gaps[x]) {
       n += gap;
       put(5);
     }
   }
-  resin::PartColumns part(width, 1, slices, resin::Exposure::continuous);
+  resin::PartColumns part(width, 1, slices, resin::ExposureMode::continuous);
   part.append(slices, values.data(), 0.5F);
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   const resin::GapReport report = resin::judge_gaps(part, limits, 0.5);
   CHECK(report.mask.values == std::vector<float>{2, 1, 0, 2, 0, 0});
   CHECK(report.infeasible_columns == 2);

@@ -10,7 +10,7 @@
 #include "oracle/simplex.hpp"
 
 using namespace vam;
-using resin::Exposure;
+using resin::ExposureMode;
 using Part = std::vector<std::uint8_t>;
 
 namespace {
@@ -36,28 +36,27 @@ Part random_part(std::mt19937& random, int slices, int tallest, int narrowest_ga
   return part;
 }
 
-resin::Limits limits_with(Exposure exposure, double eta, double phi_min, double phi_max) {
+resin::CureLimits limits_with(ExposureMode exposure, double eta, double phi_min, double phi_max) {
   const double q = std::pow(10.0, -eta);
-  return {exposure, q, exposure == Exposure::continuous ? 1 - q : q, phi_min, phi_max};
+  return {exposure, q, exposure == ExposureMode::continuous ? 1 - q : q, phi_min, phi_max};
 }
 
 // The constraints [physics §9] written out node by node, from phi alone, without the solver's helpers; `slack` is
 // rounding.
-std::string violation(const Part& part, const std::vector<double>& phi, const resin::Limits& limits, double omega_max) {
+std::string violation(const Part& part, const std::vector<double>& phi, const resin::CureLimits& limits,
+                      double omega_max) {
   const double slack = 1e-9;
   const int slices = static_cast<int>(phi.size());
-  const auto solid = [&](int n) {
-    return n >= 0 && n < static_cast<int>(part.size()) && part[static_cast<std::size_t>(n)] != 0;
-  };
+  const auto solid = [&](int n) { return n >= 0 && n < static_cast<int>(part.size()) && part[n] != 0; };
   double omega = 0;
   for (int n = slices; n >= 0; --n) {
     if (n < slices) {
-      const double value = phi[static_cast<std::size_t>(n)];
+      const double value = phi[n];
       if (!(value >= limits.phi_min - slack && value <= limits.phi_max + slack)) return "Phi out of range";
       omega = limits.gain * value + limits.q * omega;
     }
     const bool here = solid(n);
-    const bool before = limits.exposure == Exposure::continuous && solid(n - 1);
+    const bool before = limits.exposure == ExposureMode::continuous && solid(n - 1);
     if (!here && !before) {
       if (omega >= 1) return "cured outside at node " + std::to_string(n);
       continue;
@@ -65,7 +64,7 @@ std::string violation(const Part& part, const std::vector<double>& phi, const re
     if (omega < 1 - slack) return "undercured at node " + std::to_string(n);
     if (omega > omega_max + slack) return "above omega_max at node " + std::to_string(n);
     const bool top_edge = here && n > 0 && !solid(n - 1);
-    const bool bottom_edge = limits.exposure == Exposure::continuous ? !here : !solid(n + 1);
+    const bool bottom_edge = limits.exposure == ExposureMode::continuous ? !here : !solid(n + 1);
     if ((top_edge || bottom_edge) && std::fabs(omega - 1) > slack) return "edge not at 1, node " + std::to_string(n);
   }
   return "";
@@ -75,14 +74,14 @@ double log_uniform(std::mt19937& random, double low, double high) {
   return low * std::pow(high / low, std::uniform_real_distribution<double>(0, 1)(random));
 }
 
-int needed_extra(const resin::Limits& limits) {
-  return std::max(0, resin::burst_slices(limits) - (limits.exposure == Exposure::layered ? 1 : 0));
+int needed_extra(const resin::CureLimits& limits) {
+  return std::max(0, resin::burst_slices(limits) - (limits.exposure == ExposureMode::layered ? 1 : 0));
 }
 
 }  // namespace
 
 TEST_CASE("the paper's ladder, uncorrected: one fused feature with an undercured bottom edge") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   const std::vector<double> omega = resin::dose_at_nodes(resin::plain_column(ladder(), limits), limits);
   for (std::size_t n = 20; n <= 30; ++n) CHECK(omega[n] > 1);  // the gap between the rungs is solid
   for (std::size_t n = 30; n <= 37; ++n) CHECK(omega[n] > 1);
@@ -91,7 +90,7 @@ TEST_CASE("the paper's ladder, uncorrected: one fused feature with an undercured
 }
 
 TEST_CASE("the paper's ladder, corrected with omega_max = 1") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   const resin::Column column = resin::correct_column(ladder(), limits, {1}, 3);
   CHECK(column.feasible());
   CHECK(violation(ladder(), column.phi, limits, 1) == "");
@@ -104,7 +103,7 @@ TEST_CASE("the paper's ladder, corrected with omega_max = 1") {
 }
 
 TEST_CASE("a rail that reaches the last slice needs the paper's three extra slices") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   const Part rail(50, 1);
   CHECK_FALSE(resin::correct_column(rail, limits, {1}, 2).feasible());
   CHECK(resin::correct_column(rail, limits, {1}, 2).worst_excess > 0.1);
@@ -114,7 +113,7 @@ TEST_CASE("a rail that reaches the last slice needs the paper's three extra slic
 }
 
 TEST_CASE("omega_max: the dose inside follows the limit, the edges stay") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   Part part(200, 0);
   std::fill(part.begin() + 40, part.begin() + 160, std::uint8_t{1});
   for (const double omega_max : {1.0, 2.0, 3.0, std::numeric_limits<double>::infinity()}) {
@@ -127,7 +126,7 @@ TEST_CASE("omega_max: the dose inside follows the limit, the edges stay") {
 }
 
 TEST_CASE("strong base: features on the platform receive full intensity, as the rails of the paper's figure 4") {
-  const resin::Limits limits = resin::limits_of({});
+  const resin::CureLimits limits = resin::limits_of({});
   Part part(50, 1);
   std::fill(part.begin() + 30, part.begin() + 40, std::uint8_t{0});
   const resin::Column column = resin::correct_column(part, limits, {1, true}, 3);
@@ -143,9 +142,9 @@ TEST_CASE("thousands of random columns: every constraint holds, or the column is
   int feasible = 0;
   int infeasible = 0;
   for (int trial = 0; trial < 6000; ++trial) {
-    const auto exposure = trial % 3 == 2 ? Exposure::layered : Exposure::continuous;
+    const auto exposure = trial % 3 == 2 ? ExposureMode::layered : ExposureMode::continuous;
     const double phi_min = log_uniform(random, 1e-4, 1.5);
-    const resin::Limits limits =
+    const resin::CureLimits limits =
         limits_with(exposure, log_uniform(random, 3e-3, 1.0), phi_min, phi_min * log_uniform(random, 1.01, 1e4));
     const Part part = random_part(random, 20 + trial % 180, 30, 1);
     const double omega_max = trial % 5 == 0 ? std::numeric_limits<double>::infinity() : log_uniform(random, 1, 8);
@@ -169,7 +168,7 @@ TEST_CASE("thousands of random columns: every constraint holds, or the column is
 namespace {
 
 // The constraints as a linear program in y = phi - phi_min >= 0. Omega(n) = sum_{m >= n} gain q^(m-n) phi_m.
-vam::oracle::LinearProgram program_of(const Part& part, const resin::Limits& limits, double omega_max, int slices) {
+vam::oracle::LinearProgram program_of(const Part& part, const resin::CureLimits& limits, double omega_max, int slices) {
   const auto count = static_cast<std::size_t>(slices);
   vam::oracle::LinearProgram lp;
   lp.cost.assign(count, 0);
@@ -177,21 +176,19 @@ vam::oracle::LinearProgram program_of(const Part& part, const resin::Limits& lim
     lp.a.push_back(row);
     lp.b.push_back(bound);
   };
-  const auto solid = [&](int n) {
-    return n >= 0 && n < static_cast<int>(part.size()) && part[static_cast<std::size_t>(n)] != 0;
-  };
+  const auto solid = [&](int n) { return n >= 0 && n < static_cast<int>(part.size()) && part[n] != 0; };
   for (std::size_t n = 0; n < count; ++n) {
     std::vector<double> row(count, 0);
     row[n] = 1;
     add(row, limits.phi_max - limits.phi_min);
   }
-  const bool continuous = limits.exposure == Exposure::continuous;
+  const bool continuous = limits.exposure == ExposureMode::continuous;
   for (int n = 0; n <= slices; ++n) {
     std::vector<double> up(count, 0);
     double base = 0;
     for (int m = n; m < slices; ++m) {
-      up[static_cast<std::size_t>(m)] = limits.gain * std::pow(limits.q, m - n);
-      base += up[static_cast<std::size_t>(m)] * limits.phi_min;
+      up[m] = limits.gain * std::pow(limits.q, m - n);
+      base += up[m] * limits.phi_min;
     }
     std::vector<double> down = up;
     for (double& value : down) value = -value;
@@ -216,9 +213,9 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
   int solved = 0;
   int impossible = 0;
   for (int trial = 0; trial < 240; ++trial) {
-    const auto exposure = trial % 3 == 2 ? Exposure::layered : Exposure::continuous;
+    const auto exposure = trial % 3 == 2 ? ExposureMode::layered : ExposureMode::continuous;
     const double phi_min = log_uniform(random, 1e-3, 1.2);
-    const resin::Limits limits =
+    const resin::CureLimits limits =
         limits_with(exposure, log_uniform(random, 0.02, 0.5), phi_min, phi_min * log_uniform(random, 1.5, 500));
     const Part part = random_part(random, 14, 5, 2);
     const int extra = trial % 4 == 0 ? 0 : std::min(6, needed_extra(limits));
@@ -248,18 +245,18 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
     REQUIRE(full.feasible());
     const auto nodes = resin::nodes_of(part, exposure);
     const int probe = trial % static_cast<int>(nodes.size());
-    const bool inside = nodes[static_cast<std::size_t>(probe)] != 0;
+    const bool inside = nodes[probe] != 0;
     double base = 0;
     std::fill(lp.cost.begin(), lp.cost.end(), 0.0);
     for (int m = probe; m < slices; ++m) {
       const double weight = limits.gain * std::pow(limits.q, m - probe);
-      lp.cost[static_cast<std::size_t>(m)] = inside ? -weight : weight;
+      lp.cost[m] = inside ? -weight : weight;
       base += weight * limits.phi_min;
     }
     const auto extreme = vam::oracle::minimise(lp);
     REQUIRE(extreme.has_value());
     const double dose = base + (inside ? -extreme->value : extreme->value);
-    CHECK(full.omega[static_cast<std::size_t>(probe)] == doctest::Approx(dose).epsilon(1e-7));
+    CHECK(full.omega[probe] == doctest::Approx(dose).epsilon(1e-7));
   }
   CHECK(solved > 60);
   CHECK(impossible > 20);
@@ -267,11 +264,11 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
 
 TEST_CASE("a layer-by-layer print has sharp bottom edges and needs no extra layers when one exposure is enough") {
   resin::Process process;
-  process.exposure = Exposure::layered;
-  const resin::Limits limits = resin::limits_of(process);
+  process.exposure = ExposureMode::layered;
+  const resin::CureLimits limits = resin::limits_of(process);
   CHECK(limits.gain * limits.phi_max < 1);  // not here: 110 mW/cm2 for 0.18 s
   process.speed_mm_h = 100;
-  const resin::Limits slow = resin::limits_of(process);
+  const resin::CureLimits slow = resin::limits_of(process);
   const resin::Column column = resin::correct_column(Part(20, 1), slow, {1}, 0);
   CHECK(column.feasible());
   CHECK(column.omega[19] == doctest::Approx(1));

@@ -17,7 +17,7 @@ namespace {
 
 const Writable room{8, -20, 20};
 
-Extent placed(model::TriangleSoup mesh, const Placement& placement) {
+PlacedExtent placed(model::TriangleSoup mesh, const Placement& placement) {
   transform(mesh, place(mesh, placement, room, "test"));
   return extent(mesh);
 }
@@ -67,9 +67,9 @@ TEST_CASE("to fit the writable cylinder") {
   Placement placement;
   placement.fit_writable = true;
   placement.stretch_z = 1.1;
-  const Extent flat = placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement);
+  const PlacedExtent flat = placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement);
   CHECK(flat.radius_mm == doctest::Approx(8));  // bound by the circle
-  const Extent tall = placed(vam::oracle::box({0, 0, 0}, {1, 1, 30}), placement);
+  const PlacedExtent tall = placed(vam::oracle::box({0, 0, 0}, {1, 1, 30}), placement);
   CHECK(tall.box.high[2] == doctest::Approx(20));  // bound by the rows, after stretching
   const Field shape = make_shape("hollow-cylinder");
   CHECK(transformed(shape, place(shape, placement, room, "test")).radius_mm == doctest::Approx(8).epsilon(1e-4));
@@ -80,7 +80,7 @@ TEST_CASE("to fit the writable cylinder") {
 }
 
 TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
-  Extent part;
+  PlacedExtent part;
   part.box.add({-1.23, -2.01, -0.77});
   part.box.add({1.23, 2.01, 3.14});
   part.radius_mm = 2.36;
@@ -105,7 +105,7 @@ TEST_CASE("a part that leaves the writable cylinder is refused with both numbers
   CHECK(real.radius_mm == doctest::Approx(12.7 / 1.53));
   CHECK(real.high_mm - real.low_mm == doctest::Approx(768 * 0.065));
   CHECK(real.high_mm == doctest::Approx(-real.low_mm));
-  Extent part;
+  PlacedExtent part;
   part.box.add({-9, -1, -1});
   part.box.add({9, 1, 1});
   part.radius_mm = 9.055;

@@ -39,7 +39,7 @@ TEST_CASE("nearest points are those of CGAL's AABB tree, from any start") {
     const Nearest found = tree.nearest(p, i);
     CHECK(std::sqrt(found.distance2) == doctest::Approx(wanted).epsilon(1e-9));
     CHECK(length(p - found.point) == doctest::Approx(wanted).epsilon(1e-9));
-    const Vector3 on = nearest_on(tree.triangles[static_cast<std::size_t>(found.triangle)], p);
+    const Vector3 on = nearest_on(tree.triangles[found.triangle], p);
     CHECK(length(on - found.point) == 0);
   }
 }

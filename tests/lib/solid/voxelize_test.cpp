@@ -224,12 +224,12 @@ TEST_CASE("a closed cavity stays a void, however the file is turned") {
     const Result result = voxels(mesh, grid);
     CHECK(result.repair.cavities == 1);
     CHECK(std::abs(result.sum() / volume - 1) < 1e-6);
-    CHECK(result.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 0);
+    CHECK(result.values[(37 * 64 + 36) * 64 + 35] == 0);
   }
   // An island within the cavity is a solid again.
   const Result island = voxels(vam::oracle::join(part, vam::oracle::sphere(5, 20), {3, 4, 5}), grid);
   CHECK(island.repair.cavities == 1);
-  CHECK(island.values[static_cast<std::size_t>((37 * 64 + 36) * 64 + 35)] == 1);
+  CHECK(island.values[(37 * 64 + 36) * 64 + 35] == 1);
   // With a hole in the outer surface the cavity is still there.
   const TriangleSoup open =
       vam::oracle::join(vam::oracle::punched(outer, {30, 0, 0}, 2.4), vam::oracle::flipped(inner, 1, 1), {3, 4, 5});

@@ -110,7 +110,7 @@ TEST_CASE("fbp of a disc is flat inside and empty outside") {
   }
   std::vector<Slab> sinogram{Slab(g.columns, g.angles)};
   forward(g, image, sinogram);
-  const Slab back = fbp(g, sinogram[0], {Window::hann, 1, 0, 0});
+  const Slab back = fbp(g, sinogram[0], {FilterWindow::hann, 1, 0, 0});
   double inside = 0;
   double outside = 0;
   for (int j = 0; j < 256; ++j) {

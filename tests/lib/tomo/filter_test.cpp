@@ -28,7 +28,7 @@ Slab random_slab(int width, int height) {
 /// Gain at the frequency `fraction` of Nyquist.
 double gain(const Filter& filter, double fraction) {
   const auto& gains = filter.gains();
-  return gains[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(gains.size() - 1)))];
+  return gains[std::lround(fraction * static_cast<double>(gains.size() - 1))];
 }
 
 }  // namespace
@@ -53,18 +53,18 @@ TEST_CASE("the ramp is the direct convolution with the band-limited kernel of Ka
 }
 
 TEST_CASE("windows have their shape at half the cutoff and their edge") {
-  const auto ratio = [](Window window, double cutoff, double fraction) {
+  const auto ratio = [](FilterWindow window, double cutoff, double fraction) {
     return gain(Filter(500, {window, cutoff, 0, 0}), fraction) / gain(Filter(500, {}), fraction);
   };
-  CHECK(ratio(Window::shepp_logan, 1, 0.5) == doctest::Approx(std::sin(pi / 4) / (pi / 4)));
-  CHECK(ratio(Window::cosine, 1, 0.5) == doctest::Approx(std::cos(pi / 4)));
-  CHECK(ratio(Window::hamming, 1, 0.5) == doctest::Approx(0.54));
-  CHECK(ratio(Window::hann, 1, 0.5) == doctest::Approx(0.5));
-  CHECK(ratio(Window::gaussian, 0.5, 0.5) == doctest::Approx(std::exp(-1)));
-  CHECK(ratio(Window::exponential, 0.25, 0.5) == doctest::Approx(std::exp(-2)));
-  CHECK(ratio(Window::hann, 0.5, 0.25) == doctest::Approx(0.5));
-  CHECK(ratio(Window::ram_lak, 0.5, 0.45) == doctest::Approx(1));
-  CHECK(ratio(Window::ram_lak, 0.5, 0.55) == 0);
+  CHECK(ratio(FilterWindow::shepp_logan, 1, 0.5) == doctest::Approx(std::sin(pi / 4) / (pi / 4)));
+  CHECK(ratio(FilterWindow::cosine, 1, 0.5) == doctest::Approx(std::cos(pi / 4)));
+  CHECK(ratio(FilterWindow::hamming, 1, 0.5) == doctest::Approx(0.54));
+  CHECK(ratio(FilterWindow::hann, 1, 0.5) == doctest::Approx(0.5));
+  CHECK(ratio(FilterWindow::gaussian, 0.5, 0.5) == doctest::Approx(std::exp(-1)));
+  CHECK(ratio(FilterWindow::exponential, 0.25, 0.5) == doctest::Approx(std::exp(-2)));
+  CHECK(ratio(FilterWindow::hann, 0.5, 0.25) == doctest::Approx(0.5));
+  CHECK(ratio(FilterWindow::ram_lak, 0.5, 0.45) == doctest::Approx(1));
+  CHECK(ratio(FilterWindow::ram_lak, 0.5, 0.55) == 0);
 }
 
 TEST_CASE("the mean of the ramp is positive and tiny, and the floor lifts it") {
@@ -73,14 +73,14 @@ TEST_CASE("the mean of the ramp is positive and tiny, and the floor lifts it") {
   CHECK(gain(ramp, 0) < 1e-3);
   CHECK(gain(ramp, 1) == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(gain(ramp, 0.5) == doctest::Approx(0.25).epsilon(1e-3));
-  const Filter floored(512, {Window::ram_lak, 1, 0.05, 0});
+  const Filter floored(512, {FilterWindow::ram_lak, 1, 0.05, 0});
   CHECK(gain(floored, 0) == 0.025);
   CHECK(gain(floored, 0.5) == gain(ramp, 0.5));
 }
 
 TEST_CASE("the exponential ramp blocks |k| < alpha and passes the rest") {
   const double alpha = 0.4;  // = 0.127 of Nyquist (k = pi)
-  const Filter filter(2000, {Window::ram_lak, 1, 0, alpha});
+  const Filter filter(2000, {FilterWindow::ram_lak, 1, 0, alpha});
   for (const double fraction : {0.0, 0.05, 0.1}) CHECK(std::abs(gain(filter, fraction)) < 1e-3);
   for (const double fraction : {0.16, 0.3, 0.7})
     CHECK(gain(filter, fraction) == doctest::Approx(fraction / 2).epsilon(0.01));
@@ -89,14 +89,14 @@ TEST_CASE("the exponential ramp blocks |k| < alpha and passes the rest") {
 TEST_CASE("none leaves a sinogram as it is") {
   const Slab before = random_slab(40, 3);
   Slab after = before;
-  Filter(40, {Window::none, 1, 0, 0}).apply(after);
+  Filter(40, {FilterWindow::none, 1, 0, 0}).apply(after);
   CHECK(after.values == before.values);
 }
 
 TEST_CASE("filtering gives the same bytes for any number of threads") {
   Slab one = random_slab(129, 61);
   Slab two = one;
-  const Filter filter(129, {Window::hann, 0.8, 0, 0});
+  const Filter filter(129, {FilterWindow::hann, 0.8, 0, 0});
   vam::set_threads(1);
   filter.apply(one);
   vam::set_threads(2);
@@ -107,17 +107,17 @@ TEST_CASE("filtering gives the same bytes for any number of threads") {
 
 TEST_CASE("names and limits") {
   for (std::size_t i = 0; i < window_names().size(); ++i) {
-    CHECK(window_from_name(window_names()[i]) == static_cast<Window>(i));
+    CHECK(window_from_name(window_names()[i]) == static_cast<FilterWindow>(i));
   }
   CHECK_THROWS_AS(static_cast<void>(window_from_name("hanning")), vam::Error);
-  CHECK_THROWS_AS(Filter(10, {Window::hann, 0, 0, 0}), vam::Error);
-  CHECK_THROWS_AS(Filter(10, {Window::hann, 1, 2, 0}), vam::Error);
+  CHECK_THROWS_AS(Filter(10, {FilterWindow::hann, 0, 0, 0}), vam::Error);
+  CHECK_THROWS_AS(Filter(10, {FilterWindow::hann, 1, 2, 0}), vam::Error);
   Slab slab(11, 1);
   CHECK_THROWS_AS(Filter(10, {}).apply(slab), vam::Error);
 }
 
 TEST_CASE("a ceiling caps the gain; members given by position keep their meaning") {
-  vam::tomo::FilterSpec spec{vam::tomo::Window::ram_lak, 1, 0, 0};
+  vam::tomo::FilterSpec spec{vam::tomo::FilterWindow::ram_lak, 1, 0, 0};
   CHECK(spec.ceiling == 1);
   spec.ceiling = 0.4;
   const vam::tomo::Filter filter(64, spec);

@@ -31,7 +31,7 @@ Slab random_slab(int width, int height, unsigned seed) {
 
 std::vector<Slab> random_slabs(int count, int width, int height, unsigned seed) {
   std::vector<Slab> slabs;
-  slabs.reserve(static_cast<std::size_t>(count));
+  slabs.reserve(count);
   for (int i = 0; i < count; ++i) slabs.push_back(random_slab(width, height, seed + static_cast<unsigned>(i)));
   return slabs;
 }

@@ -29,7 +29,7 @@ class AngleGrid {
     float weight;
   };
   /// The frames that make even angle `a`; the weights add up to 1.
-  [[nodiscard]] const std::vector<Tap>& taps(int a) const { return taps_[static_cast<std::size_t>(a)]; }
+  [[nodiscard]] const std::vector<Tap>& taps(int a) const { return taps_[a]; }
 
  private:
   EvenTurn summary_;

@@ -12,10 +12,10 @@ inline constexpr float aim = 0.8F;
 
 /// The doses that a voxel may have: void at most window.low, part at least window.high, a grey voxel those whose
 /// response is well within its tolerance of the target.
-inline Bounds bounds(const Problem& problem, const Window& window, std::size_t s, std::size_t i) {
+inline DoseRange bounds(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i) {
   constexpr float without_limit = std::numeric_limits<float>::infinity();
   const Label label = problem.labels[s][i];
-  if (!asked(label)) return {-without_limit, without_limit};
+  if (!is_constrained(label)) return {-without_limit, without_limit};
   if (problem.demands.grey) {
     return problem.demands.curve.doses(problem.target[s].values[i], aim * problem.tolerance_at(s, i));
   }
@@ -24,12 +24,12 @@ inline Bounds bounds(const Problem& problem, const Window& window, std::size_t s
 }
 
 /// Slope of (w/2) miss(D)^2, w the voxel's weight.
-inline float slope(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+inline float slope(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i, float dose) {
   return problem.weight_at(s, i) * bounds(problem, window, s, i).miss(dose);
 }
 
 /// The loss of a voxel, (w/2) miss(D)^2.
-inline float loss(const Problem& problem, const Window& window, std::size_t s, std::size_t i, float dose) {
+inline float loss(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i, float dose) {
   const float miss = bounds(problem, window, s, i).miss(dose);
   return 0.5F * problem.weight_at(s, i) * miss * miss;
 }

@@ -15,9 +15,6 @@ PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerS
 [[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);
 [[nodiscard]] PerSlice pooled(PerSlice values, const light::Operator& light);
 
-/// The same number for every slice of so many slabs.
-[[nodiscard]] PerSlice constant(std::size_t slabs, float value);
-
 /// Clips the light to [0, peak]; its dose follows. Losses are compared with that of the start, so it must be allowed
 /// itself.
 void enter_bounds(const light::Operator& light, float peak, Iterate& iterate);

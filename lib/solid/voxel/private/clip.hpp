@@ -24,7 +24,7 @@ struct Polygon {
     return *this;
   }
   void add(const Vector3& p) {
-    if (count < room) corners[static_cast<std::size_t>(count++)] = p;
+    if (count < room) corners[count++] = p;
   }
 };
 
@@ -34,8 +34,8 @@ inline void split(const Polygon& polygon, std::size_t axis, double plane, Polygo
   below.count = 0;
   above.count = 0;
   for (int i = 0; i < polygon.count; ++i) {
-    const Vector3& p = polygon.corners[static_cast<std::size_t>(i)];
-    const Vector3& q = polygon.corners[static_cast<std::size_t>(i + 1 == polygon.count ? 0 : i + 1)];
+    const Vector3& p = polygon.corners[i];
+    const Vector3& q = polygon.corners[i + 1 == polygon.count ? 0 : i + 1];
     if (p[axis] <= plane) below.add(p);
     if (p[axis] >= plane) above.add(p);
     if ((p[axis] < plane && q[axis] > plane) || (p[axis] > plane && q[axis] < plane)) {
@@ -65,7 +65,7 @@ struct Span {
   double low = polygon.corners[0][axis];
   double high = low;
   for (int i = 1; i < polygon.count; ++i) {
-    const double c = polygon.corners[static_cast<std::size_t>(i)][axis];
+    const double c = polygon.corners[i][axis];
     low = std::min(low, c);
     high = std::max(high, c);
   }

@@ -45,7 +45,7 @@ struct Moment {
 class Rows {
  public:
   void reset(int rows, int voxels);
-  [[nodiscard]] bool touched(int row) const { return touched_[static_cast<std::size_t>(row)] != 0; }
+  [[nodiscard]] bool touched(int row) const { return touched_[row] != 0; }
   /// Entries of a row, cleared when first asked for.
   double* operator[](int row);
   /// Enters a piece: its voxel by its share, the next by the rest; the prefix sum carries that on.

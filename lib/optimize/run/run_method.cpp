@@ -1,4 +1,4 @@
-#include "optimize/run/iterate.hpp"
+#include "optimize/run/run_method.hpp"
 
 #include "model/figures.hpp"
 #include "optimize/methods/metrics.hpp"
@@ -53,8 +53,8 @@ std::string look(const Problem& problem, const light::Operator& light, const Lim
 
 }  // namespace
 
-Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                Iterate& state, Course& course, const Watch& watch, const Pause& pause) {
+Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                   Iterate& state, Course& course, const Watch& watch, const Pause& pause) {
   bool looked = course.iteration >= 0;
   if (!looked) {
     state.g.empty() ? method.start(problem, light, state) : method.resume(problem, light, state);
@@ -69,10 +69,10 @@ Outcome iterate(Method& method, const Problem& problem, const light::Operator& l
   }
 }
 
-Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                Iterate& state) {
+Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                   Iterate& state) {
   Course course;
-  return iterate(method, problem, light, limits, state, course);
+  return run_method(method, problem, light, limits, state, course);
 }
 
 }  // namespace vam::optimize

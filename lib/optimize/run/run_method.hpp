@@ -38,10 +38,10 @@ struct Course {
 
 /// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a course that has begun
 /// resumes from where it was interrupted (method and iterate as they were), as if it had not been.
-Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                Iterate& iterate, Course& course, const Watch& watch = {}, const Pause& pause = {});
+Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                   Iterate& iterate, Course& course, const Watch& watch = {}, const Pause& pause = {});
 /// From the start to the end.
-Outcome iterate(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                Iterate& iterate);
+Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                   Iterate& iterate);
 
 }  // namespace vam::optimize
