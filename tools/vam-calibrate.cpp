@@ -25,8 +25,10 @@ cli::Manual manual() {
        "their stacks one after the other in one file) give both, the wobble as the radius and the stage angle of "
        "greatest column. beam: either a bare sensor is moved along the beam, "
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
-       "each image column is another plane. latency takes the times of the frames as true: determine --latency of "
-       "vam-capture first.",
+       "each image column is another plane. latency takes the times of the frames as true: lag determines the "
+       "delay of the camera's time stamps before, from a bead that turns with the stage at known angles, one way and "
+       "the other, captured with --latency 0 and the exposure in use. Its record is the --latency of vam-capture from "
+       "then on.",
        "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused with that "
        "share: "
        "what they would have shown is lost. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
@@ -99,6 +101,10 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   add_input(turn, o, false);
   turn.option("--step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.");
   turn.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  auto& late = app.subcommand("lag", "delay of the camera's time stamps, from a bead that turns both ways", o.command);
+  add_input(late, o, false);
+  late.option("--reverse", "FILE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).");
+  late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o, true);
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
   check.option("--need", "SCAN", o.needed, "Require a record of this scan; may be repeated.");

@@ -90,7 +90,8 @@ void declare(cli::App& app, Options& o) {
              "Without --follow: angle = speed x time since the start.");
   app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: the stage stands at this angle.");
   app.option("--latency", "MS", o.latency_ms, {-10000, 10000},
-             "Delay from the end of an exposure to the camera's time stamp, as received.");
+             "Delay from the end of an exposure to the camera's time stamp, as received.")
+      .default_is("camera.latency_ms");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "End with status 75 when more frames are dropped or incomplete.");
   app.group("Output and machine");

@@ -64,8 +64,8 @@ void declare(cli::App& app, Options& o) {
   auto& bench = o.camera.bench;
   app.group("Scene");
   app.option("--part", "BODIES", o.part, "Print, like 'sphere:x=2,diameter=4;cylinder:diameter=6,height=3'.");
-  app.option("--lit", "S", bench.lit_s, cli::positive,
-             "Exposed time that completes the print; its volume grows in proportion.");
+  app.option("--lit", "S", bench.lit_s, cli::non_negative,
+             "Exposed time that completes the print; its volume grows in proportion. 0: it is there from the start.");
   app.option("--angles", "FILE", o.camera.sources.angles, "Log of vam-sim-stage: the true stage angle.");
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Stage speed without --angles.");
   app.option("--shown", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.");

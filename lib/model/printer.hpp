@@ -64,6 +64,7 @@ struct PrinterCamera {
   int binning = 1;
   double exposure_us = 20000;
   double fps = 10;
+  double latency_ms = 0;              // from the end of an exposure to its time stamp, as it arrives
   double index_resin = 1.53;          // at the camera's wavelength
   std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent
   std::optional<double> tilt_deg;     // of the axis in the image, its lower end towards higher columns

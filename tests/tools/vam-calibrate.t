@@ -18,6 +18,7 @@ $scans sweep moved axis=251.3 $geometry
 fails 64 'no command; give one of' vam-calibrate
 fails 64 'name them with --from' vam-calibrate edges
 fails 66 'missing' vam-calibrate edges --from missing
+fails 64 'needs --reverse' vam-calibrate lag --from turn
 fails 64 'needs --flips' vam-calibrate latency --from ramp
 fails 64 'needs --pixel' vam-calibrate beam --from beam
 fails 64 'omit --first and --step' vam-calibrate beam --from beam --side --step 1

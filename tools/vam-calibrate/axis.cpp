@@ -6,18 +6,24 @@
 
 namespace vam::calibrate_tool {
 
-Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
-  metrology::TurnScan scan;
-  double pixel_mm = 0;
-  scan.middle.resize(options.bands);
+BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer) {
+  BeadTurn turn;
+  turn.scan.middle.resize(options.bands);
   each_frame(options, printer, [&](const ScanFrame& frame) {
     const auto middles = metrology::bright_middles(frame.image, options.bands);
-    for (std::size_t b = 0; b < middles.size(); ++b) scan.middle[b].push_back(middles[b]);
-    scan.angle_deg.push_back(frame.angle_deg);
-    scan.rows = frame.image.height;
-    pixel_mm = frame.pixel_mm;
+    for (std::size_t b = 0; b < middles.size(); ++b) turn.scan.middle[b].push_back(middles[b]);
+    turn.scan.angle_deg.push_back(frame.angle_deg);
+    turn.time_s.push_back(frame.time_s);
+    turn.scan.rows = frame.image.height;
+    turn.pixel_mm = frame.pixel_mm;
   });
-  const auto found = metrology::find_camera_axis(scan);
+  return turn;
+}
+
+Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
+  const BeadTurn turn = read_turn(options, printer);
+  const double pixel_mm = turn.pixel_mm;
+  const auto found = metrology::find_camera_axis(turn.scan);
   Finding finding;
   const char* method = "first harmonic over the turn";
   finding.value("axis_column", found.column, "px", method);

@@ -65,8 +65,8 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
   const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
-  // Only the scan `axis` needs angles; where others are given frames without, these are at no angle.
-  const bool needs_angles = options.command == "axis";
+  // Only the scans `axis` and `lag` need angles; where others are given frames without, these are at no angle.
+  const bool needs_angles = options.command == "axis" || options.command == "lag";
   io::ViewSource source(options.from, needs_angles ? options.step_deg : std::numeric_limits<double>::quiet_NaN());
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;

@@ -47,7 +47,7 @@ std::string hash_of(const std::string& path) {
 
 Json hashes(const ScanOptions& options) {
   Json json = Json::object();
-  for (const auto& path : {options.from, options.flips, options.dark}) {
+  for (const auto& path : {options.from, options.reverse, options.flips, options.dark}) {
     if (!path.empty() && path != "-") json[fs::path(path).filename().string()] = hash_of(path);
   }
   return json;

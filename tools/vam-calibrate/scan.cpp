@@ -14,9 +14,9 @@ namespace {
 
 using Scan = Finding (*)(const ScanOptions&, const model::Printer&);
 const std::map<std::string, Scan>& scans() {
-  static const std::map<std::string, Scan> all{{"edges", scan_edges}, {"response", scan_response},
-                                               {"flat", scan_flat},   {"beam", scan_beam},
-                                               {"axis", scan_axis},   {"latency", scan_latency}};
+  static const std::map<std::string, Scan> all{
+      {"edges", scan_edges}, {"response", scan_response}, {"flat", scan_flat}, {"beam", scan_beam},
+      {"axis", scan_axis},   {"latency", scan_latency},   {"lag", scan_lag}};
   return all;
 }
 

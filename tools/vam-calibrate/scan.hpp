@@ -10,14 +10,16 @@
 #include "base/json.hpp"
 #include "base/stats/measured.hpp"
 #include "cli/common.hpp"
+#include "metrology/calibrate/axis.hpp"
 #include "model/printer.hpp"
 
 namespace vam::calibrate_tool {
 
 struct ScanOptions {
   std::string command;
-  std::string from;   // the frames
-  std::string flips;  // log of vam-project from the time of the capture
+  std::string from;     // the frames
+  std::string reverse;  // lag: those of the turn the other way
+  std::string flips;    // log of vam-project from the time of the capture
   std::string dark;
   bool accept = false;
   int bands = 5;
@@ -68,6 +70,15 @@ struct Showing {
 /// The changes of pattern frame in a log of vam-project. Throws Error: no_input, data.
 [[nodiscard]] std::vector<Showing> read_flips(const std::string& path);
 
+/// Frames of something that turns with the stage.
+struct BeadTurn {
+  metrology::TurnScan scan;
+  std::vector<double> time_s;  // of each frame
+  double pixel_mm = 0;
+};
+/// Throws Error: no_input, data, usage (frames without angles).
+[[nodiscard]] BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer);
+
 /// Mean over the image: each frame is reduced to one number until the timing of the pattern is known.
 [[nodiscard]] double mean_level(const Image& image);
 
@@ -76,6 +87,7 @@ class Finding;
 [[nodiscard]] Finding scan_edges(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_response(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_axis(const ScanOptions& options, const model::Printer& printer);
+[[nodiscard]] Finding scan_lag(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_latency(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);

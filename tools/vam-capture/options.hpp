@@ -17,7 +17,7 @@ struct Options {
   std::string follow;
   std::optional<double> speed_deg_s, angle_deg, every_deg, pixel_mm, turns;
   std::optional<int> frames, max_lost;
-  double latency_ms = 0;
+  std::optional<double> latency_ms;  // absent: camera.latency_ms
   bool live = false;
   bool with_parent = false;
   std::string log, report;

@@ -30,11 +30,11 @@ constexpr const char* simulated_frames = "frames of a simulated camera";  // in 
 
 bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
 
-device::CapturePlan plan_of(const Options& o) {
+device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
   device::CapturePlan plan;
   plan.every_deg = o.every_deg;
   plan.by_number = is_folder(o.output);
-  plan.latency_s = 1e-3 * o.latency_ms;
+  plan.latency_s = 1e-3 * o.latency_ms.value_or(printer.camera.latency_ms);
   if (o.max_lost) plan.max_lost = *o.max_lost;
   plan.frames = o.frames.value_or(0);
   if (!o.every_deg) {
@@ -143,12 +143,14 @@ void identify(const Options& options) {
 void take(const cli::App& app, const Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   check(options, printer);
-  const device::CapturePlan plan = plan_of(options);
+  const device::CapturePlan plan = plan_of(options, printer);
   device::EventLog log(options.log);
   const auto angles = open_angles(options);
   const auto camera = open_camera(options, printer);
   const auto store = open_store(app, options, printer, *camera, plan.frames);
-  log("begin", facts(*camera));
+  Json about = facts(*camera);
+  about["latency_ms"] = 1e3 * plan.latency_s;
+  log("begin", about);
   Progress progress("capturing", plan.frames);
   const device::CaptureSink sink{[&](long place) { return store->wanted(place); },
                                  [&](device::Shot&& shot) {
@@ -172,7 +174,7 @@ void take(const cli::App& app, const Options& options) {
   log("end", device::to_json(tally));
   conclude(options, tally, plan.frames);
   store->commit();
-  Json report = facts(*camera);
+  Json report = about;
   report.update(device::to_json(tally));
   io::write_report(options.report, "vam-capture/1", report);
 }

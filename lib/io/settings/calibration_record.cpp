@@ -67,6 +67,8 @@ void take_over(model::Printer& printer, const CalibrationRecord& record) {
   } else if (scan == "axis") {
     printer.camera.axis_column = record.value("axis_column");
     if (record.json.at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
+  } else if (scan == "lag") {
+    printer.camera.latency_ms = record.value("camera_latency");
   } else if (scan == "latency") {
     printer.projector.latency_ms = record.value("latency");
   }
@@ -75,7 +77,7 @@ void take_over(model::Printer& printer, const CalibrationRecord& record) {
 }  // namespace
 
 const std::vector<std::string>& calibration_scans() {
-  static const std::vector<std::string> scans{"edges", "response", "flat", "beam", "axis", "latency"};
+  static const std::vector<std::string> scans{"edges", "response", "flat", "beam", "axis", "latency", "lag"};
   return scans;
 }
 

@@ -59,6 +59,7 @@ const std::vector<PrinterField> fields{
     {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "pixels a side", 1, 64},
     {"camera", "exposure_us", at<&Printer::camera, &PrinterCamera::exposure_us>, "exposure time", 0, 1e9, true},
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
+    {"camera", "latency_ms", at<&Printer::camera, &PrinterCamera::latency_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
     {"camera", "index_resin", at<&Printer::camera, &PrinterCamera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
     {"camera", "axis_column", at<&Printer::camera, &PrinterCamera::axis_column>, "of the rotation axis at the middle row of its images; found in the views if absent", -65536, 131072},
     {"camera", "tilt_deg", at<&Printer::camera, &PrinterCamera::tilt_deg>, "of the axis in the images, its lower end towards higher columns", -180, 180},

@@ -184,7 +184,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
     std::fill(image.values.begin(), image.values.end(), static_cast<float>(bench.glow * even));
     return image;
   }
-  const double growth = std::cbrt(std::clamp(moment.lit_s / bench.lit_s, 0.0, 1.0));
+  const double growth = bench.lit_s > 0 ? std::cbrt(std::clamp(moment.lit_s / bench.lit_s, 0.0, 1.0)) : 1.0;
   const double seat_rad = (moment.angle_deg - bench.wobble_deg) * rad_per_deg;
   const double aside_mm = bench.wobble_mm * std::cos(seat_rad);   // along the projector's columns
   const double along_mm = bench.wobble_mm * -std::sin(seat_rad);  // along its light

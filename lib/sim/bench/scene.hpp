@@ -32,7 +32,7 @@ struct SimBench {
   double background = 0.02;   // of full scale
   double noise = 0;           // standard deviation, of full scale
   std::vector<SimBody> bodies{{1.5, 0, 0, 2.5, 0}, {-3.5, 1.0, 0, 1.2, 6.0}};
-  double lit_s = 20;  // light that makes the print; its volume grows in proportion
+  double lit_s = 20;  // light that makes the print; its volume grows in proportion; 0: it is there
   int seed = 1;
 };
 

@@ -47,7 +47,7 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   bench.vignetting = address.number("vignetting", bench.vignetting, 0, 1);
   bench.background = address.number("background", bench.background, 0, 1);
   bench.noise = address.number("noise", bench.noise, 0, 1);
-  bench.lit_s = address.number("lit_s", bench.lit_s, 1e-3, 1e6);
+  bench.lit_s = address.number("lit_s", bench.lit_s, 0, 1e6);
   bench.seed = address.integer("seed", 0, 1000000000).value_or(bench.seed);
   if (address.options.contains("part")) bench.bodies = parse_bodies(address.word("part", ""));
   sim.sources.speed_deg_s = address.number("speed_deg_s", 0, -1000, 1000);

@@ -9,6 +9,7 @@
 #include "metrology/calibrate/axis.hpp"
 #include "metrology/calibrate/beam.hpp"
 #include "metrology/calibrate/flat.hpp"
+#include "metrology/calibrate/lag.hpp"
 #include "metrology/calibrate/latency.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/calibrate/response.hpp"
@@ -284,4 +285,47 @@ TEST_CASE("Wobble: what stands still and what goes round, from four stage angles
   CHECK(error_of(at({0, 90}), Fault::data).find("edges: 2 stage angles leave a gap of 270 degrees") == 0);
   CHECK(fault_of(at({0, 90, 180})) == Fault::data);
   at({0, 120, 240})();
+}
+
+namespace {
+
+// Two turns of a bead in frames whose time stamps are late; its column by its own angle, the reported one by the stamp.
+TurnScan late_turn(double speed_deg_s, int direction, double lag_s, double bead_deg, vam::oracle::Random& random,
+                   std::vector<double>& time_s) {
+  TurnScan turn;
+  turn.rows = 60;
+  turn.middle.resize(1);
+  time_s.clear();
+  for (int i = 0; i < 72; ++i) {
+    const double taken_s = 10.0 * i / speed_deg_s;
+    const double own_deg = direction * speed_deg_s * taken_s;
+    turn.middle[0].push_back(102 + 40 * std::cos((own_deg - bead_deg) * std::numbers::pi / 180) + 0.05 * unit(random));
+    turn.angle_deg.push_back(speed_deg_s * (taken_s + lag_s));
+    time_s.push_back(100 + taken_s + lag_s);
+  }
+  return turn;
+}
+
+}  // namespace
+
+TEST_CASE("Lag: the camera's delay, whatever it is, within 0.5 ms, 200 scans") {
+  vam::oracle::Random random(29);
+  test::Coverage lag("lag");
+  for (int run = 0; run < runs; ++run) {
+    const double true_ms = -20 + 80 * part(random);
+    const double bead_deg = 360 * part(random);
+    std::vector<double> time_s;
+    const TurnScan one = late_turn(60, 1, 1e-3 * true_ms, bead_deg, random, time_s);
+    const double speed = turning_speed_deg_s(time_s, one.angle_deg);
+    CHECK(speed == doctest::Approx(60));
+    const TurnScan two = late_turn(60, -1, 1e-3 * true_ms, bead_deg, random, time_s);
+    lag.add(camera_lag_ms(find_camera_axis(one), speed, find_camera_axis(two), 60), true_ms);
+  }
+  lag.check();
+  CHECK(lag.worst() < 0.5);
+  std::vector<double> time_s;
+  const CameraAxis axis = find_camera_axis(late_turn(60, 1, 0, 0, random, time_s));
+  CHECK(error_of([&] { (void)camera_lag_ms(axis, 60, axis, -60); }, Fault::data).find("turns by -60 deg/s") !=
+        std::string::npos);
+  CHECK(fault_of([&] { (void)turning_speed_deg_s({0, 0}, {1, 2}); }) == Fault::data);
 }

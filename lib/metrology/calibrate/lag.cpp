@@ -1,0 +1,50 @@
+#include "metrology/calibrate/lag.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::metrology {
+
+namespace {
+constexpr double needed_phase_sigma_deg = 10;
+}
+
+double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<double>& angle_deg) {
+  const auto n = static_cast<double>(time_s.size());
+  double mean_s = 0;
+  double mean_deg = 0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    mean_s += time_s[i] / n;
+    mean_deg += angle_deg[i] / n;
+  }
+  double spread = 0;
+  double common = 0;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    spread += (time_s[i] - mean_s) * (time_s[i] - mean_s);
+    common += (time_s[i] - mean_s) * (angle_deg[i] - mean_deg);
+  }
+  if (!(spread > 0)) throw Error{Fault::data, "lag: the frames have no times; capture them with vam-capture --follow"};
+  return common / spread;
+}
+
+stats::Measured camera_lag_ms(const CameraAxis& forwards, double forwards_deg_s, const CameraAxis& backwards,
+                              double backwards_deg_s) {
+  for (const double speed_deg_s : {forwards_deg_s, backwards_deg_s}) {
+    if (speed_deg_s > 0) continue;
+    throw Error{Fault::data, "lag: the stage turns by " + format_number(speed_deg_s, 4) +
+                                 " deg/s; capture one turn with vam-stage spin and one with --direction reversed"};
+  }
+  for (const auto* turn : {&forwards, &backwards}) {
+    if (turn->phase_deg.sigma <= needed_phase_sigma_deg) continue;
+    throw Error{Fault::data, "lag: nothing is seen that turns: the phase of its circle is uncertain by " +
+                                 format_number(turn->phase_deg.sigma, 3) + " degrees; put a bead off the axis"};
+  }
+  const double both_deg = std::remainder(forwards.phase_deg.value + backwards.phase_deg.value, 360.0);
+  const double sigma_deg = std::hypot(forwards.phase_deg.sigma, backwards.phase_deg.sigma);
+  const double ms_per_deg = 1e3 / (forwards_deg_s + backwards_deg_s);
+  return {ms_per_deg * both_deg, ms_per_deg * sigma_deg, forwards.phase_deg.n + backwards.phase_deg.n};
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,22 @@
+// How late a camera's time stamps are: what turns with the stage is seen at an angle that is too large by speed times
+// lag, forwards and backwards alike, which its own direction is not.
+#pragma once
+
+#include <vector>
+
+#include "base/stats/measured.hpp"
+#include "metrology/calibrate/axis.hpp"
+
+namespace vam::metrology {
+
+/// Degrees a second of the straight line through the angles; at least two different times. Throws Fault::data.
+[[nodiscard]] double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<double>& angle_deg);
+
+/// Milliseconds by which the time stamps of both turns are late; negative: early. A bead furthest towards high columns
+/// at the stage's own angle phi is so at the reported angles phi + speed * lag and, backwards, -phi + speed * lag, as
+/// reported angles increase either way. Speeds in deg/s, above 0. Throws Fault::data when a speed is not, or the phase
+/// of a turn is not known within 10 degrees.
+[[nodiscard]] stats::Measured camera_lag_ms(const CameraAxis& forwards, double forwards_deg_s,
+                                            const CameraAxis& backwards, double backwards_deg_s);
+
+}  // namespace vam::metrology
