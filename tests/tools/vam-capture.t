@@ -66,6 +66,9 @@ PY
 is 'every image has its number, and the incomplete one its mark' "$(tail -n 1 marks)" '0 1 2 5 6! 7 8 9 10 11'
 fails 75 '2 frames dropped and 1 incomplete' vam-capture --device "$lossy" --binning 12 --frames 10 --max-lost 2 -o lost.exr
 
+fails 75 'gap.exr: 1 of 20 frames are missing .*; a folder .* keeps the captured frames' \
+  vam-capture --device 'sim:?pace=virtual&lose=10' --binning 12 --fps 10 --speed 90 --every 9 --turns 0.5 -o gap.exr
+
 # A folder holds what came; the same command again takes what is missing, and only that.
 vam-capture --device "$lossy" --binning 12 --frames 10 -o folder/ 2>said
 is 'a folder with holes is an error' "$? $(grep -c '3 of 10 frames are missing' said)" '75 1'

@@ -1,5 +1,7 @@
 #include "vam-capture/sinks.hpp"
 
+#include <set>
+
 #include "base/json.hpp"
 #include "io/image/capture_folder.hpp"
 #include "sim/cameras/camera.hpp"
@@ -32,9 +34,9 @@ class StackStore final : public FrameStore {
  public:
   StackStore(const std::string& path, const model::StackInfo& info, const io::StackOptions& options)
       : info_(info), writer_(path, info, options) {}
-  [[nodiscard]] bool wanted(long place) const override { return place >= next_; }
+  [[nodiscard]] bool wanted(long place) const override { return !kept_.contains(place); }
   void keep(device::Shot&& shot) override {
-    next_ = shot.place + 1;
+    kept_.insert(shot.place);
     writer_.write(fractions(shot.frame.levels), about(shot, info_.z_start_mm));
   }
   void dropped(long, long) override {}  // the numbers of the frames beside the gap tell
@@ -43,7 +45,7 @@ class StackStore final : public FrameStore {
  private:
   model::StackInfo info_;
   io::StackWriter writer_;
-  long next_ = 0;
+  std::set<long> kept_;  // places, in ascending order
 };
 
 class StreamStore final : public FrameStore {
