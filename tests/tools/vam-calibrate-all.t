@@ -91,7 +91,7 @@ camera_down
 rm cal/current-lag.json  # of that camera, which is another to the clock from here on
 
 # A vial that runs out of true: its middle is up to 3 px beside the axis.
-bench --wobble 0.3 --wobble-phase 50
+bench --wobble 0.3 --wobble-phase 50 --beam 0.5 --part 'cylinder:x=2,diameter=8,height=20' --lit 0  # nothing may grow in a sweep
 pitch=4; quiet 'edges of a vial that wobbles' calibrate edges; pitch=2
 near 'edges: the axis, not the middle of the vial' "$(value edges axis_column)" 106.7 0.1
 near 'edges: the wobble' "$(value edges wobble)" 3 0.1
