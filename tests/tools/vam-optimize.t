@@ -30,6 +30,14 @@ quiet "in so many turns" vam-optimize --angles 180 $resin --turns 3 --report tur
 is "it takes the turns that were asked for" "$(value turns.json turns)" 3
 vam-dose turns.exr --like part.vdb $resin --exposure-plan -o dose.vdb --report plan.json
 is "vam-dose plans the same" "$(value plan.json turns)" 3
+quiet "the shortest" vam-optimize --angles 180 $resin --shortest --report shortest.json part.vdb -o shortest.exr
+holds "the shortest print has less intensity than the usual one" \
+  "$(value shortest.json peak_intensity) < 0.8 * $(value limited.json peak_intensity)"
+holds "and meets the same conditions" "$(value shortest.json ver) == 0 && $(value shortest.json pw) >= 0.055"
+fails 64 'requires --until' vam-optimize --method cal --shortest part.vdb -o out.exr
+fails 64 'omit --max-intensity' vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr
+fails 64 'omit --max-intensity, --turns' vam-optimize --shortest --turns 2 part.vdb -o out.exr
+fails 64 'use a method that reads' vam-optimize --method fbp --until ver=0 --shortest part.vdb -o out.exr
 fails 64 'if every pixel is lit at every angle' vam-optimize --angles 60 --max-intensity 0.05 part.vdb -o out.exr
 fails 64 'set resin.critical_dose_mj_cm3' vam-optimize --turns 3 part.vdb -o out.exr
 fails 64 'omit --max-intensity' vam-optimize --turns 3 --max-intensity 1 part.vdb -o out.exr

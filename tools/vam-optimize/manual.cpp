@@ -36,9 +36,11 @@ std::vector<std::string> description() {
        "Intensity is limited (--max-intensity, --turns), because the brightest pixel at full grey determines the "
        "duration of the print: the light of an unlimited optimisation is spikes of one pixel, and its print takes some "
        "ten times as long at the same process window. The scale is the even intensity, at which the mean dose is the "
-       "threshold dose if every pixel is lit at every angle; most parts print with 1.5 times as much, and some have a "
-       "wider process window without a limit (--max-intensity 0). With a known resin the report contains the number of "
-       "turns and their duration at full grey.",
+       "threshold dose if every pixel is lit at every angle. The limit is twice that, and is raised while the "
+       "conditions of --until are not met; --shortest begins lower and raises it in smaller steps, with which most "
+       "parts print with 1.2 to 1.5 times the even intensity. Some parts have a wider process window without a limit "
+       "(--max-intensity 0). With a known resin the report contains the number of turns and their duration at full "
+       "grey.",
        "A grid 'insert' in the same file is an opaque object to print around (overprinting): rays carry no light "
        "behind it. Part voxels in its shadow from all sides are reported and excluded.",
        "Absorption by the resin (resin.absorption_per_mm) attenuates the beam: e^(-mu s), s the path length from the "

@@ -97,11 +97,19 @@ void declare_parameters(cli::App& app, Options& options) {
   app.option("--max-intensity", "VALUE", options.max_intensity, cli::non_negative,
              readers("--max-intensity") + "upper bound on projected intensity; 0 is none.");
   app.default_is(
-      "3 times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at every angle");
+      format_number(optimize::usual_of_even) +
+      " times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at every angle; "
+      "raised by half while the conditions of --until are not met");
   app.was("--max-light");
   app.option("--turns", "N", options.turns, cli::positive,
              "Duration of the print, in turns at full grey: sets --max-intensity from resin.critical_dose_mj_cm3, "
              "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --seconds.");
+  app.flag("--shortest", options.shortest,
+           readers("--max-intensity") + "the shortest print that meets the conditions of --until: begin with " +
+               format_number(optimize::shortest_of_even) + " times the even intensity and raise the maximum by " +
+               format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
+               std::to_string(optimize::shortest_raising.next) +
+               " iterations without success. The computation takes several times as long.");
 }
 
 void declare_beam(cli::App& app, Options& options) {
@@ -184,6 +192,23 @@ void refuse_contradictions(const Options& options, const optimize::MethodEntry& 
   }
 }
 
+/// Where the user gives no limit, there is a low one, which is raised while the part does not print.
+void settle_raising(const cli::App& app, Options& options) {
+  if (options.shortest && options.limit.of_even <= 0) {
+    throw Error{Fault::usage,
+                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and "
+                "--grey, and use a method that reads --max-intensity"};
+  }
+  if (options.shortest && options.until.empty()) {
+    throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
+  }
+  if (options.limit.of_even <= 0 || options.until.empty()) return;
+  options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
+  if (!options.shortest) return;
+  options.limit.of_even = optimize::shortest_of_even;
+  if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;
+}
+
 void settle_limit(Options& options, const optimize::MethodEntry& method) {
   const bool reads = std::find(method.options.begin(), method.options.end(), "--max-intensity") != method.options.end();
   if (options.turns && options.max_intensity) {
@@ -209,6 +234,7 @@ void settle(const cli::App& app, Options& options) {
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);
+  settle_raising(app, options);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }

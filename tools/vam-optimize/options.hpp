@@ -32,7 +32,9 @@ struct Options {
   optimize::MethodOptions how;
   std::optional<double> max_intensity;
   std::optional<double> turns;  // of the print, at full grey
+  bool shortest = false;
   optimize::IntensityLimit limit;
+  optimize::Raising raising;
   std::string negative = "clip";
   std::string absorption_model = "exact";
   bool no_blur = false;

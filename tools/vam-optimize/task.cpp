@@ -88,6 +88,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
   task.demands = options.demands;
   task.limits = options.limits;
   task.limit = limit(scene, options);
+  task.raising = options.raising;
   task.blur_px = blur_px(scene, options);
   task.watch = !options.trace.empty();
   task.make = [&](double max_intensity) {

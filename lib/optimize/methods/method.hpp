@@ -41,6 +41,8 @@ class Method {
   virtual void resume(const Problem& problem, const light::Operator& light, Iterate& iterate);
   /// One iteration.
   virtual void step(const Problem& problem, const light::Operator& light, Iterate& iterate) = 0;
+  /// Goes on with a higher upper bound on intensity.
+  void allow(double max_intensity) { options_.max_intensity = max_intensity; }
   /// Writes or reads what the next step needs beside the iterate, so that a run can be interrupted and resume.
   virtual void exchange(Archive& archive) = 0;
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.

@@ -20,12 +20,9 @@ namespace {
 /// A pass while it is worked on.
 struct Work {
   Iterate state;
-  Course course;
+  Search search;
   std::unique_ptr<Method> method;
   void exchange(Archive& archive) {
-    archive(course.iteration);
-    archive(course.best);
-    archive(course.best_at);
     archive(state.g);
     archive(state.dose);
     method->exchange(archive);
@@ -133,13 +130,14 @@ class Run {
     const double threshold = task_.demands.window.threshold();
     even_intensity_ = threshold / even.mean;
     max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * even_intensity_;
+    const double least = threshold / even.largest;
+    if (task_.raising.factor > 0) max_intensity_ = std::max(max_intensity_, least);
     const double reached = max_intensity_ * even.largest;
-    if (task_.demands.grey || reached >= threshold) return;
+    if (task_.demands.grey || max_intensity_ >= least) return;
     throw Error{Fault::usage, "an intensity of at most " + format_number(max_intensity_, 3) +
                                   " (--max-intensity, --turns) gives a dose of at most " + format_number(reached, 3) +
                                   " if every pixel is lit at every angle, and the threshold is " +
-                                  format_number(threshold) + "; more than " +
-                                  format_number(threshold / even.largest, 3) + " is needed"};
+                                  format_number(threshold) + "; more than " + format_number(least, 3) + " is needed"};
   }
 
   /// False when the pass was interrupted.
@@ -155,6 +153,7 @@ class Run {
     if (task_.blur_px > 0)
       light = (blurred = std::make_unique<light::BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
     if (!work.method) {
+      work.search.max_intensity = max_intensity_;
       work.method = task_.make(max_intensity_);
       if (task_.initial) {
         work.state.g = collapse_images(
@@ -165,13 +164,14 @@ class Run {
     if (task_.watch) {
       watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
     }
-    const Outcome outcome = run_method(*work.method, problem, *light, task_.limits, work.state, work.course, watch,
-                                       task_.interruption.pause);
+    const Outcome outcome = run_shortest(*work.method, problem, *light, task_.limits, task_.raising, work.state,
+                                         work.search, watch, task_.interruption.pause);
     if (outcome.reason == "interrupted") {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
     }
     ledger_.end(outcome);
+    max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
     finish(problem, work.state, pass, sharp);
     return true;
   }
@@ -243,6 +243,8 @@ class Run {
   void keep(Archive& to, Work& work) {
     begin_open(to);
     ledger_.exchange(to);
+    to(max_intensity_);
+    work.search.exchange(to);
     work.exchange(to);
     to.seal();
   }
@@ -255,7 +257,9 @@ class Run {
       finished_.take(std::move(*images));
     }
     ledger_.exchange(from);
-    work.method = task_.make(max_intensity_);
+    from(max_intensity_);
+    work.search.exchange(from);
+    work.method = task_.make(work.search.max_intensity);
     work.exchange(from);
     from.seal();
   }

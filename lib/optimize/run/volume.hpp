@@ -10,7 +10,7 @@
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
 #include "optimize/run/interruption.hpp"
-#include "optimize/run/run_method.hpp"
+#include "optimize/run/shortest.hpp"
 #include "optimize/target/slice_reader.hpp"
 
 namespace vam::optimize {
@@ -21,15 +21,13 @@ struct IntensityLimit {
   double most = 0;     // 0: none
   double of_even = 0;  // else so many times the even intensity
 };
-/// Every part of tests/bench/printability prints with 1.5 times; 3 times leaves most of the unlimited process window.
-inline constexpr double usual_of_even = 3;
-
 struct VolumeTask {
   VolumeSource source;
   Circle circle;
   Demands demands;
   Limits limits;
   IntensityLimit limit;
+  Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
@@ -48,7 +46,7 @@ struct VolumeOutcome {
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
   double efficiency = 0;
-  double max_intensity = 0;           // the limit; 0: none
+  double max_intensity = 0;           // the limit, as raised; 0: none
   double even_intensity = 0;          // 0: not asked for
   double peak_intensity = 0;          // of the result
   std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere

@@ -12,6 +12,7 @@
 #include "lib/optimize/volumes.hpp"
 #include "light/shadowed.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/run/slice_figures.hpp"
 #include "optimize/target/schedule.hpp"
 #include "oracle/part_2d.hpp"
 
@@ -92,4 +93,33 @@ TEST_CASE("the even intensity gives the threshold dose on average") {
   // Parallel light from all sides: a dose of 2 pi times the intensity.
   CHECK(result.outcome.even_intensity == doctest::Approx(0.8 / (2 * std::numbers::pi)).epsilon(0.01));
   CHECK(result.outcome.max_intensity == doctest::Approx(2 * result.outcome.even_intensity));
+}
+
+TEST_CASE("a limit too low for the goal is raised until the goal is met, and no further") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
+  const auto made = [&](double of_even, Raising raising, int iterations) {
+    VolumeTask task;
+    task.limit.of_even = of_even;
+    task.raising = raising;
+    task.limits = {.iterations = iterations, .until = model::parse_conditions("ver=0", SliceFigures::names())};
+    task.limits.patience = 0;
+    task.make = [](double limit) {
+      MethodOptions options;
+      options.max_intensity = limit;
+      return make_method("apg", options);
+    };
+    return run(slices, task).outcome;
+  };
+  constexpr double start = 1.1;
+  constexpr double factor = 1.3;
+  CHECK(made(start, {}, 60).reason == "iterations");
+  const VolumeOutcome raised = made(start, {.factor = factor, .first = 12, .next = 6}, 200);
+  CHECK(raised.reason == "goal");
+  CHECK(raised.metrics.ver == 0);
+  CHECK(raised.max_intensity > 1.01 * start * raised.even_intensity);
+  CHECK(raised.peak_intensity <= 1.00001 * raised.max_intensity);
+  CHECK(raised.peak_intensity > raised.max_intensity / factor);  // the last raise was needed
+  const VolumeOutcome cut = made(start, {.factor = factor, .first = 12, .next = 6}, 13);
+  CHECK(cut.iterations == 13);
+  CHECK(cut.reason == "iterations");
 }

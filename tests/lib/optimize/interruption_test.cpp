@@ -102,6 +102,29 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("--no-blur"), vam::Error);
 }
 
+TEST_CASE("the same while the limit on intensity is raised") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
+  VolumeTask task;
+  task.limit.of_even = 1.1;
+  task.raising = {.factor = 1.3, .first = 4, .next = 3};
+  task.limits = {.iterations = 20, .until = {}, .patience = 0};
+  task.make = [](double limit) {
+    MethodOptions options;
+    options.max_intensity = limit;
+    return make_method("apg", options);
+  };
+  const auto whole = run(slices, task);
+  CHECK(whole.outcome.max_intensity > 2 * 1.1 * whole.outcome.even_intensity);
+  for (const int steps : {1, 4, 5}) {
+    const auto broken = run_in_pieces(slices, task, steps);
+    CHECK(broken.times >= 3);
+    for (std::size_t k = 0; k < slices.size(); ++k) {
+      CHECK(broken.result.images[k].values == whole.images[k].values);
+    }
+    CHECK(report(broken.result.outcome).dump() == report(whole.outcome).dump());
+  }
+}
+
 TEST_CASE("a damaged state, and one of another job, are refused") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;

@@ -77,7 +77,10 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
     options.max_intensity = max_intensity;
     return make_method(name, options);
   };
-  if (automatic && limited) task.limit.of_even = usual_of_even;
+  if (automatic && limited) {
+    task.limit.of_even = usual_of_even;
+    task.raising = usual_raising;
+  }
   task.limits.iterations = method_entry(name).iterations;
   if (automatic) {
     task.limits.until = vam::model::parse_conditions(automatic_until, SliceFigures::names());

@@ -1,0 +1,34 @@
+#include "optimize/run/shortest.hpp"
+
+#include <algorithm>
+
+namespace vam::optimize {
+
+void Search::exchange(Archive& archive) {
+  archive(course.iteration);
+  archive(course.best);
+  archive(course.best_at);
+  archive(max_intensity);
+  archive(until);
+}
+
+Outcome run_shortest(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause) {
+  if (raising.factor <= 0 || search.max_intensity <= 0) {
+    return run_method(method, problem, light, limits, state, search.course, watch, pause);
+  }
+  if (search.until == 0) search.until = raising.first;
+  for (;;) {
+    Limits now = limits;
+    now.iterations = std::min(limits.iterations, search.until);
+    const Outcome outcome = run_method(method, problem, light, now, state, search.course, watch, pause);
+    const bool ended = outcome.reason == "goal" || outcome.reason == "interrupted";
+    if (ended || outcome.iterations >= limits.iterations) return outcome;
+    search.max_intensity *= raising.factor;
+    search.until = outcome.iterations + raising.next;
+    search.course.best_at = outcome.iterations;
+    method.allow(search.max_intensity);
+  }
+}
+
+}  // namespace vam::optimize

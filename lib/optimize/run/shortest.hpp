@@ -1,0 +1,37 @@
+// The shortest print: the duration is proportional to the largest intensity, so a pass begins with little and is
+// allowed more when its goal is not met. Projections within a limit are within every higher one, so that nothing is
+// lost; a limit that is lowered costs as many iterations as beginning anew.
+#pragma once
+
+#include "optimize/run/run_method.hpp"
+
+namespace vam::optimize {
+
+struct Raising {
+  double factor = 0;  // of the limit, each time; 0: it is fixed
+  int first = 0;      // iterations with the first limit
+  int next = 0;       // and with each one after it
+};
+
+/// Times the even intensity (volume.hpp) to begin with. Every part of tests/bench/printability prints with twice of it,
+/// in 10 to 13 iterations at 0.13 mm; 3 times saves three of them, but not a turn.
+inline constexpr double usual_of_even = 2;
+inline constexpr Raising usual_raising{.factor = 1.5, .first = 16, .next = 8};
+/// The same parts print with 1.2 to 1.45 times, in 8 to 31 iterations.
+inline constexpr double shortest_of_even = 1.2;
+inline constexpr Raising shortest_raising{.factor = 1.1, .first = 24, .next = 6};
+
+/// Where a search stands.
+struct Search {
+  Course course;
+  double max_intensity = 0;  // in force; 0: none
+  int until = 0;             // the iteration up to which it is
+  void exchange(Archive& archive);
+};
+
+/// As run_method(), which it is when the limit is fixed or there is none; else the limit is raised until the goal is
+/// met or limits.iterations are done.
+Outcome run_shortest(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
+                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause);
+
+}  // namespace vam::optimize
