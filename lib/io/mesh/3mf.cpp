@@ -1,63 +1,157 @@
-// 3MF through assimp, which ignores the model's unit: that is read from the archive here.
-#include <assimp/scene.h>
-
-#include <assimp/Importer.hpp>
-#include <regex>
+// 3MF: the objects of a package, placed as its build says. What they expand to is counted before it is made.
+#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <utility>
 
 #include "io/mesh/private/formats.hpp"
-#include "io/mesh/private/zip_member.hpp"
+#include "io/mesh/private/model_part.hpp"
+#include "io/mesh/private/zip_archive.hpp"
 
 namespace vam::io {
 
 namespace {
 
-// 3MF core specification, table "unit": millimetre when absent.
-double unit_mm(const std::string& bytes) {
-  const auto head = zip_member_head(bytes, ".model", 4096);
-  if (!head) throw MeshProblem{"not a whole 3MF file: no 3D model in the zip archive; it is truncated or damaged"};
-  std::smatch unit;
-  if (!std::regex_search(*head, unit, std::regex("<model[^>]*\\sunit\\s*=\\s*[\"']([a-z]+)[\"']"))) return 1;
-  const std::pair<const char*, double> units[] = {{"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10},
-                                                  {"inch", 25.4},   {"foot", 304.8},   {"meter", 1000}};
-  for (const auto& [name, mm] : units) {
-    if (unit[1] == name) return mm;
-  }
-  throw MeshProblem{"unknown 3MF unit '" + unit[1].str() + "'"};
-}
+constexpr std::uint64_t max_triangles = std::uint64_t{1} << 25;
+constexpr std::uint64_t max_points = std::uint64_t{1} << 26;
+constexpr std::uint64_t max_instances = std::uint64_t{1} << 20;
+constexpr std::uint64_t plenty = std::uint64_t{1} << 40;  // sums end here, before they overflow
+constexpr int max_depth = 64;
 
-void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, double unit, PolygonSoup& soup) {
-  const aiMatrix4x4 placed = above * node.mTransformation;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
-    const int first = static_cast<int>(soup.points.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-      const aiVector3D p = placed * mesh.mVertices[v];
-      soup.points.push_back(
-          {unit * static_cast<double>(p.x), unit * static_cast<double>(p.y), unit * static_cast<double>(p.z)});
+// Of an object with all its components.
+struct Expanded {
+  std::uint64_t triangles = 0;
+  std::uint64_t points = 0;
+  std::uint64_t instances = 1;
+  bool open = true;  // it is being counted: met again, it contains itself
+};
+
+std::string without_slash(const std::string& path) { return path.starts_with('/') ? path.substr(1) : path; }
+
+class Package {
+ public:
+  explicit Package(std::string_view bytes) : archive_(bytes) {
+    if (archive_.has("_rels/.rels")) {
+      root_ = without_slash(model_target([&](const auto& take) { archive_.read("_rels/.rels", take); }));
     }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      auto& face = soup.faces.emplace_back();
-      for (unsigned c = 0; c < mesh.mFaces[f].mNumIndices; ++c) {
-        face.push_back(first + static_cast<int>(mesh.mFaces[f].mIndices[c]));
-      }
-    }
+    if (root_.empty()) root_ = archive_.first_with(".model");
+    if (root_.empty()) throw MeshProblem{"not a 3MF file: the zip archive has no 3D model"};
   }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) collect(scene, *node.mChildren[c], placed, unit, soup);
-}
+
+  PolygonSoup placed() {
+    Expanded all{0, 0, 0, false};
+    const std::vector<Instance>& build = part(root_).build;
+    if (build.empty()) throw MeshProblem{"its build has no item; there is nothing to print"};
+    for (const Instance& item : build) add(all, expanded(root_, item, 0));
+    if (all.triangles > max_triangles || all.points > max_points || all.instances > max_instances) {
+      throw MeshProblem{"its components expand to " + number(all.instances) + " objects of " + number(all.triangles) +
+                        " triangles and " + number(all.points) + " vertices; up to " + number(max_instances) + ", " +
+                        number(max_triangles) + " and " + number(max_points) + " are read"};
+    }
+    for (const Instance& item : build) place(root_, item, {});
+    return std::move(soup_);
+  }
+
+ private:
+  static std::string number(std::uint64_t count) { return count >= plenty ? "more than 10^12" : std::to_string(count); }
+
+  const ModelPart& part(const std::string& name) {
+    const auto known = parts_.find(name);
+    if (known != parts_.end()) return known->second;
+    return parts_[name] = parse_model_part([&](const auto& take) { archive_.read(name, take); });
+  }
+  static std::string part_name(const std::string& from, const Instance& instance) {
+    return instance.part.empty() ? from : without_slash(instance.part);
+  }
+  const Object3mf& object(const std::string& name, unsigned id) {
+    const ModelPart& owner = part(name);
+    const auto found = owner.objects.find(id);
+    if (found == owner.objects.end()) {
+      throw MeshProblem{"refers to object " + std::to_string(id) + ", which " + name + " does not have"};
+    }
+    return found->second;
+  }
+
+  static void add(Expanded& sum, const Expanded& more) {
+    sum.triangles = std::min(sum.triangles + more.triangles, plenty);
+    sum.points = std::min(sum.points + more.points, plenty);
+    sum.instances = std::min(sum.instances + more.instances, plenty);
+  }
+
+  const Expanded& expanded(const std::string& from, const Instance& instance, int depth) {
+    const std::string name = part_name(from, instance);
+    const std::string which = "object " + std::to_string(instance.object);
+    const auto [place, fresh] = counted_.try_emplace({name, instance.object});
+    Expanded& count = place->second;
+    if (!fresh && count.open) throw MeshProblem{which + " is a component of itself"};
+    if (!fresh) return count;
+    if (depth > max_depth) throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth)};
+    const Object3mf& made_of = object(name, instance.object);
+    if (!made_of.unread.empty()) {
+      throw MeshProblem{which + " has a '" + made_of.unread + "', which is not read; export it as a plain mesh"};
+    }
+    count.triangles = made_of.triangles.size();
+    count.points = made_of.points.size();
+    for (const Instance& component : made_of.components) add(count, expanded(name, component, depth + 1));
+    count.open = false;
+    return count;
+  }
+
+  void place(const std::string& from, const Instance& instance, const Placement& outer) {
+    const std::string name = part_name(from, instance);
+    const Object3mf& made_of = object(name, instance.object);
+    const Placement placement = instance.placement.then(outer);
+    const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
+    const int first = static_cast<int>(soup_.points.size());
+    const int last = static_cast<int>(made_of.points.size());
+    for (const auto& point : made_of.points) soup_.points.push_back(placement(point));
+    for (auto [a, b, c] : made_of.triangles) {
+      for (const int corner : {a, b, c}) {
+        if (corner >= 0 && corner < last) continue;
+        throw MeshProblem{"object " + std::to_string(instance.object) + " uses vertex " + std::to_string(corner) +
+                          " of " + std::to_string(last) + " (counted from 0)"};
+      }
+      if (mirrored) std::swap(b, c);
+      soup_.faces.push_back({first + a, first + b, first + c});
+    }
+    for (const Instance& component : made_of.components) place(name, component, placement);
+  }
+
+  ZipArchive archive_;
+  std::string root_;
+  std::map<std::string, ModelPart> parts_;
+  std::map<std::pair<std::string, unsigned>, Expanded> counted_;
+  PolygonSoup soup_;
+};
 
 }  // namespace
 
-PolygonSoup parse_3mf(const std::string& bytes) {
-  const double unit = unit_mm(bytes);
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "3mf");
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw MeshProblem{std::string("not a whole 3MF file: ") + importer.GetErrorString()};
+std::array<double, 3> Placement::operator()(const std::array<double, 3>& p) const {
+  std::array<double, 3> moved = rows[3];
+  for (std::size_t from = 0; from < 3; ++from) {
+    for (std::size_t to = 0; to < 3; ++to) moved[to] += p[from] * rows[from][to];
   }
-  PolygonSoup soup;
-  collect(*scene, *scene->mRootNode, aiMatrix4x4(), unit, soup);
-  return soup;
+  return moved;
 }
+
+Placement Placement::then(const Placement& outer) const {
+  Placement both;
+  for (std::size_t row = 0; row < 4; ++row) {
+    std::array<double, 3> sum = row < 3 ? std::array<double, 3>{} : outer.rows[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t column = 0; column < 3; ++column) sum[column] += rows[row][k] * outer.rows[k][column];
+    }
+    both.rows[row] = sum;
+  }
+  return both;
+}
+
+bool Placement::mirrors() const {
+  const auto& [a, b, c, shift] = rows;
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
+         0;
+}
+
+PolygonSoup parse_3mf(const std::string& bytes) { return Package(bytes).placed(); }
 
 }  // namespace vam::io

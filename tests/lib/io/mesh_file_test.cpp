@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -304,4 +306,121 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   } catch (const vam::Error& error) {
     CHECK(error.fault == vam::Fault::no_input);
   }
+}
+
+// ---- 3MF beyond one mesh: components, several parts, what is refused ----
+
+namespace {
+
+constexpr const char* core_space = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
+
+std::string box_mesh() {
+  std::string text = "<mesh><vertices>";
+  for (const auto& p : box().points) {
+    text += "<vertex x=\"" + std::to_string(p[0]) + "\" y=\"" + std::to_string(p[1]) + "\" z=\"" +
+            std::to_string(p[2]) + "\"/>";
+  }
+  text += "</vertices><triangles>";
+  for (const auto& t : box().triangles) {
+    text += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
+            std::to_string(t[2]) + "\"/>";
+  }
+  return text + "</triangles></mesh>";
+}
+
+std::string object(int id, const std::string& inside) {
+  return "<object id=\"" + std::to_string(id) + "\">" + inside + "</object>";
+}
+
+std::string component(int id, const std::string& more = "") {
+  return "<component objectid=\"" + std::to_string(id) + "\" " + more + "/>";
+}
+
+std::string model(const std::string& objects, const std::string& build, const std::string& attributes = "") {
+  return "<model " + std::string(core_space) + " " + attributes + "><resources>" + objects + "</resources><build>" +
+         build + "</build></model>";
+}
+
+std::string item(int id, const std::string& more = "") {
+  return "<item objectid=\"" + std::to_string(id) + "\" " + more + "/>";
+}
+
+std::string package(const std::string& root, const std::string& second = "") {
+  Zip zip;
+  zip.add("3D/3dmodel.model", root);
+  if (!second.empty()) zip.add("3D/Objects/second.model", second);
+  return zip.done();
+}
+
+}  // namespace
+
+TEST_CASE("3MF: components are placed from the inside out, mirrored ones stay outside out, unprintable ones stay out") {
+  const scratch::Folder folder;
+  const std::string nested =
+      object(1, box_mesh()) + object(2, "<components>" + component(1, "transform=\"2 0 0 0 1 0 0 0 1 1 0 0\"") +
+                                            component(1, "transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"") + "</components>");
+  const auto mesh = read_mesh(folder.write(
+      "a", package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") + item(1, "printable=\"0\"")))));
+  CHECK(mesh.triangles.size() == 24);
+  CHECK(volume(mesh) == doctest::Approx(12 + 6));
+  double low = 1e9;
+  double high = -1e9;
+  for (const auto& p :
+       mesh.points) {  // x of the box runs along y now: from -1 (mirrored) to 1 + 2 (stretched, shifted)
+    low = std::min(low, p[1]);
+    high = std::max(high, p[1]);
+    CHECK(p[2] >= 5);
+  }
+  CHECK(low == doctest::Approx(-1));
+  CHECK(high == doctest::Approx(3));
+}
+
+TEST_CASE("3MF: an object of another part, whose unit is its own") {
+  const scratch::Folder folder;
+  const std::string production =
+      "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "
+      "requiredextensions=\"p\"";
+  const std::string root =
+      model(object(1, "<components>" + component(7, "p:path=\"/3D/Objects/second.model\"") + "</components>"), item(1),
+            production);
+  const std::string bytes = package(root, model(object(7, box_mesh()), "", "unit=\"centimeter\""));
+  CHECK(volume(read_mesh(folder.write("a", bytes))) == doctest::Approx(6000));
+  CHECK(has(refusal(folder, package(root)), "3D/Objects/second.model"));
+}
+
+TEST_CASE("3MF: what expands without end, or means another shape than its triangles, is refused before it is made") {
+  const scratch::Folder folder;
+  const auto ten = [](int id) {
+    std::string text = "<components>";
+    for (int i = 0; i < 10; ++i) text += component(id);
+    return text + "</components>";
+  };
+  std::string levels = object(1, box_mesh());
+  for (int id = 2; id <= 10; ++id) levels += object(id, ten(id - 1));
+  CHECK(has(refusal(folder, package(model(levels, item(10)))),
+            "expand to 1111111111 objects of 12000000000 triangles and 8000000000 vertices"));
+  for (int id = 11; id <= 40; ++id) levels += object(id, ten(id - 1));
+  CHECK(has(refusal(folder, package(model(levels, item(40)))), "more than 10^12"));
+  CHECK(has(refusal(folder, package(model(object(1, "<components>" + component(2) + "</components>") +
+                                              object(2, "<components>" + component(1) + "</components>"),
+                                          item(1)))),
+            "object 1 is a component of itself"));
+  std::string chain = object(1, box_mesh());
+  for (int id = 2; id <= 100; ++id) chain += object(id, "<components>" + component(id - 1) + "</components>");
+  CHECK(has(refusal(folder, package(model(chain, item(100)))), "nested deeper than 64"));
+
+  const std::string lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
+  std::string beams = box_mesh();
+  beams.insert(beams.find("</mesh>"),
+               "<b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice>");
+  CHECK(has(refusal(folder, package(model(object(3, beams), item(3), lattice))), "object 3 has a 'beamlattice'"));
+  CHECK(has(refusal(folder, package(model(object(3, box_mesh()), item(3),
+                                          "xmlns:v=\"http://example.com/volumes\" requiredextensions=\"v\""))),
+            "needs the 3MF extension 'http://example.com/volumes'"));
+  CHECK(has(refusal(folder, package(model(object(1, box_mesh()), ""))), "its build has no item"));
+  CHECK(has(refusal(folder, package(model(object(1, box_mesh()), item(2)))), "refers to object 2"));
+  CHECK(has(refusal(folder, package(model(object(1, box_mesh()), item(1, "transform=\"1 0 0\"")))),
+            "its <item> has transform '1 0 0'"));
+  CHECK(has(refusal(folder, package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, box_mesh()), item(1)))),
+            "declares a document type"));
 }

@@ -46,7 +46,8 @@ struct MeshFormat {
 [[nodiscard]] PolygonSoup parse_ply(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_off(const std::string& bytes);
 
-/// By assimp, with every build item placed and the model's unit converted to mm. Throws MeshProblem.
+/// Every build item placed with its components, the model's unit converted to mm. Throws MeshProblem: what the parts
+/// throw, a component loop, more than 2^25 triangles, 2^26 vertices or 2^20 objects in all, a beam lattice.
 [[nodiscard]] PolygonSoup parse_3mf(const std::string& bytes);
 
 }  // namespace vam::io

@@ -1,0 +1,182 @@
+#include "io/mesh/private/model_part.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "base/text.hpp"
+#include "io/mesh/private/formats.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t max_triangles = std::size_t{1} << 25;
+constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02";
+
+// Extensions without which the shape of an object is still what its triangles say. Beam lattices are refused object by
+// object, as a file may declare the extension without using it.
+constexpr std::array<std::string_view, 5> harmless{
+    "http://schemas.microsoft.com/3dmanufacturing/material/2015/02",
+    "http://schemas.microsoft.com/3dmanufacturing/production/2015/06",
+    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02",
+    "http://schemas.microsoft.com/3dmanufacturing/beamlattice/balls/2020/07",
+    "http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07",
+};
+
+// 3MF core specification, 3.4: millimetre when absent.
+double unit_mm(const XmlElement& model) {
+  const std::string_view unit = model.attribute("unit").value_or("millimeter");
+  const std::pair<std::string_view, double> units[] = {{"micron", 1e-3}, {"millimeter", 1}, {"centimeter", 10},
+                                                       {"inch", 25.4},   {"foot", 304.8},   {"meter", 1000}};
+  for (const auto& [name, mm] : units) {
+    if (unit == name) return mm;
+  }
+  throw MeshProblem{"unknown 3MF unit '" + std::string(unit) + "'"};
+}
+
+class ModelReader {
+ public:
+  void declare(std::string_view prefix, std::string_view space) { spaces_[std::string(prefix)] = space; }
+
+  void begin(const XmlElement& element) {
+    ++depth_;
+    if (element.space != core) {
+      // A shape of another kind stands beside the mesh or, a beam lattice, in it.
+      if (object_ != nullptr && (depth_ == object_depth_ + 1 || element.name == "beamlattice")) unread(element);
+    } else if (element.name == "vertex" && object_ != nullptr) {
+      object_->points.push_back(
+          {unit_ * number(element, "x"), unit_ * number(element, "y"), unit_ * number(element, "z")});
+    } else if (element.name == "triangle" && object_ != nullptr) {
+      add_triangle(element);
+    } else if (element.name == "component" && object_ != nullptr) {
+      object_->components.push_back(instance(element));
+    } else if (element.name == "item") {
+      if (element.attribute("printable").value_or("1") != "0") part_.build.push_back(instance(element));
+    } else if (element.name == "object") {
+      begin_object(element);
+    } else if (element.name == "model") {
+      unit_ = unit_mm(element);
+      check_extensions(element);
+      found_ = true;
+    }
+  }
+  void end() {
+    if (depth_-- == object_depth_) object_ = nullptr;
+  }
+
+  ModelPart result() {
+    if (!found_) throw MeshProblem{"not a 3MF file: its model part has no model"};
+    return std::move(part_);
+  }
+
+ private:
+  void check_extensions(const XmlElement& model) const {
+    for (const std::string& prefix : split(std::string(model.attribute("requiredextensions").value_or("")), ' ')) {
+      const auto space = spaces_.find(prefix);
+      if (prefix.empty() ||
+          (space != spaces_.end() && std::find(harmless.begin(), harmless.end(), space->second) != harmless.end())) {
+        continue;
+      }
+      throw MeshProblem{"needs the 3MF extension '" + (space != spaces_.end() ? space->second : prefix) +
+                        "', which is not read; export it as a plain mesh"};
+    }
+  }
+
+  void begin_object(const XmlElement& element) {
+    const unsigned id = number_of_object(element, "id");
+    const auto [place, fresh] = part_.objects.try_emplace(id);
+    if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id)};
+    object_ = &place->second;
+    object_depth_ = depth_;
+  }
+
+  void unread(const XmlElement& element) const {
+    if (object_->unread.empty()) object_->unread = element.name;
+  }
+
+  void add_triangle(const XmlElement& element) {
+    if (++triangles_ > max_triangles) {
+      throw MeshProblem{"has more than " + std::to_string(max_triangles) + " triangles, the most that are read"};
+    }
+    object_->triangles.push_back({corner(element, "v1"), corner(element, "v2"), corner(element, "v3")});
+  }
+
+  [[nodiscard]] Instance instance(const XmlElement& element) const {
+    Instance made;
+    made.part = element.attribute("path").value_or("");
+    made.object = number_of_object(element, "objectid");
+    const auto text = element.attribute("transform");
+    if (!text) return made;
+    std::size_t count = 0;
+    for (const std::string& word : split(std::string(*text), ' ')) {
+      if (word.empty()) continue;
+      const auto value = parse_number(word);
+      if (!value || count >= 12) wrong(element, "transform");
+      made.placement.rows[count / 3][count % 3] = *value * (count < 9 ? 1 : unit_);
+      ++count;
+    }
+    if (count != 12) wrong(element, "transform");
+    return made;
+  }
+
+  [[noreturn]] static void wrong(const XmlElement& element, std::string_view attribute) {
+    const auto text = element.attribute(attribute);
+    throw MeshProblem{
+        "its <" + std::string(element.name) + "> has " +
+        (text ? std::string(attribute) + " '" + std::string(*text) + "'" : "no " + std::string(attribute)) +
+        "; it is damaged"};
+  }
+  [[nodiscard]] static double number(const XmlElement& element, std::string_view attribute) {
+    const auto value = parse_number(element.attribute(attribute).value_or(""));
+    if (!value) wrong(element, attribute);
+    return *value;
+  }
+  template <class Whole>
+  [[nodiscard]] static Whole whole(const XmlElement& element, std::string_view attribute) {
+    const std::string_view text = element.attribute(attribute).value_or("");
+    Whole value{};
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc{} || end != text.data() + text.size()) wrong(element, attribute);
+    return value;
+  }
+  [[nodiscard]] static int corner(const XmlElement& element, std::string_view attribute) {
+    return whole<int>(element, attribute);
+  }
+  [[nodiscard]] static unsigned number_of_object(const XmlElement& element, std::string_view attribute) {
+    return whole<unsigned>(element, attribute);
+  }
+
+  ModelPart part_;
+  std::map<std::string, std::string> spaces_;  // by prefix
+  Object3mf* object_ = nullptr;                // that is open
+  int depth_ = 0;
+  int object_depth_ = 0;
+  std::size_t triangles_ = 0;
+  double unit_ = 1;
+  bool found_ = false;
+};
+
+}  // namespace
+
+ModelPart parse_model_part(const ByteFeed& feed) {
+  ModelReader reader;
+  parse_xml(feed, {[&](const XmlElement& element) { reader.begin(element); }, [&] { reader.end(); },
+                   [&](std::string_view prefix, std::string_view space) { reader.declare(prefix, space); }});
+  return reader.result();
+}
+
+std::string model_target(const ByteFeed& feed) {
+  std::string target;
+  parse_xml(feed, {[&](const XmlElement& element) {
+                     if (element.name != "Relationship" || !target.empty()) return;
+                     if (element.attribute("Type").value_or("").ends_with("/3dmodel")) {
+                       target = element.attribute("Target").value_or("");
+                     }
+                   },
+                   {},
+                   {}});
+  return target;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,50 @@
+// One model part of a 3MF package: the objects and the build of one XML document.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "io/mesh/private/xml.hpp"
+
+namespace vam::io {
+
+/// Rows of the matrix of the 3MF core specification, 3.3: row vectors, (x y z 1) M; translations in mm.
+struct Placement {
+  std::array<std::array<double, 3>, 4> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
+
+  [[nodiscard]] std::array<double, 3> operator()(const std::array<double, 3>& p) const;
+  /// First this one, then `outer`.
+  [[nodiscard]] Placement then(const Placement& outer) const;
+  /// Turns the inside out.
+  [[nodiscard]] bool mirrors() const;
+};
+
+/// An object somewhere: of a component, or of an item of the build.
+struct Instance {
+  std::string part;  // of another part of the package (production extension); empty: the same one
+  unsigned object = 0;
+  Placement placement;
+};
+
+struct Object3mf {
+  std::vector<std::array<double, 3>> points;  // mm
+  std::vector<std::array<int, 3>> triangles;  // indices as the file has them
+  std::vector<Instance> components;
+  std::string unread;  // the element that makes up its shape and that is not read; empty: none
+};
+
+struct ModelPart {
+  std::map<unsigned, Object3mf> objects;
+  std::vector<Instance> build;
+};
+
+/// Throws MeshProblem: not XML, a unit or an extension that is not
+/// known, a number or a reference that is none, more than 2^25 triangles, a document type declaration.
+[[nodiscard]] ModelPart parse_model_part(const ByteFeed& feed);
+
+/// The target of the first relationship whose type ends in "/3dmodel"; empty when there is none. Throws MeshProblem.
+[[nodiscard]] std::string model_target(const ByteFeed& feed);
+
+}  // namespace vam::io

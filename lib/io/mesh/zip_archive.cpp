@@ -1,0 +1,65 @@
+#include "io/mesh/private/zip_archive.hpp"
+
+#include <zip.h>
+
+#include <vector>
+
+#include "io/mesh/private/formats.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr zip_flags_t name_flags = ZIP_FL_NOCASE;  // Open Packaging Conventions: names differ by more than case
+
+[[noreturn]] void damaged(const std::string& what, zip_error_t* error) {
+  std::string why = zip_error_strerror(error);
+  zip_error_fini(error);
+  throw MeshProblem{"not a whole 3MF file: " + what + " (" + why + "); it is truncated or damaged"};
+}
+
+struct CloseFile {
+  void operator()(zip_file_t* file) const { zip_fclose(file); }
+};
+
+}  // namespace
+
+void ZipArchive::Close::operator()(zip* archive) const { zip_discard(archive); }
+
+ZipArchive::ZipArchive(std::string_view bytes) {
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+  if (source == nullptr) damaged("no zip archive", &error);
+  archive_.reset(zip_open_from_source(source, ZIP_RDONLY, &error));
+  if (archive_ == nullptr) {
+    zip_source_free(source);
+    damaged("no zip archive", &error);
+  }
+}
+
+bool ZipArchive::has(const std::string& name) const {
+  return zip_name_locate(archive_.get(), name.c_str(), name_flags) >= 0;
+}
+
+std::string ZipArchive::first_with(std::string_view suffix) const {
+  const zip_int64_t count = zip_get_num_entries(archive_.get(), 0);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* name = zip_get_name(archive_.get(), static_cast<zip_uint64_t>(i), 0);
+    if (name != nullptr && std::string_view(name).ends_with(suffix)) return name;
+  }
+  return "";
+}
+
+void ZipArchive::read(const std::string& name, const std::function<void(std::string_view)>& take) const {
+  const std::unique_ptr<zip_file_t, CloseFile> file(zip_fopen(archive_.get(), name.c_str(), name_flags));
+  if (file == nullptr) damaged(name, zip_get_error(archive_.get()));
+  std::vector<char> piece(std::size_t{1} << 16);
+  zip_int64_t got = 0;
+  while ((got = zip_fread(file.get(), piece.data(), piece.size())) > 0) {
+    take({piece.data(), static_cast<std::size_t>(got)});
+  }
+  if (got < 0) damaged(name, zip_file_get_error(file.get()));
+}
+
+}  // namespace vam::io
