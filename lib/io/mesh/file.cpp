@@ -1,17 +1,21 @@
 #include "io/mesh/file.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
+#include "io/stream/apart.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
 
 namespace {
+
+constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
 
 // By content, whatever the name.
 PolygonSoup parse(const std::string& bytes) {
@@ -70,6 +74,46 @@ model::TriangleSoup triangulated(PolygonSoup&& soup) {
   return mesh;
 }
 
+model::TriangleSoup parsed(const std::string& bytes, const std::string& name) {
+  try {
+    PolygonSoup soup = parse(bytes);
+    check_points(soup);
+    return triangulated(std::move(soup));
+  } catch (const MeshProblem& problem) {
+    throw Error{Fault::data, name + ": " + problem.text};
+  }
+}
+
+void send(const model::TriangleSoup& mesh, Sender& out) {
+  out.put(std::uint64_t{mesh.points.size()});
+  out.put(mesh.points.data(), mesh.points.size() * sizeof mesh.points[0]);
+  out.put(std::uint64_t{mesh.triangles.size()});
+  out.put(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+}
+
+template <class Item>
+void receive(Receiver& in, std::vector<Item>& items) {
+  items.resize(in.get_count(std::numeric_limits<int>::max()));
+  in.get(items.data(), items.size() * sizeof items[0]);
+}
+
+model::TriangleSoup received(Receiver& in) {
+  model::TriangleSoup mesh;
+  receive(in, mesh.points);
+  receive(in, mesh.triangles);
+  return mesh;
+}
+
+// Once more, as what a child sends is not believed.
+void check_indices(const model::TriangleSoup& mesh, const std::string& name) {
+  const int points = static_cast<int>(mesh.points.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (const int corner : triangle) {
+      if (corner < 0 || corner >= points) throw Error{Fault::data, name + ": is damaged: its reader failed"};
+    }
+  }
+}
+
 }  // namespace
 
 std::string mesh_format_names() {
@@ -85,14 +129,16 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
 }
 
 model::TriangleSoup read_mesh(const std::string& path) {
-  const std::string bytes = read_all(path, Content::binary);
-  try {
-    PolygonSoup soup = parse(bytes);
-    check_points(soup);
-    return triangulated(std::move(soup));
-  } catch (const MeshProblem& problem) {
-    throw Error{Fault::data, (path == "-" ? "stdin" : path) + ": " + problem.text};
-  }
+  const std::string bytes = read_all(path, Content::binary, most_bytes);
+  const std::string name = path == "-" ? "stdin" : path;
+  // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
+  if (has_binary_stl_size(bytes)) return parsed(bytes, name);
+  model::TriangleSoup mesh;
+  read_apart(
+      {name, bytes.size()}, [&](Sender& out) { send(parsed(bytes, name), out); },
+      [&](Receiver& in) { mesh = received(in); });
+  check_indices(mesh, name);
+  return mesh;
 }
 
 }  // namespace vam::io

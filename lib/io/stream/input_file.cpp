@@ -40,6 +40,7 @@ InputFile::InputFile(const std::string& path, Content content) : name_(path == "
   }
   (void)fcntl(descriptor_, F_SETPIPE_SZ, pipe_bytes);  // fails on what is no pipe, and then does not matter
   (void)posix_fadvise(descriptor_, 0, 0, POSIX_FADV_SEQUENTIAL);
+  if (S_ISREG(about.st_mode)) size_ = static_cast<std::uint64_t>(about.st_size);
   buffer_ = std::make_unique_for_overwrite<char[]>(buffer_bytes);
 }
 

@@ -34,6 +34,9 @@ class InputFile {
   void skip(std::size_t size);
   /// Throws Error: io.
   bool at_end() { return peek().empty(); }
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+  /// Bytes of a regular file; 0 of a pipe or a device.
+  [[nodiscard]] std::uint64_t size() const { return size_; }
 
  private:
   std::size_t receive(char* to, std::size_t size);
@@ -43,6 +46,7 @@ class InputFile {
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::uint64_t position_ = 0;
+  std::uint64_t size_ = 0;
 };
 
 /// A file, a special file (/dev/full, a FIFO) or stdout ("-"), written front to back. A regular file is written without

@@ -1,126 +1,92 @@
-// A grid's voxels one leaf (8 x 8 x 8) at a time. An archive holds a tree's topology first and the leaves' values after
-// it, in the order of the tree: so each leaf is read when its turn comes, shown and let go.
-#include <openvdb/io/Archive.h>
-#include <openvdb/io/GridDescriptor.h>
-#include <openvdb/openvdb.h>
-
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <utility>
+#include <algorithm>
 
 #include "base/error.hpp"
-#include "io/stream/finite.hpp"
 #include "io/stream/stream.hpp"
-#include "io/vdb/private/archive.hpp"
-#include "io/vdb/private/facts.hpp"
+#include "io/vdb/private/passage.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
 
 namespace {
 
-using openvdb::Coord;
-using openvdb::CoordBBox;
-using openvdb::FloatGrid;
-using Tree = FloatGrid::TreeType;
-using Leaf = Tree::LeafNodeType;
-using Begin = std::function<BlockTaker(const VolumeFacts&)>;
-
-// OpenVDB reads name, metadata, transform and topology of a grid before it calls readBuffers().
-class PassingGrid : public FloatGrid {
+// Passes the voxels of the grid that was asked for to whom begin() names.
+class Taker {
  public:
-  PassingGrid(std::string wanted, const Begin& begin, bool& found)
-      : wanted_(std::move(wanted)), begin_(begin), found_(found) {}
+  Taker(Receiver& in, const std::function<BlockTaker(const VolumeFacts&)>& begin) : in_(in), begin_(begin) {}
 
-  void readBuffers(std::istream& stream) override {
-    const bool shown = getName() == wanted_ && !found_;
-    BlockTaker take;
-    if (shown) {
-      found_ = true;
-      const VolumeFacts facts = facts_of(*this, first_);
-      take = begin_(facts);
-      check(std::isfinite(facts.background));
-      pass_tiles(take);
-    }
-    for (auto leaf = tree().beginLeaf(); leaf; ++leaf) {
-      leaf->readBuffers(stream, saveFloatAsHalf());
-      if (shown) pass(*leaf, take);
-      Leaf::Buffer gone(openvdb::PartialCreate(), 0.0F);
-      leaf->swap(gone);
+  void run() {
+    while (true) {
+      switch (in_.get<Record>()) {
+        case Record::grid:
+          start(receive_head(in_));
+          break;
+        case Record::other:
+          name(in_.get_text());
+          break;
+        case Record::tile:
+          take_tile(in_.get<TileRecord>());
+          break;
+        case Record::leaf:
+          take_leaf();
+          break;
+        case Record::end:
+          return;
+      }
     }
   }
-  void readBuffers(std::istream& stream, const CoordBBox&) override { readBuffers(stream); }
+  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] const std::string& names() const { return names_; }  // of all grids
 
  private:
-  void check(bool finite) const {
-    if (!finite) throw std::runtime_error("grid '" + getName() + "' has a value that is not a finite number");
+  void start(const GridHead& head) {
+    found_ = true;
+    first_ = {head.first.x(), head.first.y(), head.first.z()};
+    background_ = head.facts.background;
+    name(head.facts.name);
+    take_ = begin_(head.facts);
+  }
+  void name(const std::string& text) { names_ += (names_.empty() ? "" : ", ") + text; }
+
+  void take_tile(const TileRecord& tile) const {
+    constexpr std::array<int, 3> edges{8, 128, 4096};
+    const auto level = static_cast<std::size_t>(std::clamp(tile.level, 1, 3) - 1);
+    if (tile.value != background_) pass(tile.corner, edges[level], nullptr, tile.value);
+  }
+  void take_leaf() {
+    in_.get(&leaf_, sizeof leaf_);
+    pass(leaf_.corner, 8, leaf_.values.data(), 0);
+  }
+  void pass(const std::array<std::int32_t, 3>& corner, int edge, const float* values, float value) const {
+    if (take_) take_({corner[0] - first_[0], corner[1] - first_[1], corner[2] - first_[2], edge, values, value});
   }
 
-  void pass_tiles(const BlockTaker& take) const {
-    auto tile = constTree().cbeginValueAll();
-    tile.setMaxDepth(Tree::DEPTH - 2);  // above the leaves
-    for (; tile; ++tile) {
-      if (*tile == background()) continue;
-      check(std::isfinite(*tile));
-      CoordBBox box;
-      tile.getBoundingBox(box);
-      take(block_at(box.min(), box.dim().x(), nullptr, *tile));
-    }
-  }
-
-  void pass(const Leaf& leaf, const BlockTaker& take) const {
-    const float* values = leaf.buffer().data();
-    check(all_finite(values, Leaf::SIZE));
-    take(block_at(leaf.origin(), static_cast<int>(Leaf::DIM), values, 0));
-  }
-
-  VoxelBlock block_at(const Coord& corner, int edge, const float* values, float value) const {
-    const Coord at = corner - first_;
-    return {at.x(), at.y(), at.z(), edge, values, value};
-  }
-
-  std::string wanted_;
-  const Begin& begin_;
-  bool& found_;
-  Coord first_;
-};
-
-struct Archive : openvdb::io::Archive {
-  // The grids of one archive; their names are added to `names`.
-  void pass(std::istream& stream, const std::string& wanted, const Begin& begin, bool& found, std::string& names) {
-    readHeader(stream);
-    openvdb::io::StreamMetadata::Ptr facts = std::make_shared<openvdb::io::StreamMetadata>();
-    openvdb::io::setStreamMetadataPtr(stream, facts, false);
-    setFormatVersion(stream);
-    setLibraryVersion(stream);
-    setDataCompression(stream);
-    openvdb::MetaMap().readMeta(stream);
-    for (auto left = readGridCount(stream); left > 0; --left) {
-      openvdb::io::GridDescriptor about;
-      openvdb::GridBase::Ptr grid = about.read(stream);
-      names += (names.empty() ? "" : ", ") + about.gridName();
-      if (about.gridType() != FloatGrid::gridType()) names += " (" + grid->valueType() + ")";
-      if (about.gridType() == FloatGrid::gridType()) {
-        grid = std::make_shared<PassingGrid>(wanted, begin, found);
-        grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
-        if (about.isInstance() && about.gridName() == wanted) {
-          throw std::runtime_error("grid '" + wanted + "' shares the voxels of '" + about.instanceParentName() +
-                                   "'; write it as a grid of its own");
-        }
-      }
-      readGrid(grid, about, stream);
-    }
-  }
+  Receiver& in_;
+  const std::function<BlockTaker(const VolumeFacts&)>& begin_;
+  BlockTaker take_;
+  LeafRecord leaf_{};
+  std::array<int, 3> first_{};
+  float background_ = 0;
+  std::string names_;
+  bool found_ = false;
 };
 
 }  // namespace
 
-void read_blocks(const std::string& path, const std::string& name, const Begin& begin) {
+void read_blocks(const std::string& path, const std::string& name,
+                 const std::function<BlockTaker(const VolumeFacts&)>& begin) {
   InputFile file(path);
+  openvdb::initialize();
+  const std::optional<std::string> wanted = name;
   bool found = false;
   std::string names;
-  for_archives(file, [&](std::istream& stream) { Archive().pass(stream, name, begin, found, names); });
+  read_apart(
+      {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, wanted, out); },
+      [&](Receiver& in) {
+        Taker taker(in, begin);
+        taker.run();
+        found = taker.found();
+        names = taker.names();
+      });
   if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "', but " + names};
 }
 

@@ -97,6 +97,7 @@ VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
   facts.name = sparse.getName();
   facts.grid = {box.dim().x(), box.dim().y(), box.dim().z(), 1.0, {}};
   facts.background = sparse.background();
+  facts.level_set = sparse.getGridClass() == openvdb::GRID_LEVEL_SET;
   first = box.min();
   set_transform(sparse, first, facts.grid);
   take_metadata(sparse, facts);

@@ -37,6 +37,7 @@ class SparseVolume {
   std::vector<std::string> history;             // vam:history
   std::string units = "relative";               // vam:units
   std::map<std::string, std::string> metadata;  // other string metadata, vam:printer and vam:stretch_z among them
+  bool level_set = false;                       // distances, as the file says
 
   struct State;  // holds the openvdb grid
   [[nodiscard]] State& state() const { return *state_; }
@@ -60,6 +61,7 @@ struct VolumeFacts {
   std::vector<std::string> history;
   std::string units = "relative";
   std::map<std::string, std::string> metadata;
+  bool level_set = false;  // distances, as the file says
 };
 
 /// A cube of voxels as OpenVDB stores them. Its corner is voxel (i, j, k); parts of it may lie beyond the volume's box.

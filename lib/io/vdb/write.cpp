@@ -25,47 +25,6 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 
-// ---- reading ----------------------------------------------------------------------------------------------------
-
-// Every value of a tree, in tiles and leaves; called in parallel.
-struct FiniteCheck {
-  std::atomic<bool>& finite;
-
-  template <class Node>
-  bool operator()(const Node& node, std::size_t) const {
-    for (auto tile = node.cbeginValueAll(); tile; ++tile) {
-      if (!std::isfinite(*tile)) finite = false;
-    }
-    return finite;
-  }
-  bool operator()(const FloatGrid::TreeType::LeafNodeType& leaf, std::size_t) const {
-    if (!all_finite(leaf.buffer().data(), leaf.SIZE)) finite = false;
-    return finite;
-  }
-};
-
-void check_finite(const FloatGrid& grid) {
-  std::atomic<bool> finite{std::isfinite(grid.background())};
-  openvdb::tree::DynamicNodeManager<const FloatGrid::TreeType> nodes(grid.constTree());
-  nodes.foreachTopDown(FiniteCheck{finite});
-  if (!finite) throw std::runtime_error("grid '" + grid.getName() + "' has a value that is not a finite number");
-}
-
-SparseVolume volume_of(const FloatGrid::Ptr& sparse) {
-  Coord first;
-  VolumeFacts facts = facts_of(*sparse, first);
-  check_finite(*sparse);
-  SparseVolume volume(facts.name, facts.grid, facts.background);
-  volume.state().sparse = sparse;
-  volume.state().first = first;
-  volume.history = std::move(facts.history);
-  volume.units = std::move(facts.units);
-  volume.metadata = std::move(facts.metadata);
-  return volume;
-}
-
-// ---- writing ----------------------------------------------------------------------------------------------------
-
 // Archive::write is what io::File and io::Stream both call; those two do not notice a full disk, or cannot seek.
 struct Archive : openvdb::io::Archive {
   void put(std::ostream& stream, const openvdb::GridCPtrVec& grids, bool seekable) const {
@@ -112,40 +71,6 @@ std::string uuid_of(const openvdb::GridCPtrVec& grids) {
 }
 
 }  // namespace
-
-std::vector<SparseVolume> read_volumes(const std::string& path) {
-  InputFile file(path);
-  std::vector<SparseVolume> volumes;
-  std::string others;
-  for_archives(file, [&](std::istream& stream) {
-    openvdb::io::Stream archive(stream, false);  // delayed loading would copy stdin to a temporary file
-    const auto grids = archive.getGrids();
-    for (const auto& grid : *grids) {
-      if (const auto sparse = openvdb::gridPtrCast<FloatGrid>(grid)) {
-        volumes.push_back(volume_of(sparse));
-      } else {
-        others += " " + grid->getName() + " (" + grid->valueType() + ")";
-      }
-    }
-  });
-  if (volumes.empty()) {
-    throw Error{Fault::data,
-                file.name() + ": holds no grid of floats" + (others.empty() ? std::string() : ", but" + others)};
-  }
-  return volumes;
-}
-
-SparseVolume read_volume(const std::string& path, const std::string& name) {
-  std::vector<SparseVolume> volumes = read_volumes(path);
-  std::string names;
-  for (SparseVolume& volume : volumes) {
-    if (volume.name() == name || (name.empty() && volumes.size() == 1)) return std::move(volume);
-    names += (names.empty() ? "" : ", ") + volume.name();
-  }
-  const std::string subject = path == "-" ? "stdin" : path;
-  if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
-  throw Error{Fault::data, subject + ": has no grid '" + name + "', but " + names};
-}
 
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes) {
   openvdb::initialize();

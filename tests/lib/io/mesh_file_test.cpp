@@ -424,3 +424,16 @@ TEST_CASE("3MF: what expands without end, or means another shape than its triang
   CHECK(has(refusal(folder, package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, box_mesh()), item(1)))),
             "declares a document type"));
 }
+
+TEST_CASE("meshes that crashed or starved a library: one line and status 65, at once") {
+  const scratch::Folder folder;
+  CHECK(refusal(folder, "ply\nformat ascii 1.0\nproperty float x\nend_header\n") != "no error");
+  const std::string header =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  CHECK(volume(read_mesh(folder.write("a", header + "3 0 1 2\n"))) == doctest::Approx(0));
+  const auto begun = std::chrono::steady_clock::now();
+  CHECK(refusal(folder, header + "2000000000 0 1 2\n") != "no error");
+  CHECK(refusal(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n") != "no error");
+  CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(20));
+}

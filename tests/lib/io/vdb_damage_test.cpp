@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "lib/io/vdb_volumes.hpp"
@@ -17,6 +19,46 @@ using scratch::status;
 extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() { return "leak:readTopology"; }  // NOLINT
 #endif
+
+namespace {
+
+// Where the size of a Blosc block stands: the same number is in the block's own head, 12 bytes on.
+std::vector<std::size_t> blosc_sizes(const std::string& bytes) {
+  std::vector<std::size_t> places;
+  for (std::size_t at = 0; at + 24 <= bytes.size(); ++at) {
+    std::int64_t size = 0;
+    std::uint32_t inside = 0;
+    std::memcpy(&size, bytes.data() + at, sizeof size);
+    std::memcpy(&inside, bytes.data() + at + 8 + 12, sizeof inside);
+    if (size > 16 && size == inside && bytes[at + 8] == 2) places.push_back(at);
+  }
+  return places;
+}
+
+}  // namespace
+
+TEST_CASE("a size that OpenVDB believes ends one line, not the process") {
+  const scratch::Folder folder;
+  const auto grid = model::centred_grid(30, 30, 30, 0.1);
+  SparseVolume volume = filled("target", grid, ball(grid));
+  write_volume(folder / "whole.vdb", volume);
+  const std::string whole = slurp(folder / "whole.vdb");
+  const auto places = blosc_sizes(whole);
+  REQUIRE(places.size() > 10);
+  for (const std::int64_t lie : {std::int64_t{-4000}, std::int64_t{-4'000'000}, std::int64_t{1} << 40, INT64_MIN}) {
+    for (std::size_t i = 0; i < places.size(); i += 5) {
+      CAPTURE(lie);
+      CAPTURE(places[i]);
+      std::string damaged = whole;
+      std::memcpy(damaged.data() + places[i], &lie, sizeof lie);
+      spill(folder / "a.vdb", damaged);
+      std::string line;
+      CHECK(status([&] { read_volumes(folder / "a.vdb"); }, &line) == 65);
+      CHECK(line.find('\n') == std::string::npos);
+      CHECK(status([&] { by_blocks(folder / "a.vdb", "target"); }, &line) == 65);
+    }
+  }
+}
 
 TEST_CASE("an archive truncated anywhere is status 65, and a flipped bit never crashes") {
   const scratch::Folder folder;

@@ -1,0 +1,160 @@
+#include "io/stream/apart.hpp"
+
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/stream/private/confine.hpp"
+#include "io/stream/private/slots.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t line_limit = 4096;
+
+std::string gib(std::uint64_t bytes) { return format_number(static_cast<double>(bytes) / (1 << 30), 3) + " GiB"; }
+
+// The memory and the socket of one reading, and the child until it has been waited for.
+class Child {
+ public:
+  Child() {
+    std::array<int, 2> ends{};
+    void* memory = mmap(nullptr, 2 * slot_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    slots.memory = static_cast<char*>(memory);
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) return;
+    slots.socket = ends[0];
+    childs_end = ends[1];
+  }
+  ~Child() {
+    if (process > 0) {
+      kill(process, SIGKILL);
+      (void)wait();
+    }
+    for (const int end : {slots.socket, childs_end}) {
+      if (end >= 0) close(end);
+    }
+    munmap(slots.memory, 2 * slot_bytes);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void start() {
+    process = slots.socket < 0 ? -1 : fork();
+    if (process > 0) {
+      close(childs_end);
+      childs_end = -1;
+    }
+  }
+  // How it ended, as waitpid() says; 0 also where somebody else has waited for it.
+  int wait() {
+    int ended = 0;
+    while (waitpid(process, &ended, 0) < 0 && errno == EINTR) continue;
+    process = -1;
+    return ended;
+  }
+
+  Slots slots;
+  int childs_end = -1;
+  pid_t process = -1;
+};
+
+void send_verdict(int socket, int fault, const std::string& line) {
+  const auto size = static_cast<std::uint32_t>(std::min(line.size(), line_limit));
+  const std::array<std::uint32_t, 3> head{last_word, static_cast<std::uint32_t>(fault), size};
+  if (write_fully(socket, head.data(), sizeof head)) (void)write_fully(socket, line.data(), size);
+}
+
+[[noreturn]] void run_child(Slots slots, const Bounds& bounds, const Foreign& source,
+                            const std::function<void(Sender&)>& parse, int parent) {
+  int fault = 0;
+  std::string line;
+  try {
+    confine(bounds, parent, {slots.socket, source.descriptor});
+    Sender sender(slots);
+    parse(sender);
+    sender.finish();
+  } catch (const Error& error) {
+    fault = static_cast<int>(error.fault);
+    line = error.what();
+  } catch (const std::bad_alloc&) {
+    fault = static_cast<int>(Fault::data);
+    line = source.name + ": asks for more than " + gib(bounds.memory_bytes) + " of memory; it is damaged";
+  } catch (const std::exception& error) {
+    fault = static_cast<int>(Fault::data);
+    line = source.name + ": is damaged: " + error.what();
+  }
+  send_verdict(slots.socket, fault, line);
+  _exit(0);  // nothing is destroyed, nobody else's buffers are flushed
+}
+
+std::string cause_of(int ended, const Bounds& bounds) {
+  if (!WIFSIGNALED(ended)) return "its reader ended early";
+  const int number = WTERMSIG(ended);
+  if (number == SIGXCPU) return "its reader took more than " + std::to_string(bounds.cpu_s) + " s of processor time";
+  const char* name = sigdescr_np(number);
+  return "its reader was ended by signal " + std::to_string(number) + " (" + (name != nullptr ? name : "unknown") + ")";
+}
+
+// After the word that announces it.
+void take_verdict(Child& child) {
+  std::array<std::uint32_t, 2> head{};
+  std::string line;
+  bool whole = read_fully(child.slots.socket, head.data(), sizeof head) && head[1] <= line_limit;
+  if (whole) {
+    line.resize(head[1]);
+    whole = read_fully(child.slots.socket, line.data(), line.size());
+  }
+  if (whole && head[0] == 0) return;
+  if (!whole) throw ChildEnded{};
+  throw Error{static_cast<Fault>(head[0]), line};
+}
+
+}  // namespace
+
+void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
+                const std::function<void(Receiver&)>& take) {
+  const Bounds bounds = bounds_of(source.bytes);
+  Child child;
+  const int parent = getpid();
+  child.start();
+  if (child.process == 0) {
+    Slots slots = child.slots;
+    slots.socket = child.childs_end;
+    run_child(slots, bounds, source, parse, parent);
+  }
+  if (child.process < 0) {
+    throw Error{Fault::memory, source.name + ": no process to read it in (" + std::strerror(errno) +
+                                   "); allow this tool a second process"};
+  }
+  Receiver receiver(child.slots);
+  try {
+    bool whole = true;
+    try {
+      take(receiver);
+    } catch (const ChildEnded&) {
+      whole = false;
+    }
+    if (!receiver.drain()) throw ChildEnded{};
+    take_verdict(child);
+    if (!whole) throw ChildEnded{};
+    (void)child.wait();
+  } catch (const ChildEnded&) {
+    const std::string cause = cause_of(child.wait(), bounds);
+    throw Error{Fault::data, source.name + ": is damaged: " + cause + "; make the file again"};
+  }
+}
+
+}  // namespace vam::io

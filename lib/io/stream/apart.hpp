@@ -1,0 +1,81 @@
+// Foreign bytes are parsed apart: in a process that can compute and send what it has read, and nothing else.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <type_traits>
+
+namespace vam::io {
+
+/// Memory that parent and child share: two slots, of which one is filled while the other is read. Words on a socket
+/// say whose turn it is.
+struct Slots;
+
+/// The child's end. What is put in comes out of Receiver::get() in the same order.
+class Sender {
+ public:
+  explicit Sender(Slots& slots) : slots_(slots) {}
+  void put(const void* bytes, std::size_t size);
+  template <class Value>
+  void put(const Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    put(&value, sizeof value);
+  }
+  void put(const std::string& text);
+  /// Hands over what is still in the slot. Once, at the end.
+  void finish();
+
+ private:
+  void acquire();
+  void submit();
+  Slots& slots_;
+  std::size_t filled_ = 0;
+};
+
+/// The parent's end. The child may send anything, so what is received is examined like a file.
+class Receiver {
+ public:
+  explicit Receiver(Slots& slots) : slots_(slots) {}
+  /// Throws what read_apart() makes an Error of when the child has ended before.
+  void get(void* to, std::size_t size);
+  template <class Value>
+  [[nodiscard]] Value get() {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    Value value;
+    get(&value, sizeof value);
+    return value;
+  }
+  /// A number of things that follow; more than `limit` are taken for a child that failed.
+  [[nodiscard]] std::uint64_t get_count(std::uint64_t limit);
+  /// At most 64 MiB.
+  [[nodiscard]] std::string get_text();
+  /// Passes over what is left; false when the child has ended without its verdict.
+  bool drain();
+
+ private:
+  void next_slot();
+  Slots& slots_;
+  const char* slot_ = nullptr;
+  std::size_t left_ = 0;
+  bool holds_ = false;   // a slot that the child waits for
+  bool judged_ = false;  // the child's verdict is next on the socket
+};
+
+/// What is parsed apart.
+struct Foreign {
+  std::string name;         // begins every message
+  std::uint64_t bytes = 0;  // its size, which bounds memory and time of the child; 0: not known, a pipe
+  int descriptor = -1;      // a file that the child may read
+};
+
+/// Runs parse() in a child and, at the same time, take() here. The child has no file but that descriptor, no network,
+/// no other process, at most 256 MiB and 64 times the file more memory than this process, at most 10 s and 1 s a MiB of
+/// processor time (a pipe: the free memory, 10 min), and dies with this thread. It must not call parallel_for, nor
+/// destroy what does. Throws the child's Error; Fault::data with one line when the child crashed or met a bound;
+/// Fault::memory when no process can be made; what take() throws.
+void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
+                const std::function<void(Receiver&)>& take);
+
+}  // namespace vam::io

@@ -1,0 +1,56 @@
+// Private to the VDB files: what the child that reads archives sends of them, record by record. Each begins with its
+// Record.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "io/stream/apart.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
+
+namespace vam::io {
+
+enum class Record : std::uint8_t {
+  grid,   // a GridHead; its tiles and leaves follow
+  other,  // a text: a grid that is not of floats, "velocity (vec3s)"
+  tile,   // a TileRecord
+  leaf,   // a LeafRecord
+  end,
+};
+
+struct GridHead {
+  VolumeFacts facts;
+  std::string unique_name;          // as the archive tells grids of one name apart
+  std::string shares;               // the unique name of the grid whose voxels it shares; empty: its own
+  openvdb::Coord first;             // index of voxel (0, 0, 0)
+  std::array<double, 3> zero_mm{};  // where index (0, 0, 0) lies
+};
+
+struct TileRecord {
+  std::array<std::int32_t, 3> corner;
+  std::int32_t level;  // 1: 8 voxels a side, 2: 128, 3: 4096
+  float value;
+  std::int32_t active;
+};
+
+struct LeafRecord {
+  std::array<std::uint64_t, 8> active;
+  std::array<std::int32_t, 3> corner;
+  std::int32_t unused;  // without it there would be a gap
+  std::array<float, 512> values;
+};
+
+/// The child's work: sends every archive of the file, of the grids named `wanted` only the first one's voxels where a
+/// name is given. Throws what for_archives() throws.
+void send_archives(InputFile& file, const std::optional<std::string>& wanted, Sender& out);
+
+void send_head(GridHead head, Sender& out);
+/// After its Record.
+[[nodiscard]] GridHead receive_head(Receiver& in);
+
+}  // namespace vam::io

@@ -1,0 +1,133 @@
+// Volumes out of the records of the child that reads archives: leaves and tiles are hung into trees.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <utility>
+
+#include "base/error.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/passage.hpp"
+#include "io/vdb/vdb.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+using Leaf = FloatGrid::TreeType::LeafNodeType;
+using Accessor = openvdb::tree::ValueAccessor<FloatGrid::TreeType, false>;
+
+class Builder {
+ public:
+  explicit Builder(Receiver& in) : in_(in) {}
+
+  void run() {
+    while (true) {
+      switch (in_.get<Record>()) {
+        case Record::grid:
+          start(receive_head(in_));
+          break;
+        case Record::other:
+          others_ += " " + in_.get_text();
+          break;
+        case Record::tile:
+          hang(in_.get<TileRecord>());
+          break;
+        case Record::leaf:
+          hang_leaf();
+          break;
+        case Record::end:
+          return;
+      }
+    }
+  }
+
+  std::vector<SparseVolume> volumes;
+  [[nodiscard]] const std::string& others() const { return others_; }
+
+ private:
+  // From the unit map, as SparseVolume does, so that a grid that is written again keeps its numbers to the last bit.
+  void start(GridHead head) {
+    SparseVolume& volume = volumes.emplace_back(head.facts.name, head.facts.grid, head.facts.background);
+    const auto transform = openvdb::math::Transform::createLinearTransform();
+    transform->preScale(head.facts.grid.voxel_mm);
+    transform->postTranslate({head.zero_mm[0], head.zero_mm[1], head.zero_mm[2]});
+    SparseVolume::State& state = volume.state();
+    state.first = head.first;
+    if (const auto owner = by_name_.find(head.shares); !head.shares.empty() && owner != by_name_.end()) {
+      state.sparse = FloatGrid::create(owner->second->treePtr());
+    }
+    state.sparse->setTransform(transform);
+    by_name_[head.unique_name] = state.sparse;
+    volume.history = std::move(head.facts.history);
+    volume.units = std::move(head.facts.units);
+    volume.metadata = std::move(head.facts.metadata);
+    volume.level_set = head.facts.level_set;
+    accessor_ = std::make_unique<Accessor>(state.sparse->tree());
+  }
+
+  void hang(const TileRecord& tile) {
+    if (!accessor_) return;
+    const auto level = static_cast<openvdb::Index>(std::clamp(tile.level, 1, 3));
+    accessor_->addTile(level, Coord(tile.corner.data()), tile.value, tile.active != 0);
+  }
+
+  // Values go from the record into the leaf's own memory at once.
+  void hang_leaf() {
+    static_assert(offsetof(LeafRecord, corner) == 64 && offsetof(LeafRecord, values) == 80);
+    const auto words = in_.get<std::array<std::uint64_t, Leaf::NodeMaskType::WORD_COUNT>>();
+    const auto corner = in_.get<std::array<std::int32_t, 4>>();
+    auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), Coord(corner.data()), 0.0F, false);
+    leaf->allocate();
+    Leaf::NodeMaskType active;
+    for (openvdb::Index word = 0; word < words.size(); ++word) active.getWord<openvdb::Index64>(word) = words[word];
+    leaf->setValueMask(active);
+    in_.get(leaf->buffer().data(), Leaf::SIZE * sizeof(float));
+    if (accessor_) accessor_->addLeaf(leaf.release());
+  }
+
+  Receiver& in_;
+  std::map<std::string, FloatGrid::Ptr> by_name_;  // the unique name of the archive; the last of that name
+  std::unique_ptr<Accessor> accessor_;
+  std::string others_;
+};
+
+}  // namespace
+
+std::vector<SparseVolume> read_volumes(const std::string& path) {
+  InputFile file(path);
+  openvdb::initialize();
+  std::vector<SparseVolume> volumes;
+  std::string others;
+  read_apart(
+      {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, std::nullopt, out); },
+      [&](Receiver& in) {
+        Builder builder(in);
+        builder.run();
+        volumes = std::move(builder.volumes);
+        others = builder.others();
+      });
+  if (volumes.empty()) {
+    throw Error{Fault::data,
+                file.name() + ": holds no grid of floats" + (others.empty() ? std::string() : ", but" + others)};
+  }
+  return volumes;
+}
+
+SparseVolume read_volume(const std::string& path, const std::string& name) {
+  std::vector<SparseVolume> volumes = read_volumes(path);
+  std::string names;
+  for (SparseVolume& volume : volumes) {
+    if (volume.name() == name || (name.empty() && volumes.size() == 1)) return std::move(volume);
+    names += (names.empty() ? "" : ", ") + volume.name();
+  }
+  const std::string subject = path == "-" ? "stdin" : path;
+  if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
+  throw Error{Fault::data, subject + ": has no grid '" + name + "', but " + names};
+}
+
+}  // namespace vam::io
