@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -18,6 +17,9 @@ namespace vam::io {
 namespace {
 
 using model::Printer;
+
+constexpr std::size_t most_bytes = std::size_t{1} << 18;
+constexpr std::ptrdiff_t most_levels = 4096;
 
 const PrinterField* find_field(std::string_view section, std::string_view key) {
   for (const auto& field : printer_fields()) {
@@ -140,8 +142,17 @@ void read_table(Printer& printer, const toml::table& root, const std::string& su
   }
 }
 
+// Each level of nesting takes one of these, and the parser and its tables a piece of the stack for each level.
+void check_depth(std::string_view text, const std::string& subject) {
+  const auto count = std::count_if(text.begin(), text.end(), [](char c) { return c == '.' || c == '[' || c == '{'; });
+  if (count <= most_levels) return;
+  throw Error{Fault::data, subject + ": has " + std::to_string(count) + " dots and brackets; up to " +
+                               std::to_string(most_levels) + " are read, and no printer file has as many"};
+}
+
 // The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
 Printer read_settings(std::string_view text, const std::string& subject) {
+  check_depth(text, subject);
   const toml::table root = [&] {
     try {
       return toml::parse(text, subject);
@@ -160,6 +171,7 @@ void check(const Printer& printer, Fault fault, const std::string& subject) {
 
 // {value = ...}, or an empty table when the text is no TOML value.
 toml::table parse_value(const std::string& value) {
+  if (value.size() > static_cast<std::size_t>(most_levels)) return {};
   try {
     return toml::parse("value = " + value);
   } catch (const toml::parse_error&) {
@@ -201,10 +213,13 @@ std::string settings_file(const std::string& file) {
 std::string slurp(const std::string& file) {
   if (std::filesystem::is_directory(file)) throw Error{Fault::no_input, file + ": is a folder, not a printer file"};
   std::ifstream stream(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text(most_bytes + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
   if (!stream.is_open() || stream.bad()) {
     throw Error{Fault::no_input, file + ": cannot read the printer file"};
   }
+  if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is no printer file"};
   return text;
 }
 

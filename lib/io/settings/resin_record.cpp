@@ -1,5 +1,7 @@
 #include "io/settings/resin_record.hpp"
 
+#include <cstdint>
+
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
@@ -7,10 +9,14 @@
 
 namespace vam::io {
 
+namespace {
+constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
+}
+
 double gelation_level(const std::string& path) {
   double level = 0;
   try {
-    const Json record = Json::parse(read_all(path));
+    const Json record = Json::parse(read_all(path, Content::text, most_bytes));
     if (record.at("schema") != "vam-resin/1")
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};

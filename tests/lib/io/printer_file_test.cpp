@@ -124,6 +124,20 @@ TEST_CASE("the named file overrides $VAM_PRINTER; a response is relative to the 
   error_of([&] { (void)load_printer(folder.path.string(), {}); }, Fault::no_input);
 }
 
+TEST_CASE("files that would fill the memory or the stack are refused in one line") {
+  CHECK(has(error_of([] { (void)load_printer("/dev/zero", {}); }, Fault::data), "/dev/zero: is longer than 256 KiB"));
+  std::string dotted = "vial";
+  for (int i = 0; i < 100'000; ++i) dotted += ".a";
+  CHECK(has(error_of([&] { (void)parse_printer(dotted + " = 1\n", "p.toml"); }, Fault::data),
+            "p.toml: has 100000 dots and brackets; up to 4096"));
+  CHECK(has(error_of([&] { (void)parse_printer("a = " + std::string(100'000, '['), "p.toml"); }, Fault::data), "dots"));
+  const std::string inline_keys = "{" + dotted + " = 1}";
+  CHECK(has(error_of([&] { (void)load_printer("", {"vial.radius_mm=" + inline_keys}); }, Fault::usage), "not a value"));
+  // All that nesting may be, in one key.
+  CHECK(has(error_of([&] { (void)parse_printer(dotted.substr(0, 8000) + " = 1\n", "p.toml"); }, Fault::data),
+            "unknown key 'a' in [vial]"));
+}
+
 TEST_CASE("a response table is read with or without a header and refused with its line") {
   const scratch::Folder folder;
   const auto table =
