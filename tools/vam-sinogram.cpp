@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/stream.hpp"
+#include "io/vdb/gate.hpp"
 #include "io/vdb/vdb.hpp"
 #include "printer.hpp"
 #include "tomo/fbp.hpp"
@@ -57,6 +58,7 @@ void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer, printer, options.output)) return;
   io::refuse_same_file(options.input, options.output);
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
+  io::require_usable(options.input, volume);
   const tomo::ProjectionSpec spec = make_spec(options, printer, volume.grid());
   io::StackWriter out(options.output, make_info(spec, volume, app.history()), options.stack);
 

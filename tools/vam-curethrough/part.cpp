@@ -5,6 +5,7 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/vdb/gate.hpp"
 
 namespace vam::curethrough {
 
@@ -49,12 +50,16 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
       name_(options.path == "-" ? "stdin" : options.path),
       least_(static_cast<float>(options.threshold)) {
   io::read_blocks(options.path, "target", [&](const io::VolumeFacts& facts) {
+    io::require_usable(options.path, facts);
     facts_ = facts;
     columns_.emplace(grid().nx, grid().ny, grid().nz, exposure);
     if (facts.background >= least_) {
       for (std::size_t p = 0; p < columns_->columns(); ++p) columns_->fill(p, 0, grid().nz, true);
     }
-    return [this](const io::VoxelBlock& block) { block.values != nullptr ? take_values(block) : fill(block); };
+    return [this](const io::VoxelBlock& block) {
+      io::require_usable(options_.path, facts_, block);
+      block.values != nullptr ? take_values(block) : fill(block);
+    };
   });
   const auto stretch = facts_.metadata.find("vam:stretch_z");
   const auto factor = stretch == facts_.metadata.end() ? std::nullopt : parse_number(stretch->second);

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/vdb/gate.hpp"
 #include "light/lit_grid.hpp"
 #include "light/simulation.hpp"
 
@@ -14,6 +15,7 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     return place;
   }
   place.like = io::read_volumes(options.like);
+  io::require_usable(options.like, place.like);
   for (const io::SparseVolume& volume : place.like) {
     if (volume.name() == "target") place.target = &volume;
     if (volume.name() == "insert") place.insert = &volume;

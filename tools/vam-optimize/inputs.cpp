@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "io/vdb/gate.hpp"
 
 namespace vam::optimize_tool {
 
@@ -11,6 +12,7 @@ namespace {
 /// The grid of that name, or the only one.
 io::SparseVolume read_own(const std::string& path, const std::string& name) {
   std::vector<io::SparseVolume> volumes = io::read_volumes(path);
+  io::require_usable(path, volumes);
   for (io::SparseVolume& volume : volumes) {
     if (volume.name() == name || volumes.size() == 1) return std::move(volume);
   }
@@ -21,7 +23,9 @@ io::SparseVolume read_own(const std::string& path, const std::string& name) {
 
 Inputs read(const Options& options) {
   Inputs in;
-  for (io::SparseVolume& volume : io::read_volumes(options.input)) {
+  std::vector<io::SparseVolume> all = io::read_volumes(options.input);
+  io::require_usable(options.input, all, options.demands.grey ? io::TargetKind::grey : io::TargetKind::coverage);
+  for (io::SparseVolume& volume : all) {
     if (volume.name() == "target")
       in.target.push_back(std::move(volume));
     else if (volume.name() == "insert")

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "io/vdb/gate.hpp"
 
 namespace vam::score_tool {
 
@@ -14,9 +15,12 @@ Inputs read_grids(const Options& options) {
     in.volumes.push_back(io::read_volume(options.input, options.grid));
     in.volumes.push_back(io::read_volume(options.target, "target"));
     in.target_at = 1;
+    io::require_usable(options.input, in.volumes[0]);
+    io::require_usable(options.target, in.volumes[1]);
     return in;
   }
   in.volumes = io::read_volumes(options.input);
+  io::require_usable(options.input, in.volumes);
   const auto find = [&](const std::string& name, const std::string& remedy) {
     for (std::size_t i = 0; i < in.volumes.size(); ++i) {
       if (in.volumes[i].name() == name) return i;

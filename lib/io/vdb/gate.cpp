@@ -1,0 +1,146 @@
+#include "io/vdb/gate.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/vdb/private/grid.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using Tree = openvdb::FloatTree;
+
+constexpr float slack = 1e-4F;  // of coverage that other programs compute
+constexpr double least_mm = 0.1;
+constexpr double most_mm = 2000;
+
+// What the values of a grid may be.
+struct Promise {
+  float low;
+  float high;
+  std::string words;
+};
+
+bool is_shape(const std::string& name) { return name == "target" || name == "insert"; }
+
+std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
+  constexpr float most = 1e9F;
+  if (name == "target" && target == TargetKind::grey) {
+    return Promise{0, most, "a grey target is a dose, 0 and more; make it again"};
+  }
+  if (is_shape(name)) {
+    return Promise{-slack, 1 + slack, "this is coverage, 0 to 1; make it with vam-slice, or scale it"};
+  }
+  if (name == "weight" || name == "tolerance" || name == "dose") {
+    return Promise{0, most, "a " + name + " is 0 and more, below 1e9; make it again"};
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& name, const std::string& why) {
+  throw Error{Fault::data, (path == "-" ? "stdin" : path) + ": grid '" + name + "' " + why};
+}
+
+void require_facts(const std::string& path, const VolumeFacts& facts) {
+  if (!promise_of(facts.name, TargetKind::coverage)) return;
+  if (is_shape(facts.name) && facts.level_set) {
+    refuse(
+        path, facts.name,
+        "is a level set, distances; make coverage of it: vam-sdf or another program makes a mesh, vam-slice slices it");
+  }
+  if (is_shape(facts.name) && facts.background != 0) {
+    refuse(path, facts.name,
+           "has " + format_number(facts.background) +
+               " wherever it stores nothing, solid around the part; its background must be 0");
+  }
+  const model::Grid& grid = facts.grid;
+  const double longest = grid.voxel_mm * std::max({grid.nx, grid.ny, grid.nz});
+  if (longest >= least_mm && longest <= most_mm) return;
+  const bool small = longest < least_mm;
+  refuse(path, facts.name,
+         "is " + format_number(longest) + " mm long, from voxels of " + format_number(grid.voxel_mm) +
+             " mm; is it in " + (small ? "metres? Scale it by 1000" : "micrometres? Scale it by 0.001"));
+}
+
+[[noreturn]] void refuse_voxel(const std::string& path, const std::string& name, const openvdb::Coord& at, float value,
+                               const Promise& promise) {
+  refuse(path, name,
+         "has " + format_number(value) + " in voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
+             std::to_string(at.z()) + ") of " + promise.words);
+}
+
+// The first value of a leaf outside what is promised, as its place; 512 when there is none.
+int first_outside(const float* values, const Promise& promise) {
+  constexpr int count = 512;
+  float low = values[0];
+  float high = values[0];
+  for (int i = 0; i < count; ++i) {  // without an early exit: vector code
+    low = std::min(low, values[i]);
+    high = std::max(high, values[i]);
+  }
+  if (low >= promise.low && high <= promise.high) return count;
+  int at = 0;
+  while (values[at] >= promise.low && values[at] <= promise.high) ++at;
+  return at;
+}
+
+openvdb::Coord in_block(int place) { return {place >> 6, place >> 3 & 7, place & 7}; }
+
+void require_values(const std::string& path, const SparseVolume& volume, const Promise& promise) {
+  const Tree& tree = volume.state().sparse->constTree();
+  const openvdb::Coord& first = volume.state().first;
+  auto tile = tree.cbeginValueAll();
+  tile.setMaxDepth(Tree::DEPTH - 2);  // above the leaves
+  for (; tile; ++tile) {
+    if (*tile >= promise.low && *tile <= promise.high) continue;
+    refuse_voxel(path, volume.name(), tile.getCoord() - first, *tile, promise);
+  }
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    const float* values = leaf->buffer().data();
+    const int place = first_outside(values, promise);
+    if (place < 512)
+      refuse_voxel(path, volume.name(), leaf->origin() + in_block(place) - first, values[place], promise);
+  }
+}
+
+}  // namespace
+
+void require_usable(const std::string& path, const SparseVolume& volume, TargetKind target) {
+  VolumeFacts facts;
+  facts.name = volume.name();
+  facts.grid = volume.grid();
+  facts.background = volume.state().sparse->background();
+  facts.level_set = volume.level_set;
+  require_facts(path, facts);
+  if (const auto promise = promise_of(volume.name(), target)) require_values(path, volume, *promise);
+}
+
+void require_usable(const std::string& path, const std::vector<SparseVolume>& volumes, TargetKind target) {
+  std::set<std::string> names;
+  for (const SparseVolume& volume : volumes) {
+    if (promise_of(volume.name(), target) && !names.insert(volume.name()).second) {
+      refuse(path, volume.name(), "is there twice; keep the one that is meant, or give it another name");
+    }
+    require_usable(path, volume, target);
+  }
+}
+
+void require_usable(const std::string& path, const VolumeFacts& facts) { require_facts(path, facts); }
+
+void require_usable(const std::string& path, const VolumeFacts& facts, const VoxelBlock& block) {
+  const auto promise = promise_of(facts.name, TargetKind::coverage);
+  if (!promise) return;
+  const openvdb::Coord corner(block.i, block.j, block.k);
+  if (block.values == nullptr) {
+    if (block.value >= promise->low && block.value <= promise->high) return;
+    refuse_voxel(path, facts.name, corner, block.value, *promise);
+  }
+  const int place = first_outside(block.values, *promise);
+  if (place < 512) refuse_voxel(path, facts.name, corner + in_block(place), block.values[place], *promise);
+}
+
+}  // namespace vam::io

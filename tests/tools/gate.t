@@ -1,0 +1,29 @@
+# What cannot be printed is refused before light is computed from it, by every tool that does.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+box 4 4 1 >box.off
+ok 'a part' vam-slice box.off --voxel 0.2 -o part.vdb
+small_printer >printer.toml
+ok 'its light' vam-optimize part.vdb --method fbp --angles 24 -o light.exr
+# The one value 1 of a tile in the file becomes another: a float of the archive that stands for solid.
+bad() {  # bad FILE VALUE
+  python3 - part.vdb "$1" "$2" <<'PY'
+import struct, sys
+source, to, value = sys.argv[1:]
+data = open(source, 'rb').read()
+one, other = struct.pack('<f', 1), struct.pack('<f', float(value))
+open(to, 'wb').write(data.replace(one, other))
+PY
+}
+bad minus.vdb -3
+bad huge.vdb 1e30
+fails 65 "minus.vdb: grid 'target' has -3 in voxel \(.*\) of this is coverage, 0 to 1" vam-optimize minus.vdb -o x.exr
+fails 65 "huge.vdb: grid 'target' has 1e\+30 in voxel" vam-optimize huge.vdb -o x.exr
+fails 65 'coverage, 0 to 1' vam-dose light.exr --like minus.vdb -o x.vdb
+fails 65 'coverage, 0 to 1' vam-sinogram minus.vdb -o x.exr
+fails 65 'coverage, 0 to 1' vam-curethrough minus.vdb -o x.exr
+fails 65 'coverage, 0 to 1' vam-score part.vdb --grid target --target minus.vdb
+fails 65 "stdin: grid 'target' is there twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
+ok 'vam-view still shows it' vam-view minus.vdb -o x.png
+
+done_testing
