@@ -13,6 +13,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/settings/private/printer_fields.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -71,6 +72,23 @@ void take_over(model::Printer& printer, const CalibrationRecord& record) {
     printer.camera.latency_ms = record.value("camera_latency");
   } else if (scan == "latency") {
     printer.projector.latency_ms = record.value("latency");
+  }
+}
+
+// What a record sets is held to the ranges of the printer file, and the axis to the image.
+void require_possible(model::Printer& printer, const CalibrationRecord& record) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error{Fault::data, record.path + ": " + why + "; run vam-calibrate"};
+  };
+  for (const PrinterField& field : printer_fields()) {
+    if (const std::string why = objection(field, field.slot(printer)); !why.empty()) {
+      refuse(dotted_name(field) + ": " + why);
+    }
+  }
+  const double column = printer.projector.axis_column;
+  if (record.json.at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {
+    refuse("projector.axis_column: " + format_number(column) + " is not in the image of " +
+           std::to_string(printer.projector.columns) + " columns");
   }
 }
 
@@ -200,6 +218,7 @@ void apply_records(model::Printer& printer, const model::Calibration& calibratio
     } catch (const Json::exception&) {
       throw Error{Fault::data, record->path + ": incomplete record of " + scan + "; run vam-calibrate"};
     }
+    require_possible(printer, *record);
   }
 }
 

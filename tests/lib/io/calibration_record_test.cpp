@@ -89,6 +89,21 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(fault_of([&] { (void)write_record(none, "edges", edges(1, 1), now_s); }) == Fault::usage);
 }
 
+TEST_CASE("a record outside physics is refused, with the record, the number and what it may be") {
+  const auto refused = [](double column, double radius_mm, const std::string& scan = "edges") {
+    const scratch::Folder folder;
+    const auto calibration = here(folder);
+    write_record(calibration, scan, edges(column, radius_mm), utc_seconds());
+    model::Printer printer;
+    return message_of([&] { apply_records(printer, calibration, utc_seconds()); });
+  };
+  CHECK(refused(511, 12.7).empty());
+  CHECK(has(refused(1e9, 12.7), "projector.axis_column: 1e+09 is not between -65536 and 131072; run vam-calibrate"));
+  CHECK(has(refused(-40, 12.7), "projector.axis_column: -40 is not in the image of 1024 columns"));
+  CHECK(has(refused(1024, 12.7), "not in the image"));
+  CHECK(has(refused(511, -12.7), "vial.radius_mm: -12.7 is not between 0 (excluded)"));
+}
+
 TEST_CASE("records override the printer file and --set overrides records") {
   const scratch::Folder folder;
   std::ofstream(folder / "printer.toml") << "[projector]\naxis_column = 400\nlatency_ms = 3\n[vial]\nradius_mm = 11\n"
