@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/printable.hpp"
+
 namespace vam {
 
 namespace {
@@ -16,10 +18,12 @@ constexpr int bar_width = 30;
 
 void set_program_name(const std::string& name) { program = name; }
 
-void warn(const std::string& line) { std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), line.c_str()); }
+void warn(const std::string& line) {
+  std::fprintf(stderr, "%s: warning: %s\n", program.c_str(), printable(line).c_str());
+}
 
 void note(const std::string& line) {
-  if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", line.c_str());
+  if (isatty(STDERR_FILENO) == 1) std::fprintf(stderr, "%s\n", printable(line).c_str());
 }
 
 Progress::Progress(std::string what, long total)

@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/declaration.hpp"
 #include "cli/private/values.hpp"
@@ -38,6 +39,12 @@ namespace {
 std::string quoted(const std::string& word) {
   const char* harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
   if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) return word;
+  // A history has one line a command.
+  if (printable(word) != word) {
+    std::string text = "$'";
+    for (const char c : word) text += c == '\'' || c == '\\' ? std::string("\\") + c : printable({&c, 1});
+    return text + "'";
+  }
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
@@ -322,7 +329,7 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
   } catch (const std::exception& error) {
     line = std::string("internal error: ") + error.what() + "; please report this";
   }
-  std::fprintf(stderr, "%s: %s\n", name.c_str(), line.c_str());
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), printable(line).c_str());
   return static_cast<int>(fault);
 }
 

@@ -1,0 +1,27 @@
+#include "base/printable.hpp"
+
+#include <cstdio>
+
+namespace vam {
+
+std::string printable(std::string_view text) {
+  std::string shown;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    const bool c1 = byte == 0xc2 && next >= 0x80 && next <= 0x9f;  // U+0080 to U+009F
+    if (byte >= 0x20 && byte != 0x7f && !c1) {
+      shown += text[i];
+    } else if (byte == '\n' || byte == '\t') {
+      shown += byte == '\n' ? "\\n" : "\\t";
+    } else {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(c1 ? next : byte));
+      shown += code;
+      if (c1) ++i;
+    }
+  }
+  return shown;
+}
+
+}  // namespace vam

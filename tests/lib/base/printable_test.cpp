@@ -1,0 +1,13 @@
+#include "base/printable.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string_view>
+
+TEST_CASE("control characters are shown, not sent") {
+  CHECK(vam::printable("a b\n\t\x1b[31m\x7f") == "a b\\n\\t\\x1b[31m\\x7f");
+  CHECK(vam::printable("\xc2\x9b"
+                       "2J \xc2\xb5m \xc3\xa4") == "\\x9b2J \xc2\xb5m \xc3\xa4");
+  CHECK(vam::printable(std::string_view("\0", 1)) == "\\x00");
+  CHECK(vam::printable("\xc2").size() == 1);
+}

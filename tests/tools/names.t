@@ -1,0 +1,34 @@
+# Names are data: whatever a file is called, no shell runs it, no terminal obeys it, no line breaks at it.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+fails 66 'no\\x1b\[31m\\nsuch\.stl: cannot open' vam-slice "$(printf 'no\033[31m\nsuch.stl')" -o x.vdb
+fails 64 '--\\x07: unknown option' vam-slice "$(printf -- '--\007')"
+box 4 4 1 >box.off
+cp box.off "$(printf 'a\nb.off')"
+ok 'a name with a newline' vam-slice "$(printf 'a\nb.off')" --voxel 0.5 -o n.vdb
+grep -qa 'a\\nb\.off' n.vdb; report $? 'is one line of the history'
+rm -f "$(printf 'a\nb.off')" n.vdb
+
+mkdir made && cd made && mkdir .log || exit 1
+cp "$VAM_SOURCE/Makefile.example" Makefile
+for name in 'a b' 'x`id>pwned`' 'q"$HOME;touch pwned;' "it's" '$(shell touch pwned)' 'p%c#d:e=f+g' '-o' "$(printf 'n\nl')"; do
+  cp ../box.off "./$name.off"
+done
+cp ../box.off plain.off
+all=$(make -n VOXEL=0.5 all | grep -c '^vam-slice ')
+is 'every mesh is a part' "$all" 9
+targets='plain.vdb a+20b.vdb x+60id+3Epwned+60.vdb q+22+24HOME+3Btouch+20pwned+3B.vdb it+27s.vdb
+  +24+28shell+20touch+20pwned+29.vdb p+25c+23d+3Ae+3Df+2Bg.vdb +2Do.vdb n+0Al.vdb'
+# shellcheck disable=SC2086
+ok 'and is sliced' make VOXEL=0.5 $targets
+[ -z "$(find .. -name 'pwned*')" ]; report $? 'no name was run'
+# shellcheck disable=SC2086
+is 'nothing is made twice' "$(make VOXEL=0.5 $targets | grep -c '^vam-slice')" 0
+touch 'a b.off'
+# shellcheck disable=SC2086
+is 'a changed mesh is' "$(make VOXEL=0.5 $targets | grep '^vam-slice')" 'vam-slice .parts/a+20b.off --voxel 0.5  -o a+20b.vdb'
+make clean >/dev/null
+is 'clean leaves the meshes' "$(ls -A | grep -vc 'off$')" 3
+cd ..
+
+done_testing
