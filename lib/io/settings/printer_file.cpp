@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_fields.hpp"
@@ -142,6 +143,14 @@ void read_table(Printer& printer, const toml::table& root, const std::string& su
   }
 }
 
+// A file that ends within its first line has lost the rest of it, too.
+void check_whole(std::string_view text, const std::string& subject) {
+  const bool ours = text.starts_with(printer_head) || (!text.empty() && printer_head.starts_with(text));
+  if (!ours || text.find("\n" + std::string(printer_end)) != std::string_view::npos) return;
+  throw Error{Fault::data, subject + ": is cut off after " + std::to_string(text.size()) + " bytes, it has no line '" +
+                               std::string(printer_end) + "'; write it again with --print-printer"};
+}
+
 // Each level of nesting takes one of these, and the parser and its tables a piece of the stack for each level.
 void check_depth(std::string_view text, const std::string& subject) {
   const auto count = std::count_if(text.begin(), text.end(), [](char c) { return c == '.' || c == '[' || c == '{'; });
@@ -152,6 +161,7 @@ void check_depth(std::string_view text, const std::string& subject) {
 
 // The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
 Printer read_settings(std::string_view text, const std::string& subject) {
+  check_whole(text, subject);
   check_depth(text, subject);
   const toml::table root = [&] {
     try {
@@ -223,6 +233,20 @@ std::string slurp(const std::string& file) {
   return text;
 }
 
+// What a person wrote has no mark of its end, but a last line that stops short is a sign.
+void warn_of_cut(const std::string& text, const std::string& file) {
+  if (text.empty() && std::filesystem::is_regular_file(file)) {
+    throw Error{Fault::data, file + ": is empty; write it with --print-printer, or delete it for the defaults"};
+  }
+  if (text.empty() || text.back() == '\n' || text.find(printer_end) != std::string::npos) return;
+  std::vector<std::string> missing;
+  for (const std::string& section : section_names()) {
+    if (text.find("[" + section + "]") == std::string::npos) missing.push_back("[" + section + "]");
+  }
+  warn(file + ": ends within a line; if it was cut off, the rest is at its default" +
+       (missing.empty() ? "" : ", and so are " + join(missing, ", ")));
+}
+
 }  // namespace
 
 Printer parse_printer(std::string_view toml, const std::string& subject) {
@@ -235,7 +259,9 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
   const std::string path = settings_file(file);
   Printer printer;
   if (!path.empty()) {
-    printer = read_settings(slurp(path), path);
+    const std::string text = slurp(path);
+    printer = read_settings(text, path);
+    warn_of_cut(text, path);
     const auto beside = std::filesystem::path(path).parent_path();
     for (std::string* file_name : {&printer.projector.response, &printer.camera.flat, &printer.calibration.folder}) {
       if (!file_name->empty()) *file_name = (beside / *file_name).string();

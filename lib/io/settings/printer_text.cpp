@@ -37,7 +37,7 @@ struct Print {
 std::string printer_toml(const model::Printer& given) {
   model::Printer printer = given;
   std::ostringstream text;
-  text << "# Printer settings of the VAM tools. Every setting is here; delete what should keep its default.\n";
+  text << printer_head << "\n# Every setting is here; delete what should keep its default.\n";
   std::string section;
   for (const auto& field : printer_fields()) {
     if (section != field.section) text << "\n[" << (section = field.section) << "]\n";
@@ -47,6 +47,7 @@ std::string printer_toml(const model::Printer& given) {
     if (line.size() < comment_column) line.append(comment_column - line.size(), ' ');
     text << line << "  # " << field.comment << (value.empty() ? " (not set)" : "") << '\n';
   }
+  text << '\n' << printer_end << '\n';
   return text.str();
 }
 

@@ -124,6 +124,43 @@ TEST_CASE("the named file overrides $VAM_PRINTER; a response is relative to the 
   error_of([&] { (void)load_printer(folder.path.string(), {}); }, Fault::no_input);
 }
 
+TEST_CASE("a printer file of these tools that is cut anywhere is refused, or has lost nothing") {
+  const std::string whole = printer_toml(load_printer("", {"vial.radius_mm=10", "camera.fps=7", "calibration.vial=v"}));
+  const std::string settings = printer_toml(parse_printer(whole, "p"));
+  CHECK(settings == whole);
+  int refused = 0;
+  for (std::size_t size = 1; size < whole.size(); ++size) {
+    CAPTURE(size);
+    std::string read;
+    try {
+      read = printer_toml(parse_printer(whole.substr(0, size), "p"));
+    } catch (const Error& error) {
+      CHECK(error.fault == Fault::data);
+      ++refused;
+      continue;
+    }
+    CHECK(read == settings);
+  }
+  CHECK(refused > static_cast<int>(whole.size()) - 10);
+  CHECK(has(error_of([&] { (void)parse_printer(whole.substr(0, 700), "p"); }, Fault::data), "p: is cut off after 700"));
+  // Written by a person: accepted, with a warning where the last line stops short.
+  CHECK(parse_printer("[vial]\nradius_mm = 11", "p").vial.radius_mm == 11);
+  const scratch::Folder folder;
+  {
+    const scratch::Redirect to(STDERR_FILENO, folder / "said");
+    (void)load_printer(folder.write("a.toml", "[vial]\nradius_mm = 11\n"), {});
+  }
+  CHECK(scratch::slurp(folder / "said").empty());
+  {
+    const scratch::Redirect to(STDERR_FILENO, folder / "said");
+    (void)load_printer(folder.write("a.toml", "[projector]\nfps = 7\n[vial]\nradius_mm = 1"), {});
+  }
+  CHECK(has(scratch::slurp(folder / "said"), "ends within a line"));
+  CHECK(has(scratch::slurp(folder / "said"), "so are [bath], [resin], [stage], [camera], [calibration]\n"));
+  CHECK(has(error_of([&] { (void)load_printer(folder.write("b.toml", ""), {}); }, Fault::data), "is empty"));
+  (void)load_printer("/dev/null", {});
+}
+
 TEST_CASE("files that would fill the memory or the stack are refused in one line") {
   CHECK(has(error_of([] { (void)load_printer("/dev/zero", {}); }, Fault::data), "/dev/zero: is longer than 256 KiB"));
   std::string dotted = "vial";
