@@ -3,6 +3,7 @@
 #include <string>
 
 #include "device/os/interrupt.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
@@ -32,6 +33,7 @@ void run(const cli::App& app, Options& options) {
   settle(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  io::refuse_two_stdins({options.input, options.weights, options.tolerances, options.init});
   refuse_same_files(options);
   settle_response(app, options);
 

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
@@ -70,6 +71,7 @@ void run(Options& options) {
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, score::Score::names());
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
+  io::refuse_two_stdins({options.input, options.target, options.sinogram});
   refuse_same_files(options);
   const Inputs in = read(options);
   settle_exposure(options.how, in, printer);

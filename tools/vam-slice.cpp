@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/printer.hpp"
@@ -44,6 +45,7 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
+  io::refuse_two_stdins({options.shape.empty() ? options.input : "", options.insert});
   for (const std::string& input : {options.input, options.insert}) {
     if (!input.empty()) io::refuse_same_file(input, options.output);
   }

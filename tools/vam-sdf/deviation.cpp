@@ -13,6 +13,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "model/conditions.hpp"
 #include "plot/plot.hpp"
@@ -91,6 +92,7 @@ void deviation(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_level(options.resin_record);
+  io::refuse_two_stdins({options.print, options.reference});
   for (const auto& input : {options.print, options.reference}) {
     if (!options.output.empty()) io::refuse_same_file(input, options.output);
   }

@@ -1,6 +1,7 @@
 #include "vam-view/options.hpp"
 
 #include "base/error.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::view_tool {
@@ -36,6 +37,7 @@ void check(const Options& options) {
   if (options.plain && (view.sheet > 1 || options.histogram))
     throw Error{Fault::usage, "--plain: shows one image only; leave out --sheet and --histogram"};
   const std::string& written = options.exported.empty() ? options.output : options.exported;
+  io::refuse_two_stdins({options.input, options.target});
   io::refuse_same_file(options.input, written);
   if (!options.target.empty()) io::refuse_same_file(options.target, written);
 }

@@ -78,6 +78,7 @@ void OutputFolder::commit() {
     if (replaces && !fs::exists(target_)) fs::rename(old, target_, ignored);
     throw Error{Fault::no_output, target_.string() + ": cannot put the folder in place: " + problem.message()};
   }
+  synchronise_folder_of(target_.string());
   forget();
   if (replaces) fs::remove_all(old, problem);
 }

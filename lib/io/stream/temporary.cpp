@@ -2,6 +2,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -11,10 +12,16 @@
 #include <cerrno>
 #include <climits>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <functional>
+#include <mutex>
+#include <set>
 
 namespace vam::io {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -23,6 +30,7 @@ namespace {
 struct Listed {
   std::atomic<bool> taken{false};
   std::atomic<bool> live{false};
+  std::atomic<int> lock{-1};  // a descriptor whose lock says that this process still wants the name
   char path[PATH_MAX] = {};
 };
 std::array<Listed, 64> list;  // NOLINT: one per process, like the signal dispositions it serves
@@ -94,11 +102,42 @@ std::string extension_of(const std::string& path) {
   return dot == std::string::npos || dot == 0 || file.size() - dot > 16 ? "" : file.substr(dot);
 }
 
+// The name is of a process that ended without removing it: none of that number runs here, and none on this machine or
+// another that shares the folder holds its lock. A folder of older files that stepped aside has another form of name.
+bool is_left_over(const fs::path& path) {
+  int pid = 0;
+  unsigned count = 0;
+  int read = 0;
+  const std::string name = path.filename().string();
+  if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
+  if (name[static_cast<std::size_t>(read)] != '\0' && name[static_cast<std::size_t>(read)] != '.') return false;
+  if (pid <= 0 || kill(pid, 0) == 0 || errno != ESRCH) return false;
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  const bool free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
+  if (file >= 0) close(file);
+  return free;
+}
+
+// Once a folder and process.
+void sweep(const std::string& folder) {
+  static std::mutex mutex;
+  static std::set<std::string> swept;  // NOLINT: one per process
+  const std::scoped_lock lock(mutex);
+  if (!swept.insert(folder).second) return;
+  std::error_code problem;
+  for (fs::directory_iterator at(folder.empty() ? "." : folder, problem), end; !problem && at != end;
+       at.increment(problem)) {
+    std::error_code ignored;
+    if (is_left_over(at->path())) fs::remove_all(at->path(), ignored);
+  }
+}
+
 // Tries names until `create` meets one that does not exist. The name is listed before the file exists: a signal between
 // the two then removes nothing, while the other order could leave a file behind.
 int with_new_name(const std::string& target, std::string& name, int& slot,
                   const std::function<int(const char*)>& create) {
   static std::atomic<unsigned> counter{0};
+  sweep(directory_of(target));
   while (true) {
     name = directory_of(target) + ".vam-" + std::to_string(getpid()) + "-" + std::to_string(counter++) +
            extension_of(target);
@@ -119,24 +158,42 @@ int with_new_name(const std::string& target, std::string& name, int& slot,
 }  // namespace
 
 int create_temporary(const std::string& target, std::string& name, int& slot) {
-  return with_new_name(target, name, slot,
-                       [](const char* path) { return open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666); });
+  return with_new_name(target, name, slot, [](const char* path) {
+    const int file = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) (void)flock(file, LOCK_EX | LOCK_NB);
+    return file;
+  });
 }
 
 int create_temporary_folder(const std::string& target, std::string& name, int& slot) {
-  return with_new_name(target, name, slot, [](const char* path) { return mkdir(path, 0777); });
+  const int made = with_new_name(target, name, slot, [](const char* path) { return mkdir(path, 0777); });
+  if (made < 0 || slot < 0) return made;
+  const int folder = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) (void)flock(folder, LOCK_EX | LOCK_NB);
+  list[static_cast<std::size_t>(slot)].lock = folder;
+  return made;
 }
 
 int name_temporary(int descriptor, const std::string& target, std::string& name, int& slot) {
   const std::string self = "/proc/self/fd/" + std::to_string(descriptor);
+  (void)flock(descriptor, LOCK_EX | LOCK_NB);
   return with_new_name(target, name, slot, [&self](const char* path) {
     return linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path, AT_SYMLINK_FOLLOW);
   });
 }
 
+void synchronise_folder_of(const std::string& target) {
+  const std::string folder = directory_of(target);
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  (void)fsync(descriptor);
+  close(descriptor);
+}
+
 void forget_temporary(int slot) {
   if (slot < 0) return;
   Listed& item = list[slot];
+  if (const int lock = item.lock.exchange(-1); lock >= 0) close(lock);
   item.live = false;
   item.taken = false;
 }

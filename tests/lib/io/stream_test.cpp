@@ -4,10 +4,12 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <array>
 #include <csignal>
 #include <thread>
 
 #include "io/stream/output_folder.hpp"
+#include "io/stream/standard_input.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam::io;
@@ -179,6 +181,56 @@ TEST_CASE("kill -9 leaves nothing where the file system knows unnamed files") {
   }
   waitpid(child, nullptr, 0);
   CHECK(folder.count() == 0);
+}
+
+TEST_CASE("what kill -9 leaves behind is removed by the next output in that folder, what others still write is not") {
+  const scratch::Folder folder;
+  const auto any_file = [](const std::filesystem::path&) { return true; };
+  const auto in_child = [&](bool dies) {
+    std::array<int, 2> ready{};
+    CHECK(pipe(ready.data()) == 0);
+    const pid_t child = fork();
+    if (child == 0) {
+      OutputFile file(folder / "a.png", Content::binary, Temporary::named);
+      const OutputFolder frames(folder / "frames", any_file);
+      frames.write("00000.png", "x");
+      (void)!write(ready[1], "x", 1);
+      pause();
+    }
+    char byte = 0;
+    CHECK(read(ready[0], &byte, 1) == 1);
+    if (dies) {
+      kill(child, SIGKILL);
+      waitpid(child, nullptr, 0);
+    }
+    close(ready[0]);
+    close(ready[1]);
+    return child;
+  };
+  (void)in_child(true);
+  const pid_t alive = in_child(false);
+  std::filesystem::create_directory(folder / ".vam-999999-0-old");  // a person's files that stepped aside
+  spill(folder / ".vam-999999-0", "x");
+  CHECK(folder.count() == 4);  // the second process has tidied up after the first
+  const pid_t next = fork();   // once a process
+  if (next == 0) {
+    { OutputFile file(folder / "b.png", Content::binary, Temporary::named); }
+    _exit(0);
+  }
+  waitpid(next, nullptr, 0);
+  CHECK(folder.count() == 3);
+  int of_alive = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path)) {
+    of_alive += entry.path().filename().string().starts_with(".vam-" + std::to_string(alive) + "-") ? 1 : 0;
+  }
+  CHECK(of_alive == 2);
+  kill(alive, SIGKILL);
+  waitpid(alive, nullptr, 0);
+}
+
+TEST_CASE("two standard inputs are one too many") {
+  refuse_two_stdins({"-", "a", ""});
+  CHECK(status([] { refuse_two_stdins({"-", "a", "-"}); }) == 64);
 }
 
 TEST_CASE("- is stdout, written directly, and stdin") {

@@ -7,6 +7,7 @@ namespace vam::io {
 
 /// Creates an empty file ".vam-<pid>-<n><extension>" beside `target` and lists its name, so that SIGHUP, SIGINT and
 /// SIGTERM remove it before they end the process (unless they are handled or ignored elsewhere).
+/// Such names that a dead process has left there (SIGKILL, a loss of power) are removed first.
 /// Returns the descriptor, or -1 with errno set.
 int create_temporary(const std::string& target, std::string& name, int& slot);
 
@@ -16,6 +17,10 @@ int name_temporary(int descriptor, const std::string& target, std::string& name,
 
 /// The same for a folder that will hold files, no folders. Returns 0, or -1 with errno set.
 int create_temporary_folder(const std::string& target, std::string& name, int& slot);
+
+/// Waits until the disk knows the names in the folder of `target`; what it does not know would be gone after a loss of
+/// power. File systems that cannot are left in peace.
+void synchronise_folder_of(const std::string& target);
 
 /// The name is no longer temporary.
 void forget_temporary(int slot);
