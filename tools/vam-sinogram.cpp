@@ -1,6 +1,7 @@
 // vam-sinogram: the projections of a part, plain, filtered or exponential.
 #include <algorithm>
 #include <future>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,11 +74,13 @@ void run(const cli::App& app, const Options& options) {
     if (options.negative != "keep") {
       for (Slab& slab : slabs) tomo::raise_and_clip(slab, raise, 0);
     }
-    std::vector<Image> images = sinogram_tool::unpacked(slabs, count);
+    // Copied, not moved: where no thread is to be had, std::async takes it a second time.
+    const auto images = std::make_shared<const std::vector<Image>>(sinogram_tool::unpacked(slabs, count));
+    const auto write = [&out, images] {
+      for (const Image& image : *images) out.write(image);
+    };
     if (writing.valid()) writing.get();
-    writing = std::async(std::launch::async, [&out, done = std::move(images)] {
-      for (const Image& image : done) out.write(image);
-    });
+    writing = std::async(std::launch::async | std::launch::deferred, write);
   });
   if (writing.valid()) writing.get();
   out.commit();

@@ -3,7 +3,12 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <condition_variable>
 #include <memory>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -13,6 +18,44 @@ namespace vam {
 
 namespace {
 std::unique_ptr<tbb::global_control> limit;  // NOLINT: one per process, like the thread pool it limits
+
+// How many threads the system gives beside this one, up to `wanted`; all of them live for a moment.
+int threads_to_have(int wanted) {
+  std::mutex mutex;
+  std::condition_variable changed;
+  bool counted = false;
+  std::vector<std::thread> made;
+  try {
+    while (static_cast<int>(made.size()) < wanted) {
+      made.emplace_back([&] {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return counted; });
+      });
+    }
+  } catch (const std::system_error&) {  // a container's limit, for one
+  }
+  {
+    const std::scoped_lock lock(mutex);
+    counted = true;
+  }
+  changed.notify_all();
+  for (std::thread& thread : made) thread.join();
+  return static_cast<int>(made.size());
+}
+
+// oneTBB ends the process when it is refused a thread; so it is not to ask for one that it will not get.
+void ask_for_no_more_than_there_are() {
+  static std::once_flag asked;
+  std::call_once(asked, [] {
+    const int wanted = threads() - 1;
+    const int had = threads_to_have(wanted);
+    if (had == wanted) return;
+    // Never destroyed: that would ask for the others again.
+    static auto* const possible =
+        new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(had + 1));
+    (void)possible;
+  });
+}
 
 // ThreadSanitizer sees nothing of oneTBB's own synchronisation, as the library is not instrumented. It is informed that
 // what was done before a loop is seen by its items, and what these did by what follows.
@@ -26,6 +69,7 @@ void take_over(char&) {}
 }  // namespace
 
 void parallel_for(int count, const std::function<void(int)>& work) {
+  ask_for_no_more_than_there_are();
   char begun = 0;
   char done = 0;
   hand_over(begun);

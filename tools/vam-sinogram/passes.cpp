@@ -18,10 +18,10 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
     return dense;
   };
   Progress progress("projecting", grid.nz);
-  auto ahead = std::async(std::launch::async, read, 0);
+  auto ahead = std::async(std::launch::async | std::launch::deferred, read, 0);
   for (int first = 0; first < grid.nz; first += slices) {
     const std::vector<float> dense = ahead.get();
-    ahead = std::async(std::launch::async, read, first + slices);
+    ahead = std::async(std::launch::async | std::launch::deferred, read, first + slices);
     const int count = std::min(slices, grid.nz - first);
     std::vector<Slab> images;
     std::vector<Slab> sinograms;

@@ -1,5 +1,6 @@
 #include "io/exr/stack_batches.hpp"
 
+#include <memory>
 #include <utility>
 
 namespace vam::io {
@@ -11,7 +12,7 @@ ReadAhead::~ReadAhead() {
 }
 
 void ReadAhead::start() {
-  ahead_ = std::async(std::launch::async, [this] {
+  ahead_ = std::async(std::launch::async | std::launch::deferred, [this] {
     std::vector<Image> images;
     Image image;
     model::ImageInfo about;
@@ -32,11 +33,13 @@ void transform(StackReader& in, StackWriter& out, int batch,
   ReadAhead reader(in, batch);
   std::future<void> writing;
   for (std::vector<Image> images = reader.next(); !images.empty(); images = reader.next()) {
-    std::vector<Image> results = work(images);
+    // Copied, not moved: where no thread is to be had, std::async takes it a second time.
+    const auto results = std::make_shared<const std::vector<Image>>(work(images));
+    const auto write = [&out, results] {
+      for (const Image& image : *results) out.write(image);
+    };
     if (writing.valid()) writing.get();
-    writing = std::async(std::launch::async, [&out, done = std::move(results)] {
-      for (const Image& image : done) out.write(image);
-    });
+    writing = std::async(std::launch::async | std::launch::deferred, write);
   }
   if (writing.valid()) writing.get();
 }
