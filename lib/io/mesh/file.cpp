@@ -23,6 +23,9 @@ PolygonSoup parse(const std::string& bytes) {
   for (const MeshFormat& format : mesh_formats()) {
     if (format.recognises(bytes)) return format.read(bytes);
   }
+  if (bytes.starts_with(" BDV"))
+    throw MeshProblem{"is a volume (OpenVDB), not a mesh; vam-sdf takes both, vam-slice a mesh"};
+  if (bytes.starts_with("\x76\x2f\x31\x01")) throw MeshProblem{"is a stack (OpenEXR), not a mesh"};
   // No other binary format is left: its reader reports what is missing.
   if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
   throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};

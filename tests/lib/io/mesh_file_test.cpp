@@ -13,10 +13,12 @@
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "lib/io/scratch.hpp"
+#include "lib/io/zip_writer.hpp"
 
 using vam::io::read_mesh;
 using vam::model::TriangleSoup;
 
+using samples::Zip;
 using scratch::slurp;
 
 namespace {
@@ -95,45 +97,6 @@ std::string box_ascii_stl() {
   }
   return text + "endsolid box\n";
 }
-
-// ---- a zip archive with one stored file, so that the 3MF reader is judged by bytes of our own ----
-
-template <class T>
-std::string little(T value) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  return bytes;
-}
-
-std::uint32_t crc32(const std::string& bytes) {
-  std::uint32_t crc = ~0U;
-  for (const char c : bytes) {
-    crc ^= static_cast<std::uint8_t>(c);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (0xEDB88320U & (0U - (crc & 1U)));
-  }
-  return ~crc;
-}
-
-struct Zip {
-  std::string bytes;
-  std::string directory;
-  std::uint16_t files = 0;
-  void add(const std::string& name, const std::string& content) {
-    const auto size = static_cast<std::uint32_t>(content.size());
-    const std::string common = little<std::uint16_t>(20) + little<std::uint16_t>(0) + little<std::uint16_t>(0) +
-                               little<std::uint32_t>(0x21) + little(crc32(content)) + little(size) + little(size) +
-                               little(static_cast<std::uint16_t>(name.size())) + little<std::uint16_t>(0);
-    directory += "PK\1\2" + little<std::uint16_t>(20) + common + std::string(6, '\0') + little<std::uint32_t>(0) +
-                 little(static_cast<std::uint32_t>(bytes.size())) + name;
-    bytes += "PK\3\4" + common + name + content;
-    ++files;
-  }
-  [[nodiscard]] std::string done() const {
-    return bytes + directory + "PK\5\6" + little<std::uint32_t>(0) + little(files) + little(files) +
-           little(static_cast<std::uint32_t>(directory.size())) + little(static_cast<std::uint32_t>(bytes.size())) +
-           little<std::uint16_t>(0);
-  }
-};
 
 std::string box_3mf(const std::string& unit, const std::string& transform) {
   std::string model = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"" + unit +
@@ -295,6 +258,8 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refusal(folder, "solid nothing\nendsolid nothing\n"), "empty"));
   CHECK(has(refusal(folder, ""), "is empty"));
   CHECK(has(refusal(folder, "hello, world\n"), "not a mesh of a known format"));
+  CHECK(has(refusal(folder, " BDV" + std::string(200, '\0')), "is a volume (OpenVDB), not a mesh"));
+  CHECK(has(refusal(folder, "\x76\x2f\x31\x01" + std::string(200, '\0')), "is a stack (OpenEXR), not a mesh"));
   CHECK(has(refusal(folder,
                     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
                     "property float y\nproperty float z\nend_header\n"),
