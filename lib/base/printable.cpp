@@ -24,4 +24,16 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+std::string link_text(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
+                       c == '_' || c == '-' || c == '~';
+    char code[8];
+    std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    text += plain ? std::string(1, c) : code;
+  }
+  return text;
+}
+
 }  // namespace vam

@@ -1,4 +1,4 @@
-// Names come from outside and may hold any byte; a terminal obeys some of them.
+// Names come from outside and may hold any byte; a terminal obeys some of them, a page others.
 #pragma once
 
 #include <string>
@@ -8,5 +8,8 @@ namespace vam {
 
 /// Control characters (ASCII, and C1 in UTF-8) become \n, \t or \x1b; the rest stays as it is.
 [[nodiscard]] std::string printable(std::string_view text);
+
+/// As part of a link in a page: all but letters, digits and ._-~ as %xx, so that it also ends no attribute.
+[[nodiscard]] std::string link_text(std::string_view name);
 
 }  // namespace vam

@@ -81,7 +81,7 @@ is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
 # A print that grows: nothing at first, then three turns; live through a pipe until it is done.
 "$render" cylinder:diameter=4,height=4 grows.exr noise=0.05 turns=4 growth=0.5 angles=60
 cat grows.exr | vam-ost --live $glass --resin glass.json --reference four.vdb --until 'missing<=5%' \
-  -o turns --log turns.jsonl --projections turns.png --page turns.html >event.json 2>.log/err
+  -o turns --log turns.jsonl --projections 'turns"><b>.png' --page turns.html >event.json 2>.log/err
 report $? 'a print that grows'
 is 'nothing on standard error' "$(cat .log/err)" ''
 is 'it stops once' "$(grep -c '"event":"stop"' event.json)" 1
@@ -93,6 +93,7 @@ PY
 report $? 'the missing part decreases from turn to turn'
 is 'a volume for every line' "$(ls turns | wc -l)" "$(wc -l <turns.jsonl)"
 grep -q 'missing_percent' turns.html; report $? 'the page has the figures'
+grep -q 'src="turns%22%3E%3Cb%3E.png?' turns.html; report $? 'and the image by a name that cannot end the attribute'
 "$render" cylinder:diameter=4,height=4 faint.exr noise=0.05 turns=2 growth=0 angles=60
 vam-ost faint.exr --live $glass --level 0.5 --window ram-lak -o faint --log - >.log/out 2>.log/err
 is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/image/view_queue.hpp"
 #include "io/settings/json_log.hpp"
@@ -28,7 +29,8 @@ void write_page(const Options& options, int index, const Json& line) {
       options.page,
       "<!doctype html><meta charset=\"utf-8\"><meta http-equiv=\"refresh\" content=\"2\"><title>vam-ost</title>"
       "<body style=\"margin:1em;background:#fff;font-family:sans-serif\"><p>" +
-          words + "</p><img src=\"" + image + "?" + std::to_string(index) + "\" style=\"max-width:100%\">\n");
+          words + "</p><img src=\"" + link_text(image) + "?" + std::to_string(index) +
+          "\" style=\"max-width:100%\">\n");
 }
 
 std::vector<model::Condition> conditions_of(const Options& options) {

@@ -11,3 +11,8 @@ TEST_CASE("control characters are shown, not sent") {
   CHECK(vam::printable(std::string_view("\0", 1)) == "\\x00");
   CHECK(vam::printable("\xc2").size() == 1);
 }
+
+TEST_CASE("a name in a page is a link and nothing else") {
+  CHECK(vam::link_text("turns-1_a.png") == "turns-1_a.png");
+  CHECK(vam::link_text("a\"><script>?\n\xc3\xa4") == "a%22%3E%3Cscript%3E%3F%0A%C3%A4");
+}
