@@ -37,7 +37,7 @@ fails 64 'no sinogram' vam-print
 fails 64 'no --screen' vam-print frames.exr
 fails 64 'unknown option' vam-print frames.exr --scren null:
 fails 66 'cannot be opened' vam-print frames.exr --screen null:
-fails 64 'none of latency' vam-calibrate-all --screen null: --scans edge
+fails 64 'none of lag, latency' vam-calibrate-all --screen null: --scans edge
 ok 'help' vam-print --help
 ok 'help' vam-calibrate-all --help
 
