@@ -133,6 +133,26 @@ TEST_CASE("an insert that overlaps the part is refused; one that shadows it is r
   CHECK(result.outcome.dark_part_voxels < 314);
 }
 
+TEST_CASE("an insert may fill a whole slice") {
+  const auto wheel = vam::oracle::wheel(size);
+  const std::vector<float> nothing(wheel.size(), 0.0F);
+  const std::vector<float> everything(wheel.size(), 1.0F);
+  VolumeTask task;
+  task.limits.iterations = 3;
+  task.make = [](double) { return make_method("apg", {}); };
+  task.source.insert = [&](int k, int count, float* out) {
+    for (int i = 0; i < count; ++i) {
+      const auto& from = k + i == 0 ? everything : nothing;
+      out = std::copy(from.begin(), from.end(), out);
+    }
+  };
+  task.around = [](std::span<const Slab> inserts) {
+    return std::make_unique<ShadowedOperator>(parts::turn(size, angles), 0, 32, inserts);
+  };
+  const auto result = run({nothing, wheel}, task);
+  CHECK(result.outcome.metrics.iou > 0.9);
+}
+
 TEST_CASE("the loop stops at its goal, and when it stagnates") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
