@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/per_slice.hpp"
+#include "base/text.hpp"
 #include "light/preconditioner.hpp"
 #include "model/circle.hpp"
 
@@ -18,6 +20,15 @@ tomo::ParallelGeometry with_alpha(tomo::ParallelGeometry geometry, double alpha_
 
 }  // namespace
 
+void require_translucent(double mu_per_px, double resin_radius_px) {
+  constexpr double deepest = 40;  // e^40 squared is a float
+  const double depth = mu_per_px * resin_radius_px;
+  if (depth <= deepest) return;
+  throw Error{Fault::data, "resin.absorption_per_mm: the intensity falls to e^-" + format_number(depth, 3) +
+                               " of its value on the way to the axis, and e^-" + format_number(deepest) +
+                               " can be computed with; absorption is per mm and to base e (ln 10 times absorbance)"};
+}
+
 AttenuatedOperator::AttenuatedOperator(const tomo::ParallelGeometry& turn, double mu_per_px, double resin_radius_px,
                                        Correction correction)
     : dose_(with_alpha(turn, -mu_per_px)),
@@ -26,6 +37,7 @@ AttenuatedOperator::AttenuatedOperator(const tomo::ParallelGeometry& turn, doubl
       ramp_(turn.columns, {}),
       preconditioner_(turn.columns, preconditioner_spec(turn)),
       exponential_(turn.columns, {.alpha_per_px = mu_per_px}) {
+  require_translucent(mu_per_px, resin_radius_px);
   for (int c = 0; c < turn.columns; ++c) {
     const double t = c - 0.5 * (turn.columns - 1);
     const double depth = std::sqrt(std::max(0.0, radius_ * radius_ - t * t));

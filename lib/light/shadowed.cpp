@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/per_slice.hpp"
+#include "light/attenuated.hpp"
 #include "light/preconditioner.hpp"
 
 namespace vam::light {
@@ -28,6 +29,7 @@ double shadow_up_to(double x, double cosine, double sine) {
 ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu_per_px, double resin_radius_px,
                                    std::span<const Slab> inserts)
     : turn_(turn), mu_(mu_per_px), ramp_(turn.columns, {}), preconditioner_(turn.columns, preconditioner_spec(turn)) {
+  require_translucent(mu_per_px, resin_radius_px);
   for (int c = 0; c < turn.columns; ++c) {
     const double t = c - 0.5 * (turn.columns - 1);
     depth_.push_back(std::sqrt(std::max(0.0, resin_radius_px * resin_radius_px - t * t)));

@@ -10,6 +10,7 @@
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
+#include "light/attenuated.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -87,6 +88,7 @@ RayTable::Setup VialRays::table_setup() const {
 
 VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(table_setup()) {
   const double resin_mm = optics::resin_radius_mm(setup_.view);
+  require_translucent(setup_.absorption_per_mm, resin_mm);
   for (int c = 0; c < setup_.projector.columns; ++c) {
     const optics::ChiefRay ray = optics::chief_ray(setup_.view, setup_.projector.x_mm(c));
     if (!ray.hits || std::abs(ray.x_v_mm) > setup_.radius_mm + setup_.grid.voxel_mm) continue;
@@ -133,13 +135,18 @@ void VialRays::require_gentle(RayNodes& nodes) const {
     }
   }
   const double climb = std::abs(optics::skew_ray(setup_.view, 0, top).climb);
-  if (low >= least_zoom && high <= largest_zoom && climb <= steepest) return;
-  throw Error{Fault::data, "projector: its lens, " + format_number(*setup_.view.rows_lens_mm, 4) +
-                               " mm from the axis, is too near: across the vial rows are " +
-                               format_number(static_cast<double>(low), 3) + " to " +
-                               format_number(static_cast<double>(high), 3) +
-                               " times as dense as on the axis, and 0.55 to 1.85 times can be followed; check "
-                               "projector.throw_ratio and projector.lens_distance_mm"};
+  const std::string lens =
+      "projector: its lens, " + format_number(*setup_.view.rows_lens_mm, 4) + " mm from the axis, is too near: ";
+  const std::string remedy = "; check projector.throw_ratio and projector.lens_distance_mm";
+  if (climb > steepest) {
+    throw Error{Fault::data, lens + "rays climb by " + format_number(climb, 3) + " mm per mm, and " +
+                                 format_number(steepest) + " can be followed" + remedy};
+  }
+  if (low >= least_zoom && high <= largest_zoom) return;
+  const auto number = [](float v) { return format_number(static_cast<double>(v), 3); };
+  throw Error{Fault::data, lens + "across the vial rows are " + number(low) + " to " + number(high) +
+                               " times as dense as on the axis, and " + number(least_zoom) + " to " +
+                               number(largest_zoom) + " times can be followed" + remedy};
 }
 
 int VialRays::chunk(double r_mm) const {

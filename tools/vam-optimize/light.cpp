@@ -74,6 +74,9 @@ std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& o
 
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
   if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options), inserts);
+  if (options.absorption_model == "disc" && mu_per_px(scene, options) > 0) {
+    throw Error{Fault::usage, "--absorption-model disc: does not apply around an insert; use exact"};
+  }
   return std::make_unique<light::ShadowedOperator>(scene.turn, mu_per_px(scene, options), radius_px(scene), inserts);
 }
 
