@@ -25,6 +25,9 @@ struct PixelRay {
 /// From a half on, coverage keeps light out.
 [[nodiscard]] constexpr bool opaque(float coverage) { return coverage >= 0.5F; }
 
+/// Behind an insert: of evenly lit pixels a voxel gets less than 1 % of the largest dose, with which nothing prints.
+[[nodiscard]] constexpr bool in_shadow(float even_dose, float largest) { return !(even_dose > 0.01F * largest); }
+
 /// Every ray is followed voxel by voxel through the insert, up to the first voxel that is at least half covered: there
 /// its light ends, whatever the insert's form. Rays have no width.
 class InsertShadow {

@@ -60,11 +60,13 @@ void Insert::look_for_dark(const light::Simulation& simulation, int first, std::
   }
   simulation.dose(std::vector<Image>(simulation.climbs() ? static_cast<std::size_t>(rows_) : distinct.size(), even_),
                   lit, distinct);
+  float most = 0;
+  for (const Image& dose : lit) most = std::max(most, *std::max_element(dose.values.begin(), dose.values.end()));
   for (std::size_t s = 0; s < inserts.size(); ++s) {
     const Image part = read_slice(*target_, first + static_cast<int>(s), nx_, ny_);
     for (std::size_t p = 0; p < part.size(); ++p) {
-      const bool wanted = model::label_of(part.values[p]) == model::Label::part;
-      if (wanted && !(lit[which[s]].values[p] > 0)) ++dark_;
+      const bool printed = model::label_of(part.values[p]) == model::Label::part;
+      if (printed && light::in_shadow(lit[which[s]].values[p], most)) ++dark_;
     }
   }
 }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "light/insert_shadow.hpp"
+
 namespace vam::optimize {
 
 void exclude(Problem& problem, std::span<const Slab> inserts) {
-  constexpr float filled = 0.5F;
   for_values(problem.target, [&](std::size_t s, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
-      if (inserts[s].values[i] < filled) continue;
+      if (!light::opaque(inserts[s].values[i])) continue;
       problem.labels[s][i] = Label::outside;
       problem.target[s].values[i] = 0.0F;
     }
@@ -20,11 +21,13 @@ std::vector<std::int64_t> exclude_dark(Problem& problem, const light::Operator& 
   for (Slab& slab : all) std::fill(slab.values.begin(), slab.values.end(), 1.0F);
   std::vector<Slab> dose = slabs(problem.target.size(), light.object().width, light.object().height);
   light.adjoint(all, dose);
+  float most = 0;
+  for (const auto& lane : largest(dose)) most = std::max(most, *std::max_element(lane.begin(), lane.end()));
   std::vector<std::int64_t> dark(dose.size() * lanes, 0);
   for (std::size_t s = 0; s < dose.size(); ++s) {
     for (std::size_t i = 0; i < dose[s].values.size(); ++i) {
       Label& label = problem.labels[s][i];
-      if (label == Label::outside || dose[s].values[i] > 0) continue;
+      if (label == Label::outside || !light::in_shadow(dose[s].values[i], most)) continue;
       if (label == Label::part) ++dark[s * lanes + i % lanes];
       label = Label::outside;
     }

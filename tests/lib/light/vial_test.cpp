@@ -163,8 +163,7 @@ TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the
   CHECK(adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
   std::vector<Slab> cross = slabs(2, 40, 40);
   for (int k = 8; k < 20; ++k) {
-    for (int j = 15; j < 22; ++j) *cross[k / lanes].at(18, j) = 1;
+    for (int j = 15; j < 22; ++j) cross[k / lanes].at(18, j)[k % lanes] = 1;
   }
-  for (float& v : cross[0].values) v = v > 0 ? 1.0F : 0.0F;
   CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 32, 36), cross), 2) < 1e-5);
 }
