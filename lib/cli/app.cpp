@@ -26,9 +26,13 @@ struct App::State {
   std::unique_ptr<CLI::App> owned;                // the root's parser
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
   std::string history;
+  std::string heading = App::plain_heading;  // of the options that follow
 
   Group& current_group() {
-    if (tool.groups.empty()) tool.groups.push_back({"Options", {}});
+    const auto found = std::find_if(tool.groups.begin(), tool.groups.end(),
+                                    [this](const Group& group) { return group.title == heading; });
+    if (found != tool.groups.end()) return *found;
+    tool.groups.push_back({heading, {}});
     return tool.groups.back();
   }
 };
@@ -76,7 +80,7 @@ App::App(Manual manual) : state_(std::make_unique<State>()) {
 App::~App() = default;
 
 App& App::group(const std::string& title) {
-  state_->tool.groups.push_back({title, {}});
+  state_->heading = title;
   return *this;
 }
 

@@ -51,7 +51,8 @@ class App {
   explicit App(Manual manual);
   ~App();
 
-  App& group(const std::string& title);  // heading of the options that follow
+  static constexpr const char* plain_heading = "Options";  // that of options without one
+  App& group(const std::string& title);                    // heading of the options that follow
   App& positional(const std::string& value_name, std::string& target, const std::string& help);  // empty: required
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, double& target, Range range,

@@ -16,8 +16,8 @@ App& add_printer(App& app, PrinterOptions& options) {
       "vial of 25.4 mm, index 1.53)");
   app.not_in_job();
   app.option("--set", "KEY=VALUE", options.sets, "Override one setting, e.g. vial.radius_mm=10.").not_in_job();
-  return app.flag("--print-printer", options.print, "Print the settings in force as commented TOML and exit.")
-      .not_in_job();
+  app.flag("--print-printer", options.print, "Print the settings in force as commented TOML and exit.").not_in_job();
+  return app.group(App::plain_heading);
 }
 
 App& add_report(App& app, std::string& report) {
