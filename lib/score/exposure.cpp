@@ -7,13 +7,13 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::score {
 
 namespace {
 
 constexpr double mm_per_cm = 10;
-constexpr double whole = 1 - 1e-4;  // coverage of a voxel that is inside; less is a surface
 
 // Turns of this dose until the critical dose, and their time; null when no turn adds anything.
 void add_exposure(Json& figures, const std::string& of, double dose, const model::Printer& printer) {
@@ -32,7 +32,7 @@ std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer) {
   return mu_per_cm / omega_rad_s * printer.projector.max_intensity_mw_cm2;
 }
 
-void DoseRange::add(const Image& dose, const Image& target) {
+void TurnDoses::add(const Image& dose, const Image& target) {
   if (target.size() != 0 && target.size() != dose.size()) {
     throw Error{Fault::data, "target: " + std::to_string(target.width) + " x " + std::to_string(target.height) +
                                  " voxels, the dose " + std::to_string(dose.width) + " x " +
@@ -42,7 +42,7 @@ void DoseRange::add(const Image& dose, const Image& target) {
     const double value = dose.values[i];
     largest_ = std::max(largest_, value);
     sum_ += value;
-    if (target.size() == 0 || target.values[i] < whole) continue;
+    if (target.size() == 0 || model::label_of(target.values[i]) != model::Label::part) continue;
     part_least_ = part_count_ == 0 ? value : std::min(part_least_, value);
     part_sum_ += value;
     ++part_count_;
@@ -50,7 +50,7 @@ void DoseRange::add(const Image& dose, const Image& target) {
   count_ += static_cast<double>(dose.size());
 }
 
-Json DoseRange::figures(const model::Printer& printer, bool absolute, double scale) const {
+Json TurnDoses::figures(const model::Printer& printer, bool absolute, double scale) const {
   const std::string unit = absolute ? "_mj_cm3" : "_relative";
   Json figures;
   figures["dose_per_turn_max" + unit] = scale * largest_;
@@ -58,12 +58,12 @@ Json DoseRange::figures(const model::Printer& printer, bool absolute, double sca
   if (part_count_ > 0) {
     figures["part_voxels"] = part_count_;
     figures["part_dose_per_turn_min" + unit] = scale * part_least_;
-    figures["part_dose_per_turn_mean" + unit] = scale * part_sum_ / part_count_;
+    figures["part_dose_per_turn_mean" + unit] = scale * part_sum_ / static_cast<double>(part_count_);
   }
   if (!absolute) return figures;
   figures["critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3;
   if (part_count_ > 0) {
-    add_exposure(figures, "mean", scale * part_sum_ / part_count_, printer);
+    add_exposure(figures, "mean", scale * part_sum_ / static_cast<double>(part_count_), printer);
     add_exposure(figures, "all", scale * part_least_, printer);
   } else {
     add_exposure(figures, "max", scale * largest_, printer);

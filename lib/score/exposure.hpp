@@ -2,6 +2,7 @@
 // 1], adds up to the critical dose [physics §4].
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "base/image.hpp"
@@ -15,7 +16,7 @@ namespace vam::score {
 [[nodiscard]] std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer);
 
 /// Doses of one turn, gathered slice by slice: of everything, and of the voxels that are wholly inside the part.
-class DoseRange {
+class TurnDoses {
  public:
   /// target: coverage 0..1 of the same voxels, or empty. Throws Fault::data for other sizes.
   void add(const Image& dose, const Image& target);
@@ -31,7 +32,7 @@ class DoseRange {
   double sum_ = 0;
   double count_ = 0;
   double part_sum_ = 0;
-  double part_count_ = 0;
+  std::int64_t part_count_ = 0;
   double part_least_ = 0;
 };
 

@@ -19,7 +19,7 @@ namespace vam::dose_tool {
 struct Exposed {
   light::LightSeen light;
   bool climbs = false;  // rays that climb were followed
-  score::DoseRange doses;
+  score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
 };

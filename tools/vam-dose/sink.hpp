@@ -23,7 +23,7 @@ class Sink {
   /// The insert's voxels become dark.
   void add(Image& dose);
   void flush();
-  [[nodiscard]] const score::DoseRange& range() const { return range_; }
+  [[nodiscard]] const score::TurnDoses& range() const { return range_; }
   [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
 
  private:
@@ -35,7 +35,7 @@ class Sink {
   int next_;
   int pending_ = 0;
   std::vector<float> buffer_;
-  score::DoseRange range_;
+  score::TurnDoses range_;
   std::optional<model::Circle> judged_;
   model::DoseStatistics statistics_;
 };

@@ -165,7 +165,7 @@ TEST_CASE("turns and seconds to the critical dose") {
   dose.values = {1, 2, 4};
   Image target(3, 1);
   target.values = {0, 1, 1};
-  DoseRange range;
+  TurnDoses range;
   range.add(dose, target);
   const Json json = range.figures(printer, true, 10);
   CHECK(json["part_dose_per_turn_min_mj_cm3"] == 20);
@@ -175,7 +175,7 @@ TEST_CASE("turns and seconds to the critical dose") {
   CHECK(json["seconds_to_critical_all"] == 5 * 36);
   CHECK(json["dose_per_turn_max_mj_cm3"] == 40);
   CHECK_THROWS_AS(range.add(dose, Image(2, 1)), Error);
-  DoseRange dark;
+  TurnDoses dark;
   dark.add(Image(3, 1), {});
   CHECK(dark.figures(printer, true, 10)["turns_to_critical_max"].is_null());
 }
