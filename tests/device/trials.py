@@ -1,4 +1,4 @@
-"""Common parts of the safety trials [devices promise 1]: ways to end a program, simulator logs, table of results."""
+"""Common parts of the safety trials [devices guarantee 1]: ways to end a program, simulator logs, table of results."""
 
 import json
 import os

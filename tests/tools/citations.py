@@ -45,7 +45,7 @@ def equations(bracket):
 physics, formats, devices = page('physics'), page('formats'), page('devices')
 sections = {name: set(re.findall(r'^\.S[hs] "?(\d+(?:\.\d+)?)[. ]', text, re.M))
             for name, text in (('physics', physics), ('devices', devices))}
-promises = len(re.findall(r'^\.It$', ''.join(re.findall(r'^\.Sh 9\. PROMISES$.*?^\.Sh ', devices, re.M | re.S)), re.M))
+guarantees = len(re.findall(r'^\.It$', ''.join(re.findall(r'^\.Sh 9\. GUARANTEES$.*?^\.Sh ', devices, re.M | re.S)), re.M))
 papers = set(re.findall(rf'^\.It ({KEY})$', physics, re.M))
 defined = set().union(*(equations(b) for b in brackets(physics)), set())
 attributes = set(re.findall(r'^\.It Va (vam:\w+)', formats, re.M))
@@ -59,9 +59,9 @@ def check(where, text):
         for number in numbers.replace('§', '').split(', '):
             if number not in sections[kind]:
                 faults.append(f'{where}: vam-{kind}(7) has no section {number}')
-    for number in re.findall(r'\b[Pp]romises? (\d\b)', text):
-        if int(number) > promises:
-            faults.append(f'{where}: vam-devices(7) has no promise {number}')
+    for number in re.findall(r'\b[Gg]uarantees? (\d\b)', text):
+        if int(number) > guarantees:
+            faults.append(f'{where}: vam-devices(7) has no guarantee {number}')
     for heading in re.findall(r'\[formats: ([^\]]+)\]', text):
         if heading.lower() not in headings(formats):
             faults.append(f'{where}: vam-formats(7) has no heading "{heading}"')

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every device [devices promises 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;
+# Every device [devices guarantees 4 and 6]: one user at a time, reported with its pid within a second, free again after kill -9;
 # and under cron a silent standard output, with every event a JSON line with UTC and monotonic time.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes

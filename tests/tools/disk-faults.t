@@ -1,6 +1,6 @@
 #!/bin/sh
 # What a full disk, a bad one and kill -9 leave behind, at every system call that matters: of a file the old one; of a
-# capture folder one that can be resumed, to the identical result [devices promise 5].
+# capture folder one that can be resumed, to the identical result [devices guarantee 5].
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer writes, too: no call can be counted'; exit 77; }
 strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may not trace here: nothing is tried'; exit 77; }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Page flips [devices promise 1]: black within 100 ms of any end, by the log of a simulated graphics card. VAM_TRIALS a
+# Page flips [devices guarantee 1]: black within 100 ms of any end, by the log of a simulated graphics card. VAM_TRIALS a
 # cause (10; 100 under the label "long").
 # In memory: a disk that is busy with others would hold up the log.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR

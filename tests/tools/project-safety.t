@@ -1,5 +1,5 @@
 #!/bin/sh
-# vam-project alone [devices promise 1]: a black screen within 100 ms of any end. VAM_TRIALS a cause (10; 100: "long").
+# vam-project alone [devices guarantee 1]: a black screen within 100 ms of any end. VAM_TRIALS a cause (10; 100: "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"

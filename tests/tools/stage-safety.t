@@ -1,5 +1,5 @@
 #!/bin/sh
-# vam-stage alone [devices promise 1]: stopped within 100 ms of any end. VAM_TRIALS a cause (10; 100: label "long").
+# vam-stage alone [devices guarantee 1]: stopped within 100 ms of any end. VAM_TRIALS a cause (10; 100: label "long").
 # In memory: a disk that is busy with others would hold up the screen that the trials read.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"

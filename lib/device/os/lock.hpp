@@ -1,4 +1,4 @@
-// One user per device. The lock dies with its holder (flock), whatever that dies of [devices promise 4].
+// One user per device. The lock dies with its holder (flock), whatever that dies of [devices guarantee 4].
 #pragma once
 
 #include <string>

@@ -109,7 +109,7 @@ double p99_error_deg(const Run& run, AngleSource& angles, VirtualClock& clock, P
 
 }  // namespace
 
-// [devices promise 3]
+// [devices guarantee 3]
 TEST_CASE(
     "With 1 % speed error and 5 ms jitter the shown frame is within 0.1 deg, p99; by elapsed time it is "
     "not") {

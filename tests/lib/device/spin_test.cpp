@@ -66,7 +66,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
   }
 }
 
-// [devices promise 2]
+// [devices guarantee 2]
 TEST_CASE("A moving stage is sampled every 200 ms at least, whatever the rate of the output") {
   VirtualStage lab;
   SpinPlan plan;
