@@ -102,7 +102,7 @@ void InsertShadow::note_hindered() {
   });
 }
 
-/// Voxel by voxel [Amanatides & Woo 1987].
+/// Voxel by voxel [AW87].
 float InsertShadow::follow(const Body& body, const PixelRay& ray, int angle) const {
   if (!ray.hits || body.high[0] == 0) return unhindered;
   const Direction& part = parts_[angle];

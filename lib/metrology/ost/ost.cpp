@@ -145,7 +145,7 @@ std::vector<Image> OstReconstructor::State::virtual_sinograms(const std::vector<
   return out;
 }
 
-// MLEM: x <- x * A*(g / A x) / A* 1 [Shepp & Vardi 1982]; keeps x >= 0 and the counts.
+// MLEM: x <- x * A*(g / A x) / A* 1 [SV82]; keeps x >= 0 and the counts.
 void OstReconstructor::State::refine(const tomo::ParallelGeometry& geometry, const std::vector<Slab>& sinograms,
                                      std::vector<Slab>& images) const {
   std::vector<Slab> ones(1, Slab(geometry.columns, geometry.angles));

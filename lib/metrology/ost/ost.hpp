@@ -18,7 +18,7 @@ struct OstOptions {
   std::string window = "cosine";  // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
   bool refraction = true;         // false: columns taken as parallel rays (for comparison)
   bool non_negative = true;       // negative densities become 0
-  int statistical = 0;            // iterations of MLEM (Shepp & Vardi 1982) after FBP, for noisy views
+  int statistical = 0;            // iterations of MLEM [SV82] after FBP, for noisy views
   double radius_mm = 0;           // of the reconstructed cylinder; 0: all that the camera sees through the vial
 };
 

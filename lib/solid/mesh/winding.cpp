@@ -91,7 +91,7 @@ WindingNumber::Cluster WindingNumber::merged(const Cluster& a, const Cluster& b)
 }
 
 // Omega = sum of A . grad G with G = -1/r: first order A.r/r^3, second order the derivative of that along the offsets
-// [Barill18 eq 14 and 15].
+// [BAR18 eq 14-15].
 double WindingNumber::solid_angle(std::size_t index, const Vector3& point) const {
   const Cluster& cluster = clusters_[index];
   const Vector3 r = cluster.centre - point;
