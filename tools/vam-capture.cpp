@@ -47,7 +47,8 @@ cli::Manual manual() {
        "Time. The time of a frame is the middle of its exposure: the camera's own time stamp, mapped to the machine's "
        "clock by the shortest delay observed in the last 10 s, minus half the exposure, minus --latency, the shortest "
        "delay from the end of an exposure to its time stamp.",
-       "A camera that stops responding is queried once more: status 75 if it answers, 69 if it is gone, within the "
+       "A camera that stops responding is queried once more: status 75 if it answers, 69 if it is disconnected, within "
+       "the "
        "time-out plus 5 s.",
        "A device has one user at a time: a second one exits with status 75 and names the process that holds it.",
        "Protocols and fault handling of the devices are described in vam-devices(7)."},
@@ -102,7 +103,7 @@ void declare(cli::App& app, Options& o) {
   cli::add_stack_output(app, o.stack.half, o.stack.compression);
   app.option("--log", "FILE", o.log,
              "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
-  app.flag("--die-with-parent", o.with_parent, "End when the process that started this one ends.");
+  app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_report(app, o.report);
   cli::App& who = app.subcommand("identify", "print the camera, its settings and its firmware as JSON", o.command);
   add_camera(who, o);

@@ -40,7 +40,7 @@ void warn_of_climb(const Options& options, const model::Printer& printer, const 
   if (strayed < noticed) return;
   warn((options.input == "-" ? "stdin" : options.input) + ": the projector's rays climb, by up to " +
        format_number(strayed, 3) +
-       " voxels out of their slice; resampling takes them as level, vam-optimize --geometry vial does not");
+       " voxels out of their slice; resampling treats them as horizontal, vam-optimize --geometry vial does not");
 }
 
 void run(const cli::App& app, Options& options) {

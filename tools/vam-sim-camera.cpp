@@ -112,7 +112,7 @@ void declare(cli::App& app, Options& o) {
   app.group("Program");
   app.option("--seed", "N", bench.seed, {0, 1e9}, "Seed of the random numbers.");
   app.option("--log", "FILE", o.log, "Append one JSON line per event.");
-  app.flag("--die-with-parent", o.with_parent, "End when the process that started this one ends.");
+  app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_printer(app, o.printer);
 }
 

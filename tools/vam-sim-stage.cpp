@@ -78,13 +78,13 @@ void declare(cli::App& app, Options& options) {
   app.option("--address", "N", options.stage.address, {1, 16}, "Address of the controller in a daisy chain.");
   app.flag("--reset-at-open", options.stage.reset_at_open,
            "GRBL: the board is reset when its port is opened, as most are, and its position is lost.");
-  app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N]; may be repeated.");
+  app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N].");
   app.group("Program");
   app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");
   app.option("--log", "FILE", options.log, "Append one JSON line per event.");
   app.option("--link", "FILE", options.link, "Create this symbolic link to the pseudo-terminal; removed at the end.");
   app.flag("--shim", options.shim, "Print the path of the library to preload and exit.");
-  app.flag("--die-with-parent", options.with_parent, "End when the process that started this one ends.");
+  app.flag("--die-with-parent", options.with_parent, "Exit when the parent process exits.");
 }
 
 // Beside the program in a build tree (bin/../lib), or where it is installed.

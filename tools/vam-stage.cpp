@@ -49,10 +49,8 @@ cli::Manual manual() {
        "of the machine share, the angle at that time, and its standard deviation in degrees. vam-project --follow "
        "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
        "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
-       "The stage is that of --device or stage.device in the printer file; without either the command fails: a "
-       "simulated "
-       "stage never stands in for a real one unasked, and log and identify mark it ({\"simulated\": true}). A device "
-       "is "
+       "The stage is that of --device or stage.device in the printer file; without either the command fails. "
+       "A simulator is used only if it is named; log and identify mark it ({\"simulated\": true}). A device is "
        "a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
        "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
        "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
@@ -92,8 +90,8 @@ void add_common(cli::App& command, Options& options) {
               "Rotation stage: " + device::stage_devices() + ", with options after a question mark.")
       .default_is("stage.device");
   command.option("--log", "FILE", options.log,
-                 "Append one JSON line per event, with UTC and monotonic time; - for standard error.");
-  command.flag("--die-with-parent", options.with_parent, "Stop and end when the process that started this one ends.");
+                 "Append one JSON line per event, with UTC and monotonic time; - is standard error.");
+  command.flag("--die-with-parent", options.with_parent, "Stop the stage and exit when the parent process exits.");
   cli::add_printer(command, options.printer);
 }
 

@@ -116,7 +116,7 @@ Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignmen
       return std::make_unique<ParallelOperator>(turn);
     };
   } else {
-    throw Error{Fault::data, "sinogram: a camera's leaves no dose; give a projector's or a virtual one"};
+    throw Error{Fault::data, "sinogram: a camera sinogram has no dose; a projector or virtual sinogram is required"};
   }
   state_->clear = state_->make({});
 }

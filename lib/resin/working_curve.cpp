@@ -39,7 +39,7 @@ Groups checked(std::span<const CuredSample> samples) {
   }
   if (groups.size() < 3) {
     throw Error{Fault::data, "working curve: " + std::to_string(groups.size()) +
-                                 " different exposures do not judge a line; measure at least 3"};
+                                 " different exposures are too few for a line fit; measure at least 3"};
   }
   return groups;
 }

@@ -38,7 +38,7 @@ within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within 
 near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
 
 fails 64 'no --screen' vam-calibrate-all
-fails 64 'none of lag, latency' vam-calibrate-all --screen null: --scans edge
+fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
 vam-calibrate --scans edge 2>moved.err
 is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: vam-calibrate --scans is now vam-calibrate-all --scans'
 fails 64 'names no scan' vam-calibrate-all --screen null: --scans ' '

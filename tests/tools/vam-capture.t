@@ -26,7 +26,7 @@ fails 73 'cannot be written' $take --frames 1 --log missing/log -o views.exr
 fails 64 'camera: none is named; give --device or camera.device .*; sim: is a simulated one' vam-capture --frames 1 --log why -o views.exr
 printf '[camera]\ndevice = "v4l2:/dev/no-video"\n' >camera.toml
 fails 69 'no-video' vam-capture --printer camera.toml --frames 1 -o views.exr
-fails 64 "camera.device: 'usb:1' is no device of such a kind; begin with one of aravis:, v4l2:, replay:, sim:" vam-capture --set camera.device=usb:1 --frames 1 -o views.exr
+fails 64 "camera.device: 'usb:1': unknown device scheme; use one of aravis:, v4l2:, replay:, sim:" vam-capture --set camera.device=usb:1 --frames 1 -o views.exr
 ok 'a simulated capture' vam-capture --set "camera.device=$sim" --binning 30 --frames 2 -o marked/ --log marked.log --report marked.json
 is 'is marked in manifest, log and report' "$(head -n 1 marked/manifest.jsonl | grep -c '"simulated":true') $(grep -c '"event":"begin".*"simulated":true' marked.log) $(json marked.json camera.simulated)" '1 1 true'
 $take --frames 1 --compression none -o marked.exr
@@ -43,7 +43,7 @@ same 'has the same pixels' sum1 sum2
 is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 
 # A stage that stands at a known angle.
-fails 64 'a stage that stands conflicts with --follow, --speed and --every' $take --angle 90 --speed 3 --frames 1 -o no.exr
+fails 64 'a fixed stage angle conflicts with --follow, --speed and --every' $take --angle 90 --speed 3 --frames 1 -o no.exr
 $take --angle 270 --frames 1 --compression none -o stands.exr
 is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr stands.exr vam:angle_deg)" 270
 
@@ -90,7 +90,7 @@ touch -d '2001-01-01' half/*.png
 quiet 'a complete folder is left alone' vam-capture --device replay:views.exr --frames 12 -o half/
 is 'no image was rewritten' "$(find half -name '*.png' -newermt 2002-01-01)" ''
 mkdir other; touch other/file
-fails 73 'holds other things' vam-capture --device replay:views.exr --frames 12 -o other/
+fails 73 'contains files of another kind' vam-capture --device replay:views.exr --frames 12 -o other/
 
 # A camera that sends images of another size: reported at once; earlier frames are kept and the capture is resumed.
 shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6 -o shrunk/; }

@@ -114,7 +114,7 @@ fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough cor
 printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'the reading falls from 5 at grey 100 to 4 at grey 200' vam-curethrough response falling.csv -o no.csv
 printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n' >few.csv
-fails 65 '2 different exposures do not judge a line; measure at least 3' vam-curethrough working-curve few.csv --plot no.png
+fails 65 '2 different exposures are too few for a line fit; measure at least 3' vam-curethrough working-curve few.csv --plot no.png
 printf 'exposure,thickness_um\n20,370\n' >names.csv
 fails 65 "no column 'exposure_mj_cm2'" vam-curethrough working-curve names.csv
 fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr

@@ -169,9 +169,9 @@ fails 65 'its lens, 16.64 mm from the axis, is too near' vam-optimize --set proj
 fails 65 'light reaches only' vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
 # Nothing to print: a disc and a rod thinner than half a voxel, and rows that pass below the part
 vam-slice --shape cylinder:diameter=6,height=0.18 --stretch-z 1 --voxel 0.2 -o flat.vdb
-fails 65 'flat.vdb: the part covers no voxel by half .*take smaller voxels' vam-optimize --angles 24 flat.vdb -o out.exr
+fails 65 'flat.vdb: no voxel is at least half covered .*reduce --voxel' vam-optimize --angles 24 flat.vdb -o out.exr
 vam-slice --shape cylinder:diameter=0.15,height=3 --voxel 0.2 -o rod.vdb
-fails 65 'rod.vdb: the part covers no voxel by half' vam-optimize --angles 24 rod.vdb -o out.exr
+fails 65 'rod.vdb: no voxel is at least half covered' vam-optimize --angles 24 rod.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=0.2 --stretch-z 1 --voxel 0.2 -o disc.vdb
 quiet "a disc of one voxel's height prints" vam-optimize --angles 24 --iterations 2 --set projector.telecentric=true disc.vdb -o disc.exr
 fails 65 'the slices span z = -0.1 ... 0.1 mm, but the projector.s rows cover' \

@@ -37,7 +37,7 @@ fails 64 'no sinogram' vam-print
 fails 64 'no --screen' vam-print frames.exr
 fails 64 'unknown option' vam-print frames.exr --scren null:
 fails 66 'cannot be opened' vam-print frames.exr --screen null:
-fails 64 'none of lag, latency' vam-calibrate-all --screen null: --scans edge
+fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
 ok 'help' vam-print --help
 ok 'help' vam-calibrate-all --help
 
@@ -77,7 +77,7 @@ too_busy() {  # too_busy RUN: after a print that ended with $printed
   rm -r "$1"
 }
 
-# The print of the promises: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
+# The print of the guarantees: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
 for attempt in 1 2 3; do
   turntable --speed-error 0.01 --jitter 5
   camera_up --address $address --angles truth --shown run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain

@@ -45,7 +45,7 @@ camera_down
 camera_up --vanish 12
 begun=$(date +%s)
 $take --frames 40 -o gone.exr 2>said; status=$?
-is 'a camera whose cable is pulled is absent' "$status $(grep -c 'the camera is gone' said)" '69 1'
+is 'a camera whose cable is pulled is absent' "$status $(grep -c 'the camera is disconnected' said)" '69 1'
 holds 'which is known within the time-out and 5 s, and what a busy machine adds' "$(($(date +%s) - begun)) <= 12"
 is 'nothing is left of the stack' "$(ls | grep -c gone)" 0
 wait $camera 2>/dev/null

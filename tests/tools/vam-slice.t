@@ -124,7 +124,7 @@ fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
 fails 65 'beyond the writable radius' vam-slice far.stl --no-center -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
-fails 65 'more than 4096 a side' vam-slice cube.stl --voxel 0.001 -o x.vdb
+fails 65 'more than 4096 per axis' vam-slice cube.stl --voxel 0.001 -o x.vdb
 fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-center -o x.vdb
 fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-center -o x.vdb
 fails 65 'black' vam-slice black -o x.vdb

@@ -98,7 +98,7 @@ void check(const Options& o, const model::Printer& printer) {
   if (!o.follow.empty() && o.speed_deg_s)
     throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
   if (o.angle_deg && (!o.follow.empty() || o.speed_deg_s || o.every_deg)) {
-    throw Error{Fault::usage, "--angle: a stage that stands conflicts with --follow, --speed and --every"};
+    throw Error{Fault::usage, "--angle: a fixed stage angle conflicts with --follow, --speed and --every"};
   }
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
     throw Error{Fault::usage, "--every: camera frames have no angles; give --follow or --speed"};

@@ -34,15 +34,15 @@ std::vector<std::string> description() {
        "its process window, or so that the part's minimum dose is HIGH if the window is wider than that. The dose is "
        "the sum of intensity * (angle step in radian) over all angles along the rays.",
        "Intensity is limited (--max-intensity, --turns), because the brightest pixel at full grey determines the "
-       "duration of the print: the light of an unlimited optimisation is spikes of one pixel, and its print takes some "
+       "duration of the print: unconstrained projections consist of single-pixel peaks, and their print takes some "
        "ten times as long at the same process window. The scale is the even intensity, at which the mean dose is the "
        "threshold dose if every pixel is lit at every angle. The limit is twice that, and is raised while the "
        "conditions of --until are not met; --shortest begins lower and raises it in smaller steps, with which most "
        "parts print with 1.2 to 1.5 times the even intensity. Some parts have a wider process window without a limit "
        "(--max-intensity 0). With a known resin the report contains the number of turns and their duration at full "
        "grey.",
-       "A grid 'insert' in the same file is an opaque object to print around (overprinting): rays carry no light "
-       "behind it. Part voxels in its shadow from all sides are reported and excluded.",
+       "A grid 'insert' in the same file is an opaque object to print around (overprinting): it casts a "
+       "shadow. Part voxels in its shadow from all sides are reported and excluded.",
        "Absorption by the resin (resin.absorption_per_mm) attenuates the beam: e^(-mu s), s the path length from the "
        "point of entry into the resin, is part of the forward model, and intensities are those at the point of entry.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void: they are unconstrained, and "
@@ -80,7 +80,7 @@ cli::Manual manual() {
         "--grey --response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o graded.exr"}},
       {"Figures of merit (VER, PW, IPDR, CV, IoU; defined in vam-score(1)) are computed slice by slice. In --trace and "
        "--until PW is that of the worst slice, IPDR the largest, the others are means weighted by voxel count.",
-       "Speed: where rays climb, light couples the slices, and all are optimised together; two projections of 160 "
+       "Speed: skew rays couple the slices, and all are then optimised together; two projections of 160 "
        "slices of 256 x 256 voxels at 360 angles then take 3 s on two cores. Otherwise identical slices are computed "
        "once. A parallel beam gives the same dose from either side, so for an even number of angles half of them are "
        "computed and mirrored. Memory: three arrays of a slice and three of a sinogram each, of all slices where they "

@@ -7,7 +7,8 @@ cli::Manual manual() {
       "vam-project",
       "convert sinograms into projector frames and show them",
       {"A sinogram stack has an image for each slice, with a row for each angle. A projector needs the transpose: an "
-       "image for each time, with a row for each slice. vam-project reads the stack of vam-resample and writes one "
+       "image for each time, with a row for each slice. vam-project reads a projector sinogram (vam-optimize, "
+       "vam-resample) and writes one "
        "frame for every frame period of the projector of the rotating stage.",
        "The output name selects the format. A name without an extension, or ending in /, is a folder of numbered PNG "
        "files with an index frames.csv (file, time_s, angle_deg). A name in .mkv is lossless FFV1 video, suitable for "
@@ -51,8 +52,8 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-project "
         "--flatland 0 -o flatland.mp4"},
        {"The slices of a continuous print, 1000 mm/h at 50 um a slice, as a video of 5.56 frames per second:",
-        "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-intensity 110 "
-        "--min-intensity 0.2 -o slices.exr && vam-project slices.exr --set projector.pixel_mm=0.05 -o slices.mkv"},
+        "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-irradiance 110 "
+        "--min-irradiance 0.2 -o slices.exr && vam-project slices.exr --set projector.pixel_mm=0.05 -o slices.mkv"},
        {"A focus star as an image:", "vam-project --pattern star -o star/"},
        {"A synchronised print of one turn, here on a simulated stage and no screen:",
         "vam-stage spin --device sim: --speed 90 | vam-project projector.exr -o null: --follow - --speed 90 --missed "

@@ -21,7 +21,7 @@ void add_live(cli::App& app, LiveOptions& options) {
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
-  app.flag("--die-with-parent", options.with_parent, "Go black and end when the process that started this one ends.");
+  app.flag("--die-with-parent", options.with_parent, "Blank the screen and exit when the parent process exits.");
 }
 
 void add_patterns(cli::App& app, PatternOptions& options) {

@@ -14,12 +14,14 @@ cli::Manual manual() {
        "from a telecentric or diverging lens, and through a bath behind a flat window.",
        "Rays that also diverge from row to row climb, and leave their slice. No map from slice to row is exact for "
        "them; "
-       "this one takes them as level. It is exact for projector.telecentric and projector.telecentric_rows. It is good "
-       "enough where the light of the outermost row strays by less than half a voxel within the writable radius, "
+       "this one treats them as horizontal. It is exact for projector.telecentric and projector.telecentric_rows. It "
+       "is good "
+       "enough where the light of the outermost row deviates by less than half a voxel within the writable radius, "
        "z R_w / (D n M_vp), that is for parts up to 0.5 D n M_vp / R_w voxels above and below the axis of the lens (10 "
        "voxels for the default printer), and where the part's cross-section changes little over the voxels by which it "
-       "strays. Otherwise one line on standard error says by how many, and vam-optimize --geometry vial (the default) "
-       "computes projections that count the climb.",
+       "deviates. Otherwise one line on standard error says by how many, and vam-optimize --geometry vial (the "
+       "default) "
+       "computes projections that include the slope.",
        "With --to virtual it performs the inverse for a camera that views the vial: camera sinograms become "
        "parallel-beam sinograms, ready for filtered back-projection. The azimuth of the camera is counter-clockwise "
        "from the projector, seen from above.",

@@ -168,13 +168,13 @@ class AravisCamera final : public Camera {
     for (;;) {
       check_interrupted();
       if (ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), 50000)) return take(buffer);
-      if (lost_) throw Error{Fault::absent, name_ + ": the camera is gone; check cable and power"};
+      if (lost_) throw Error{Fault::absent, name_ + ": the camera is disconnected; check cable and power"};
       if (clock_.now_s() < limit_s) continue;
       Problem problem;  // silent, or gone? It tells its width or it does not.
       arv_camera_get_integer(camera_.get(), "Width", problem);
       if (problem.there()) {
         lost_ = true;
-        throw Error{Fault::absent, name_ + ": the camera is gone (" + problem.text() + ")"};
+        throw Error{Fault::absent, name_ + ": the camera is disconnected (" + problem.text() + ")"};
       }
       throw Error{Fault::busy, name_ + ": no frame within " + format_number(patience_s, 3) +
                                    " s, although the camera responds; check the trigger"};

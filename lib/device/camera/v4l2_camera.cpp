@@ -132,7 +132,7 @@ class V4l2Camera final : public Camera {
 
  private:
   [[nodiscard]] Error gone() const {
-    return {Fault::absent, path_ + ": the camera is gone (" + std::strerror(errno) + ")"};
+    return {Fault::absent, path_ + ": the camera is disconnected (" + std::strerror(errno) + ")"};
   }
 
   void ask(unsigned long request, void* argument, const std::string& what) {

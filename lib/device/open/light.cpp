@@ -42,9 +42,8 @@ void refuse_steps(const Address& address) {
   for (const char* key : {"current", "max_current"}) {
     if (!address.options.contains(key)) continue;
     throw Error{Fault::usage, "device '" + address.text + "': " + key +
-                                  " was in steps of the controller, the larger the darker on a LightCrafter 4500; "
-                                  "give " +
-                                  key + "_percent, in per cent of full current"};
+                                  ": former unit: controller steps, inverted on a LightCrafter 4500; give " + key +
+                                  "_percent, in per cent of full current"};
   }
 }
 

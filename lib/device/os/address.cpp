@@ -72,7 +72,7 @@ void Address::allow(const std::vector<std::string>& known) const {
   for (const auto& [key, value] : options) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       throw Error{Fault::usage, "device '" + text + "': unknown option " + key + did_you_mean(key, known) + " (" +
-                                    scheme + ": knows " + (known.empty() ? "none" : join(known, ", ")) + ")"};
+                                    scheme + " options: " + (known.empty() ? "none" : join(known, ", ")) + ")"};
     }
   }
 }

@@ -135,7 +135,7 @@ class DrmDisplay final : public Display {
   void read_events() {
     alignas(drm_event_vblank) std::array<char, 1024> bytes{};
     const ssize_t size = read(output_.card, bytes.data(), bytes.size());
-    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the GPU is gone"};
+    if (size < static_cast<ssize_t>(sizeof(drm_event))) throw Error{Fault::absent, name_ + ": the GPU is disconnected"};
     for (std::size_t at = 0; at + sizeof(drm_event_vblank) <= static_cast<std::size_t>(size);) {
       drm_event_vblank event{};
       std::memcpy(&event, bytes.data() + at, sizeof event);

@@ -73,7 +73,7 @@ Layout checked_layout(const Imf::Header& part) {
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   if (width < 1 || height < 1 || width > exr::max_side || height > exr::max_side || width * height > exr::max_pixels) {
     throw std::runtime_error("has an image of " + std::to_string(width) + " x " + std::to_string(height) +
-                             " pixels; 1 to 65536 a side and up to 2^28 in all can be read");
+                             " pixels; 1 to 65536 per axis and up to 2^28 in all can be read");
   }
   check_channels(part.channels());
   if (part.compression() < 0 || part.compression() >= Imf::NUM_COMPRESSION_METHODS) {

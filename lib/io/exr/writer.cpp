@@ -48,7 +48,7 @@ void check_half(const Image& image, const std::string& what) {
   for (const float value : image.values) largest = std::max(largest, std::abs(value));
   if (largest <= largest_half) return;
   throw Error{Fault::data,
-              what + " has the value " + format_number(largest) + ", but half goes to 65504 only; leave out --half"};
+              what + " has the value " + format_number(largest) + ", but the half-float maximum is 65504; omit --half"};
 }
 
 std::vector<ImageInfo> all_implied(const StackInfo& info) {
@@ -97,7 +97,7 @@ StackWriter::State::State(const std::string& path, const StackInfo& stack, std::
   if (!sane || about.size() != static_cast<std::size_t>(info.count)) {
     throw Error{Fault::data, out.name() + ": a stack of " + std::to_string(info.count) + " images of " +
                                  std::to_string(info.width) + " x " + std::to_string(info.height) +
-                                 " pixels cannot be written; at most 65536 a side and 2^28 in all"};
+                                 " pixels cannot be written; at most 65536 per axis and 2^28 in all"};
   }
 }
 

@@ -132,7 +132,7 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
   const std::string path = manifest_path(folder);
   const bool again = fs::exists(path) && fs::file_size(path) > 0;
   if (!again && !fs::is_empty(folder) && !fs::exists(path)) {
-    throw Error{Fault::no_output, folder + ": holds other things than a capture; name another folder"};
+    throw Error{Fault::no_output, folder + ": contains files of another kind; name another folder"};
   }
   if (again) {
     manifest_ = read_manifest(folder);

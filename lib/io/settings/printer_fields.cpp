@@ -27,7 +27,7 @@ const std::vector<PrinterField> fields{
     {"projector", "telecentric", at<&Printer::projector, &Projector::telecentric>, "parallel chief rays; replaces throw_ratio"},
     {"projector", "telecentric_columns", at<&Printer::projector, &Projector::telecentric_columns>, "parallel chief rays seen along the rotation axis only"},
     {"projector", "telecentric_rows", at<&Printer::projector, &Projector::telecentric_rows>, "level chief rays: parallel seen from the side only"},
-    {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "at grey 0: what leaks when black", 0, huge},
+    {"projector", "min_intensity_mw_cm2", at<&Printer::projector, &Projector::min_intensity_mw_cm2>, "at grey 0: black level", 0, huge},
     {"projector", "max_intensity_mw_cm2", at<&Printer::projector, &Projector::max_intensity_mw_cm2>, "at full grey", 0, huge, true},
     {"projector", "response", at<&Printer::projector, &Projector::response>, "CSV file \"grey,intensity\", relative to this file; empty: linear"},
     {"projector", "bits", at<&Printer::projector, &Projector::bits>, "grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
@@ -45,7 +45,7 @@ const std::vector<PrinterField> fields{
     {"resin", "name", at<&Printer::resin, &Resin::name>, "name, informative only"},
     {"resin", "index", at<&Printer::resin, &Resin::index>, "refractive index at the projector's wavelength", 1, 4},
     {"resin", "absorption_per_mm", at<&Printer::resin, &Resin::absorption_per_mm>, "natural (base e)", 0, 1e6},
-    {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at which it gels", 0, huge, true},
+    {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at the gelation threshold", 0, huge, true},
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 1e6},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "of the dose (radicals and inhibitor)", 0, 1e6},
     {"stage", "device", at<&Printer::stage, &PrinterStage::device>, "gcs:PORT, tic:SERIAL, grbl:PORT, or sim:, a simulated one; empty: none", 0, 0, false, {}, {"gcs", "tic", "grbl", "sim"}},
@@ -56,7 +56,7 @@ const std::vector<PrinterField> fields{
     {"camera", "distance_mm", at<&Printer::camera, &PrinterCamera::distance_mm>, "entrance pupil to rotation axis", 0, 1e9, true},
     {"camera", "pixel_mm", at<&Printer::camera, &PrinterCamera::pixel_mm>, "pitch at the rotation axis", 0, 100, true},
     {"camera", "azimuth_deg", at<&Printer::camera, &PrinterCamera::azimuth_deg>, "from the projector", -360, 360},
-    {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "pixels a side", 1, 64},
+    {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "pixels per axis", 1, 64},
     {"camera", "exposure_us", at<&Printer::camera, &PrinterCamera::exposure_us>, "exposure time", 0, 1e9, true},
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
     {"camera", "latency_ms", at<&Printer::camera, &PrinterCamera::latency_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
@@ -85,7 +85,7 @@ std::string word_objection(const PrinterField& field, const std::string& word) {
   for (const auto& allowed : field.words) {
     if (word == allowed) return "";
   }
-  return "'" + word + "' is none of " + join(field.words, ", ");
+  return "'" + word + "' is not one of " + join(field.words, ", ");
 }
 
 // No device is a value, too: a tool that needs one says so.
@@ -96,7 +96,7 @@ std::string device_objection(const PrinterField& field, const std::string& devic
   if (colon != std::string::npos && std::find(known.begin(), known.end(), device.substr(0, colon)) != known.end()) {
     return "";
   }
-  return "'" + device + "' is no device of such a kind; begin with one of " + join(known, ":, ") + ":";
+  return "'" + device + "': unknown device scheme; use one of " + join(known, ":, ") + ":";
 }
 
 std::string mm(double value) { return format_number(value) + " mm"; }
@@ -107,7 +107,7 @@ std::span<const PrinterField> printer_fields() { return fields; }
 
 std::string replacement(std::string_view section, std::string_view key) {
   if (section != "projector" || key != "max_led_current") return "";
-  return "; it was in steps of the controller, the larger the darker on a LightCrafter 4500: give "
+  return "; former unit: controller steps, inverted on a LightCrafter 4500; give "
          "projector.max_led_current_percent, in per cent of full current";
 }
 

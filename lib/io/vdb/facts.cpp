@@ -63,7 +63,7 @@ CoordBBox box_of(const FloatGrid& sparse) {
   if (side(0) > max_side || side(1) > max_side || side(2) > max_side || side(0) * side(1) > max_slice) {
     throw std::runtime_error("grid '" + sparse.getName() + "' spans " + std::to_string(side(0)) + " x " +
                              std::to_string(side(1)) + " x " + std::to_string(side(2)) +
-                             " voxels; up to 32768 a side and 2^28 a slice can be read");
+                             " voxels; up to 32768 per axis and 2^28 a slice can be read");
   }
   return box;
 }

@@ -53,7 +53,7 @@ struct Slab {
 Slab slab_of(const model::Grid& grid, const Coord& first, int k0, int count) {
   if (k0 < 0 || count < 0 || count > grid.nz - k0) {
     throw Error{Fault::bug, "slices " + std::to_string(k0) + " to " + std::to_string(k0 + count) + " of " +
-                                std::to_string(grid.nz) + " were asked for"};
+                                std::to_string(grid.nz) + " requested"};
   }
   Slab slab;
   slab.box = {first.offsetBy(0, 0, k0), first.offsetBy(grid.nx - 1, grid.ny - 1, k0 + count - 1)};

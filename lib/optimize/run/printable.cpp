@@ -33,14 +33,13 @@ void require_printable(const VolumeTask& task, light::Shape shape, const std::st
     most = std::max(most, largest_inside(slice, shape, task.circle));
   }
   if (most <= model::coverage_rounding || most >= half) return;
-  throw Error{Fault::data, subject + ": the part covers no voxel by half (the most is " + format_number(most, 2) +
-                               "), so that no slice would get light; take smaller voxels or a thicker part"};
+  throw Error{Fault::data, subject + ": no voxel is at least half covered (maximum " + format_number(most, 2) +
+                               "); reduce --voxel or thicken the part"};
 }
 
 void require_light(const VolumeOutcome& outcome, const std::string& subject) {
   if (outcome.metrics.part == 0) {
-    throw Error{Fault::data, subject + ": no voxel of the part is asked to print (" +
-                                 std::to_string(outcome.dark_part_voxels) +
+    throw Error{Fault::data, subject + ": no part voxel is constrained (" + std::to_string(outcome.dark_part_voxels) +
                                  " are in an insert's shadow); check inserts, weights and tolerances"};
   }
   if (outcome.metrics.max_part <= 0) {

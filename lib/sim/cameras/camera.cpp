@@ -107,7 +107,8 @@ class SimCamera final : public device::Camera {
       }
       if (in_step_) clock_.sleep_until(frame.time_s + 0.5e-6 * sim_.exposure_us);
       clock_.sleep_until(0);  // a signal ends this, too
-      if (frame.number == sim_.vanish) throw Error{Fault::absent, "sim: the camera is gone; check cable and power"};
+      if (frame.number == sim_.vanish)
+        throw Error{Fault::absent, "sim: the camera is disconnected; check cable and power"};
       if (frame.number == sim_.shrink) {
         const auto other = device::another_size(mode(), scene_.columns(), scene_.rows() / 2);
         throw Error{Fault::protocol, "sim: sends images of " + *other + "; run it again"};

@@ -119,7 +119,7 @@ model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius
     throw Error{Fault::data, subject + ": " + format_number(side) + " x " + format_number(side) + " x " +
                                  format_number(last - first) + " voxels of " + format_number(voxel_mm) +
                                  " mm are more than " + std::to_string(most_voxels) +
-                                 " a side; check --unit, or take a larger --voxel or a smaller --fit"};
+                                 " per axis; check --unit, or take a larger --voxel or a smaller --fit"};
   }
   return model::centred_grid(static_cast<int>(side), static_cast<int>(side), static_cast<int>(last - first), voxel_mm,
                              (first + lattice.z_phase + 0.5) * voxel_mm);

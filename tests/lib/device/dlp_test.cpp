@@ -33,7 +33,7 @@ struct LightLab {
 
 }  // namespace
 
-TEST_CASE("The light engine wakes dark, shines on command, with linear grey, and is dark again") {
+TEST_CASE("light engine starts dark, turns on on command, ends dark") {
   for (const bool dlpc900 : {false, true}) {
     CAPTURE(dlpc900);
     LightLab lab({.dlpc900 = dlpc900, .slow_reads = 3});
@@ -175,7 +175,7 @@ TEST_CASE("Exit without a command is dark, too") {
   CHECK(lab.sleep.size() == 1);
 }
 
-TEST_CASE("The LEDs shine by the current that was asked for, never more, on either board and from either polarity") {
+TEST_CASE("LED current never exceeds the requested value, on either board and from either polarity") {
   for (const bool dlpc900 : {false, true}) {
     for (const bool inverted : {false, true}) {
       for (const double percent : {0.0, 0.5, 1.0, 39.9, 100.0}) {

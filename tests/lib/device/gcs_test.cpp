@@ -46,7 +46,7 @@ TEST_CASE("A controller of a daisy chain is addressed and its answers are checke
   CHECK(fault_of([&] { (void)other.stage->identify(); }) == Fault::busy);
 }
 
-TEST_CASE("The first controller of a chain hears nothing that is for another") {
+TEST_CASE("commands are addressed to one controller of a chain") {
   GcsSettings gcs;
   gcs.address = 2;
   VirtualStage first({}, gcs);

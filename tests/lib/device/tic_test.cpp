@@ -69,7 +69,7 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   CHECK(fault_of(print) == Fault::protocol);
 }
 
-TEST_CASE("A Tic that hears nothing for a second stops by itself") {
+TEST_CASE("Tic stops after its command time-out") {
   TicLab lab;
   lab.stage->enable();
   lab.stage->set_speed(30);

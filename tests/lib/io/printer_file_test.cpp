@@ -83,8 +83,8 @@ TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("vial = 3\n"), "must be a section"));
   CHECK(has(refusal("[vial]\nradius_mm = -1\n"), "p.toml:2: vial.radius_mm: -1 is not between 0"));
   CHECK(has(refusal("[vial]\nradius_mm = nan\n"), "nan is not between"));
-  CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is none of 1, 2, 4, 8, 10, 16"));
-  CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "none of normal"));
+  CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is not one of 1, 2, 4, 8, 10, 16"));
+  CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "not one of normal"));
   CHECK(has(refusal("[vial\n"), "p.toml:1: not TOML"));
   CHECK(has(refusal("[vial]\nwall_mm = 13\n"), "leaves no room"));
   CHECK(has(refusal("[projector]\nlens_distance_mm = 5\n"), "is not outside vial.radius_mm"));

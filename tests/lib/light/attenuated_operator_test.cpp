@@ -36,7 +36,7 @@ TEST_CASE("a single beam decays from where it enters the resin") {
   }
 }
 
-TEST_CASE("unclipped inverse light gives the disc in spite of absorption; the cheap one comes near") {
+TEST_CASE("unclipped inverse projections give the disc in spite of absorption; the disc normalisation is approximate") {
   const int size = 128;
   const double radius = 64;
   const auto disc = vam::oracle::draw(size, [](double x, double y) { return std::hypot(x - 20, y + 5) < 20; });

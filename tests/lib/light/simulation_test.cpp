@@ -83,7 +83,7 @@ TEST_CASE("a projector's stack is traced, with the printer's own columns") {
   CHECK_THROWS_AS(Simulation(printer, {}, stack(model::Space::camera, 200, 0.15), grid), Error);
 }
 
-TEST_CASE("light stays level where rows are telecentric") {
+TEST_CASE("rays stay horizontal where rows are telecentric") {
   model::Printer printer = small_printer();
   printer.projector.lens_distance_mm = 40;
   model::StackInfo info = stack(model::Space::projector, 200, 0.15, 9);

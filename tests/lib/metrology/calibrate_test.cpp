@@ -256,7 +256,7 @@ TEST_CASE("Half maximum: between pixels, and only with dark on both sides") {
   CHECK_FALSE(half_maximum(step));
 }
 
-TEST_CASE("Wobble: what stands still and what goes round, from four stage angles, 200 scans") {
+TEST_CASE("wobble: axis and runout separated from four stage angles") {
   vam::oracle::Random random(23);
   test::Coverage axis("axis"), radius("radius"), phase("phase");
   for (int run = 0; run < runs; ++run) {

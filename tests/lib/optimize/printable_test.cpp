@@ -34,7 +34,7 @@ void require(const VolumeTask& task) { require_printable(task, {size, size}, "pa
 
 TEST_CASE("a part without a voxel that is covered by half is refused") {
   CHECK_THROWS_WITH_AS(require(one_voxel(0.45F)),
-                       doctest::Contains("part.vdb: the part covers no voxel by half (the most is 0.45)"), Error);
+                       doctest::Contains("part.vdb: no voxel is at least half covered (maximum 0.45)"), Error);
   CHECK_NOTHROW(require(one_voxel(0.5F)));
   CHECK_NOTHROW(require(one_voxel(1)));
   CHECK_NOTHROW(require(one_voxel(0)));  // empty: for check() to say
@@ -44,11 +44,11 @@ TEST_CASE("a part without a voxel that is covered by half is refused") {
   CHECK_NOTHROW(require(grey));
 }
 
-TEST_CASE("a part that is not asked for, or gets no light, is refused") {
+TEST_CASE("unconstrained or unexposed parts are refused") {
   VolumeOutcome outcome;
   outcome.dark_part_voxels = 12;
   CHECK_THROWS_WITH_AS(require_light(outcome, "part.vdb"),
-                       doctest::Contains("part.vdb: no voxel of the part is asked to print (12 are"), Error);
+                       doctest::Contains("part.vdb: no part voxel is constrained (12 are"), Error);
   outcome.metrics.part = 100;
   CHECK_THROWS_WITH_AS(require_light(outcome, "part.vdb"), doctest::Contains("no light reaches the part"), Error);
   outcome.metrics.max_part = 0.9;

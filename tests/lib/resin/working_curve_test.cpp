@@ -124,7 +124,7 @@ TEST_CASE("repeated readings separate scatter from curvature") {
 
 TEST_CASE("data that determine no working curve are errors") {
   CHECK(message({{10, 100}, {10, 110}, {20, 300}, {20, 310}}) ==
-        "working curve: 2 different exposures do not judge a line; measure at least 3");
+        "working curve: 2 different exposures are too few for a line fit; measure at least 3");
   CHECK(message({{10, 100}, {20, 0}, {30, 300}}).find("sample 2 has exposure 20 mJ/cm2 and thickness 0 um") !=
         std::string::npos);
   CHECK(message({{10, 300}, {20, 200}, {30, 100}}).find("falls as the exposure rises") != std::string::npos);

@@ -59,7 +59,7 @@ TEST_CASE("absolute figures keep the dose's unit, and the critical dose is judge
   CHECK(score.table().find("cured_wrong") != std::string::npos);
 }
 
-TEST_CASE("nothing to judge and doses that are no numbers are errors") {
+TEST_CASE("empty parts and non-finite doses are errors") {
   Score empty(options(), 3, 3);
   const std::vector<float> nothing(9, 0.0F);
   empty.add(dose.data(), nothing.data(), 1);
