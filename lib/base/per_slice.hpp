@@ -1,4 +1,5 @@
-// A pass: the up to 64 slices that are optimised together, 16 in a slab; and arithmetic slice by slice.
+// A pass, the slices that are optimised together: up to four slabs (64 slices), or the whole grid where light couples
+// slices; and arithmetic slice by slice.
 #pragma once
 
 #include <algorithm>

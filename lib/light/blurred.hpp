@@ -6,7 +6,7 @@
 namespace vam::light {
 
 /// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4;
-/// optics::VolumeBlur], across the slices and from one to the next: the slices of a pass lie one above the other. What
+/// light::VolumeBlur], across the slices and from one to the next: the slices of a pass lie one above the other. What
 /// is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
 class BlurredOperator final : public Operator {
  public:
@@ -40,7 +40,7 @@ class BlurredOperator final : public Operator {
   std::vector<float> weights_;  // middle, first neighbours, ...
 };
 
-/// How many slices on either side a slice must know: three sigma.
+/// Slices on either side that a slice must know: three sigma, at most 16.
 [[nodiscard]] int halo_slices(double sigma_px);
 
 }  // namespace vam::light

@@ -14,7 +14,9 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
-/// A* takes projections to dose, A is its transpose. Both work on a pass of up to four slabs (64 slices) at once.
+/// A* takes projections to dose, A is its transpose. Both work on a pass at once: up to four slabs (64
+/// slices), or the whole grid where light couples slices. Dose: fluence summed over a turn; absorbed energy is mu times
+/// it [physics §4].
 /// Inside an optimiser a sinogram value is the dose that its row adds (fluence times the angle the row stands for), so
 /// A and A* are plain sums and need no weights; expand() turns it into what is projected.
 class Operator {

@@ -12,7 +12,7 @@ struct alignas(32) RayNode {
   float column;    // in columns
   float row;       // in rows
   float zoom;      // rows per slice
-  float strength;  // fluence per image-plane intensity
+  float strength;  // T density e^{-mu path}: fluence in the resin per intensity in the image plane
   float edge;      // of a voxel's edge across the ray, in columns
   float cosine;    // of the ray's angle in plan
   float sine;

@@ -43,6 +43,7 @@ class Simulation {
   /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
   /// of the grid; otherwise any slices with their own sinograms.
   [[nodiscard]] bool climbs() const;
+  /// Throws Fault::data for images of other sizes.
   void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
 
  private:

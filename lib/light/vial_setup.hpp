@@ -1,4 +1,4 @@
-// The projector's light in the turning vial: who lights what.
+// The projector, the vial and the grid of one dose.
 #pragma once
 
 #include "model/grid.hpp"
@@ -8,8 +8,8 @@
 namespace vam::light {
 
 /// Row a of a sinogram is at stage angle turn.start + a * turn.step; the part stands at direction * stage angle +
-/// offset. Slice k of the grid is at height z_scale * grid.z_mm(k): the grid is that of the target, stretched so that
-/// on the axis slice and row coincide (1 / M_vp, physics §2).
+/// offset. Slice k is at height z_scale * grid.z_mm(k) in the resin, z_scale = M_vp: the target was stretched by
+/// 1 / M_vp when sliced, so that on the axis slice k is lit by row k [physics §2].
 struct VialSetup {
   optics::View view;
   optics::Detector projector;

@@ -43,6 +43,7 @@ struct Bath {
 struct Resin {
   std::string name;
   double index = 1.53;
+  // natural logarithm of intensity lost per mm; 0 absorbs nothing and leaves doses relative
   double absorption_per_mm = 0;
   std::optional<double> critical_dose_mj_cm3;
   double psf_mm = 0;  // Gaussian sigma of the beam, across it and along z

@@ -1,4 +1,4 @@
-// What is said of a finished run beside its projections.
+// Warnings and reports of a finished run.
 #pragma once
 
 #include "model/printer.hpp"

@@ -52,7 +52,7 @@ class Method {
   MethodOptions options_;
 };
 
-/// What is said of a method: feeds --help, manual, errors and tests of vam-optimize.
+/// Description of a method, for --help, manual, errors and tests of vam-optimize.
 struct MethodEntry {
   std::string name;
   std::string summary;               // sentences

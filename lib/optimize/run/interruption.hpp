@@ -14,8 +14,7 @@
 
 namespace vam::optimize {
 
-/// What goes out through `to` is all that `from` needs to go on as if nothing had happened; a finished run leaves
-/// nothing of use there.
+/// State to save and to resume from; useless after a run that finished.
 struct Interruption {
   Pause pause;              // may be empty
   Archive* to = nullptr;    // where the state goes; none: nothing is kept

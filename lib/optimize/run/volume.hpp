@@ -19,7 +19,7 @@ namespace vam::optimize {
 /// the threshold dose on average.
 struct IntensityLimit {
   double most = 0;     // 0: none
-  double of_even = 0;  // else so many times the even intensity
+  double of_even = 0;  // else this multiple of the even intensity
 };
 struct VolumeTask {
   VolumeSource source;

@@ -18,8 +18,8 @@ struct VolumeSource {
   int slices = 0;
   Read target;         // coverage, or response when grey
   Read insert;         // coverage of an opaque insert; may be empty
-  Read weight;         // what a voxel's error costs, >= 0; may be empty
-  Read tolerance;      // how far a voxel's response may be from the target, >= 0; may be empty
+  Read weight;         // relative cost of a voxel's error, >= 0; may be empty
+  Read tolerance;      // maximum deviation of a voxel's response, >= 0; may be empty
   double band_px = 0;  // half width of the unconstrained band around the surface
 };
 

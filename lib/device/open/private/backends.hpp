@@ -18,7 +18,7 @@ template <class Backend, std::size_t count>
   return schemes;
 }
 
-/// Throws Fault::usage when there is no device of this kind: a simulator never stands in unasked.
+/// Throws Fault::usage when there is no device of this kind: a simulator is used only if it is named.
 inline void require_named(const std::string& device, const std::string& kind, const std::string& example) {
   if (!device.empty()) return;
   throw Error{Fault::usage, kind + ": none is named; give --device or " + kind +

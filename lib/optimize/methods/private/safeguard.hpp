@@ -11,9 +11,10 @@ namespace vam::optimize {
 /// those that went back, 0 for the others.
 PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now);
 
-/// The sum over all slices for each of them where light couples slices, so that they decide together; else unchanged.
-[[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);
+/// Where light couples slices: the sum of all, for each; else unchanged.
 [[nodiscard]] PerSlice pooled(PerSlice values, const light::Operator& light);
+/// The same with the largest.
+[[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);
 
 /// Clips the light to [0, peak]; its dose follows. Losses are compared with that of the start, so it must be allowed
 /// itself.
