@@ -24,9 +24,9 @@ fails 64 'stage: none is named; give --device or stage.device .*; sim: is a simu
 is './printer.toml names it' "$? $(grep -c "^vam-stage: /dev/nope: not a serial port" said)" '69 1'
 fails 69 '/dev/nope' env VAM_PRINTER=lab/printer.toml vam-stage home
 fails 69 '/dev/nope' vam-stage home --printer lab/printer.toml
-fails 65 "odd.toml:2: stage.device: 'usb:1' is no device" vam-stage home --printer lab/odd.toml
-fails 65 'begin with one of gcs:, tic:, grbl:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
-fails 64 "camera.device: 'webcam' is no device" vam-stage home --set camera.device=webcam
+fails 65 "odd.toml:2: stage.device: 'usb:1': unknown device scheme" vam-stage home --printer lab/odd.toml
+fails 65 'use one of gcs:, tic:, grbl:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
+fails 64 "camera.device: 'webcam': unknown device scheme" vam-stage home --set camera.device=webcam
 for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
   ok "the printer file knows $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
 done
