@@ -54,6 +54,13 @@ PerSlice largest(std::span<const Slab> images) {
       images, lowest, [&](float& a, std::size_t s, std::size_t i) { larger(a, images[s].values[i]); }, larger);
 }
 
+PerSlice largest_of_all(PerSlice values) {
+  float most = std::numeric_limits<float>::lowest();
+  for (const auto& lane : values) most = std::max(most, *std::max_element(lane.begin(), lane.end()));
+  for (auto& lane : values) lane.fill(most);
+  return values;
+}
+
 PerSlice reciprocal(PerSlice values) {
   for (auto& lane : values) {
     for (float& v : lane) v = v > 0 ? 1.0F / v : 0.0F;

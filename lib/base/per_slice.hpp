@@ -94,6 +94,8 @@ void restore(std::vector<Slab>& now, const std::vector<Slab>& before, const PerS
 [[nodiscard]] PerSlice minima(std::span<const Slab> images);
 /// Largest value of each slice.
 [[nodiscard]] PerSlice largest(std::span<const Slab> images);
+/// The largest of all slices' values, for each of them.
+[[nodiscard]] PerSlice largest_of_all(PerSlice values);
 /// images[slice] *= factor[slice].
 void scale(std::span<Slab> images, const PerSlice& factor);
 /// images = max(images, floor).

@@ -40,7 +40,7 @@ AttenuatedOperator::AttenuatedOperator(const tomo::ParallelGeometry& turn, doubl
   require_translucent(mu_per_px, resin_radius_px);
   for (int c = 0; c < turn.columns; ++c) {
     const double t = c - 0.5 * (turn.columns - 1);
-    const double depth = std::sqrt(std::max(0.0, radius_ * radius_ - t * t));
+    const double depth = model::half_chord(radius_, t);
     transmitted_.push_back(static_cast<float>(std::exp(-mu_per_px * depth)));
     amplified_.push_back(static_cast<float>(std::exp(mu_per_px * depth)));
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/parallel.hpp"
+#include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {
@@ -47,7 +48,7 @@ struct RayTable::Light {
   };
 
   [[nodiscard]] double left(double offset_mm, double u_mm, double steepness) const {
-    const double s = std::sqrt(std::max(0.0, edge_mm * edge_mm - offset_mm * offset_mm)) + u_mm;
+    const double s = model::half_chord(edge_mm, offset_mm) + u_mm;
     return std::exp(-setup.absorption_per_mm * s * steepness);
   }
 

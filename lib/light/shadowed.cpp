@@ -6,6 +6,7 @@
 #include "base/per_slice.hpp"
 #include "light/attenuated.hpp"
 #include "light/preconditioner.hpp"
+#include "model/circle.hpp"
 
 namespace vam::light {
 
@@ -32,7 +33,7 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
   require_translucent(mu_per_px, resin_radius_px);
   for (int c = 0; c < turn.columns; ++c) {
     const double t = c - 0.5 * (turn.columns - 1);
-    depth_.push_back(std::sqrt(std::max(0.0, resin_radius_px * resin_radius_px - t * t)));
+    depth_.push_back(model::half_chord(resin_radius_px, t));
   }
   for (int a = 0; a < turn.angles; ++a) {
     cosine_.push_back(std::cos(turn.angle_start_rad + a * turn.angle_step_rad));

@@ -50,7 +50,7 @@ InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
   const VialSetup& setup = rays.setup();
   std::vector<double> angles;
   for (int a = 0; a < setup.turn.rows; ++a) {
-    angles.push_back(setup.direction * (setup.turn.start_rad + a * setup.turn.step_rad) + setup.angle_offset_rad);
+    angles.push_back(setup.part_angle_rad(a));
   }
   const double slice_mm = setup.z_scale * setup.grid.voxel_mm;
   const auto ray = [&](int column, int row) -> PixelRay {

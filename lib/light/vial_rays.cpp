@@ -11,6 +11,7 @@
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "light/attenuated.hpp"
+#include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -93,7 +94,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(tabl
     const optics::ChiefRay ray = optics::chief_ray(setup_.view, setup_.projector.x_mm(c));
     if (!ray.hits || std::abs(ray.x_v_mm) > setup_.radius_mm + setup_.grid.voxel_mm) continue;
     if (transmitted_.empty()) first_ = c;
-    const double depth_mm = std::sqrt(std::max(0.0, resin_mm * resin_mm - ray.x_v_mm * ray.x_v_mm));
+    const double depth_mm = model::half_chord(resin_mm, ray.x_v_mm);
     transmitted_.push_back(ray.transmittance * std::exp(-setup_.absorption_per_mm * depth_mm));
   }
   if (transmitted_.empty()) {
@@ -113,8 +114,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(tabl
   taps_ = static_cast<int>(std::ceil(std::numbers::sqrt2 * static_cast<double>(widest))) + 1;
   require_gentle(level);
   for (int a = 0; a < setup_.turn.rows; ++a) {
-    const double theta =
-        setup_.direction * (setup_.turn.start_rad + a * setup_.turn.step_rad) + setup_.angle_offset_rad;
+    const double theta = setup_.part_angle_rad(a);
     cosines_.push_back(static_cast<float>(std::cos(theta)));
     sines_.push_back(static_cast<float>(std::sin(theta)));
   }
@@ -176,7 +176,7 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   const int low = outside ? std::clamp(static_cast<int>(std::lround(place)), 0, zone.rows - 1)
                           : std::min(static_cast<int>(place), zone.rows - 2);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
-  const double theta = setup_.direction * setup_.turn.start_rad + setup_.angle_offset_rad;
+  const double theta = setup_.part_angle_rad(0);
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;
   alpha = (alpha - std::floor(alpha)) * table_.directions;
   const int index = std::min(static_cast<int>(alpha), table_.directions - 1);

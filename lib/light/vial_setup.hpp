@@ -24,10 +24,14 @@ struct VialSetup {
   double first_row_mm = 0;  // z_p of row 0, from the lens's axis up; rows follow in voxel_mm
   double lowest_mm = -1e9;  // z_p of the projector's rows: what lies beyond stays dark where rays climb
   double highest_mm = 1e9;
+
+  /// Where the part stands at that row of the turn.
+  [[nodiscard]] double part_angle_rad(int row) const {
+    return direction * (turn.start_rad + row * turn.step_rad) + angle_offset_rad;
+  }
 };
 
-/// The printer's projector and vial, `angles` rows from stage angle 0, a row of light for every slice. The radius is at
-/// most radius_mm and what the projector's columns reach on either side.
+/// The printer's projector and vial, `angles` rows from stage angle 0, a row of light for every slice.
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles,
                                    double radius_mm);
 

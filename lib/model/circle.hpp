@@ -1,6 +1,9 @@
 // The disc of a slice that light reaches.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "model/grid.hpp"
 
 namespace vam::model {
@@ -16,6 +19,11 @@ struct Circle {
     return dx * dx + dy * dy <= radius * radius;
   }
 };
+
+/// Half the way through a circle at that distance from its centre; 0 beyond it.
+[[nodiscard]] inline double half_chord(double radius, double offset) {
+  return std::sqrt(std::max(0.0, radius * radius - offset * offset));
+}
 
 /// The circle of that radius (optics::writable_radius_mm), at most the circle inside the grid. Throws Fault::data when
 /// the rotation axis (x = y = 0) is not inside the grid.

@@ -94,6 +94,11 @@ struct Printer {
 [[nodiscard]] std::optional<double> columns_lens_mm(const Projector& projector);
 [[nodiscard]] std::optional<double> rows_lens_mm(const Projector& projector);
 
+/// Duration of so many turns.
+[[nodiscard]] inline double seconds_of(const PrinterStage& stage, double turns) {
+  return turns * 360 / stage.speed_deg_s;
+}
+
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 

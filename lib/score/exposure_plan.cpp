@@ -27,7 +27,7 @@ ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer) 
   ExposurePlan plan;
   plan.turns = static_cast<int>(std::max(1.0, std::ceil(full_turns * (1 - rounding))));
   plan.multiplier = std::min(1.0, full_turns / plan.turns);
-  plan.seconds = plan.turns * 360 / printer.stage.speed_deg_s;
+  plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
   return plan;
 }

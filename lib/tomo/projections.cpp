@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "model/circle.hpp"
 
 namespace vam::tomo {
 
@@ -24,7 +25,7 @@ std::vector<float> column_weights(const ProjectionSpec& spec) {
     if (spec.wall_radius_mm) {
       const double t = c - 0.5 * (spec.geometry.columns - 1);
       const double radius = *spec.wall_radius_mm / spec.voxel_mm;
-      weight *= std::exp(spec.geometry.alpha_per_px * std::sqrt(std::max(0.0, radius * radius - t * t)));
+      weight *= std::exp(spec.geometry.alpha_per_px * model::half_chord(radius, t));
     }
     weights.push_back(static_cast<float>(weight));
   }

@@ -95,7 +95,7 @@ light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& sim
 
 double blur_mm(const Options& options, const model::Printer& printer) {
   if (options.no_blur) return 0;
-  const double seconds = options.seconds.value_or(printer.stage.turns * 360 / printer.stage.speed_deg_s);
+  const double seconds = options.seconds.value_or(model::seconds_of(printer.stage, printer.stage.turns));
   return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
 }
 

@@ -59,7 +59,7 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
 double blur_px(const Scene& scene, const Options& options) {
   if (options.no_blur) return 0;
   const model::PrinterStage& stage = scene.printer.stage;
-  const double seconds = options.seconds.value_or(options.turns.value_or(stage.turns) * 360 / stage.speed_deg_s);
+  const double seconds = options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(stage.turns)));
   const model::Resin& resin = scene.printer.resin;
   return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
 }

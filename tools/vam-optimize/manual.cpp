@@ -26,6 +26,8 @@ std::vector<std::string> description() {
       "(parallel-beam) sinogram, which vam-resample converts for a projector: three to four times faster, but "
       "resampling then costs the print half of its process window.",
       "No method has a step length to choose."};
+  const auto compensating =
+      optimize::method_names([](const optimize::MethodEntry& entry) { return entry.make({})->keeps_scale(); });
   for (const auto& text : methods()) texts.push_back(text);
   texts.insert(
       texts.end(),
@@ -52,8 +54,8 @@ std::vector<std::string> description() {
        "met within --band, or within the tolerance of each voxel. The projections are not scaled then. VER is the "
        "fraction of voxels outside their band, PW the smallest margin of any voxel, negative outside, IPDR the largest "
        "and CV the root mean square error, IoU 1 - VER.",
-       "The point spread of the beam (resin.psf_mm) and the diffusion of dose (resin.diffusion_mm2_s) blur the dose; "
-       "apg, cal, pm and bclp compensate for it. Slices are then optimised together with their neighbours."});
+       "The point spread of the beam (resin.psf_mm) and the diffusion of dose (resin.diffusion_mm2_s) blur the dose; " +
+           join(compensating, ", ") + " compensate for it. Slices are then optimised together with their neighbours."});
   return texts;
 }
 

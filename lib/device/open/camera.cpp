@@ -2,6 +2,7 @@
 
 #include "device/camera/camera_backends.hpp"
 #include "device/open/private/backends.hpp"
+#include "model/device_schemes.hpp"
 #include "sim/cameras/open_camera.hpp"
 
 namespace vam::device {
@@ -36,6 +37,7 @@ constexpr CameraBackend backends[] = {{"aravis", "ID-or-IP", open_aravis},
                                       {"v4l2", "PATH", open_v4l2},
                                       {"replay", "PLACE", open_replay_camera},
                                       {"sim", "", sim::open_sim_camera}};
+static_assert(model::has_schemes(backends, model::camera_schemes));
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "device/stage/gcs_stage.hpp"
 #include "device/stage/grbl_stage.hpp"
 #include "device/stage/tic_stage.hpp"
+#include "model/device_schemes.hpp"
 #include "sim/controllers/options.hpp"
 
 namespace vam::device {
@@ -77,6 +78,7 @@ struct StageBackend {
 
 constexpr StageBackend backends[] = {
     {"gcs", "PATH", open_gcs}, {"tic", "SERIAL", open_tic}, {"grbl", "PATH", open_grbl}, {"sim", "", open_sim}};
+static_assert(model::has_schemes(backends, model::stage_schemes));
 
 }  // namespace
 

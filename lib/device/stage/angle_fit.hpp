@@ -37,7 +37,6 @@ class AngleFit {
   [[nodiscard]] AngleSample at(double t_s) const;
   [[nodiscard]] double speed_deg_s() const;
   [[nodiscard]] double speed_sigma_deg_s() const;
-  [[nodiscard]] double last_s() const { return samples_.back().t_s; }
 
  private:
   void solve() const;

@@ -83,7 +83,6 @@ class OutputFile {
 
  private:
   void open_special(const std::string& path);
-  void open_temporary();
   void flush();
   void send(const char* bytes, std::size_t size);
   void publish();

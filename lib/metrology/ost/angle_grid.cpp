@@ -69,7 +69,7 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
                                  format_number(max_gap_deg, 4) + " deg is the maximum gap)"};
   }
   summary_ = {angles, static_cast<int>(angles_deg.size()),
-              static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size()), gaps[widest]};
+              static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size())};
   taps_.resize(angles);
   for (int a = 0; a < angles; ++a) {
     const double angle = 360.0 * a / angles;

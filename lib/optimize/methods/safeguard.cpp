@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace vam::optimize {
 
@@ -35,12 +36,7 @@ PerSlice pooled(PerSlice values, const light::Operator& light) {
 }
 
 PerSlice largest_pooled(PerSlice values, const light::Operator& light) {
-  if (!light.couples_slices()) return values;
-  float most = 0;
-  for (const auto& lane : values) {
-    for (const float v : lane) most = std::max(most, v);
-  }
-  return filled(values.size(), most);
+  return light.couples_slices() ? largest_of_all(std::move(values)) : values;
 }
 
 void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {

@@ -93,7 +93,7 @@ class Run {
     if (task_.interruption.to != nullptr) exchange(*task_.interruption.to, mark_);
     if (task_.interruption.from != nullptr) go_on(*task_.interruption.from, work);
     while (finished_.jobs() < jobs()) {
-      if (!optimise(next_pass(), work)) return broken_off();
+      if (!run_pass(next_pass(), work)) return broken_off();
       work = {};
     }
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
@@ -141,7 +141,7 @@ class Run {
   }
 
   /// False when the pass was interrupted.
-  bool optimise(const Pass& pass, Work& work) {
+  bool run_pass(const Pass& pass, Work& work) {
     auto [problem, inserts] = read_pass(
         pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
     const light::Operator* light = &light_;
@@ -204,7 +204,7 @@ class Run {
         whole_ ? to_shared_threshold(state.dose, problem) : to_common_threshold(metrics(state.dose, problem), problem);
     if (max_intensity_ > 0) {
       PerSlice brightest = largest(state.g);
-      if (whole_) brightest = together(brightest);
+      if (whole_) brightest = largest_of_all(brightest);
       const auto most = static_cast<float>(max_intensity_ * light.row_angle_rad());
       for (std::size_t s = 0; s < factor.size(); ++s) {
         for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -228,16 +228,6 @@ class Run {
     std::vector<Image> images = expand_images(pass, state.g, light);
     if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, images);
     finished_.take(std::move(images));
-  }
-
-  /// The largest of all, for each.
-  static PerSlice together(PerSlice values) {
-    float most = 0;
-    for (const auto& lane : values) {
-      for (const float v : lane) most = std::max(most, v);
-    }
-    for (auto& lane : values) lane.fill(most);
-    return values;
   }
 
   void keep(Archive& to, Work& work) {

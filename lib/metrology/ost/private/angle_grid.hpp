@@ -8,10 +8,9 @@
 namespace vam::metrology {
 
 struct EvenTurn {
-  int angles = 0;              // over one full turn, first at 0 deg
-  int used = 0;                // frames that contributed
-  int repeated = 0;            // of these, frames at an angle that was there already; averaged
-  double largest_gap_deg = 0;  // between neighbouring frames
+  int angles = 0;    // over one full turn, first at 0 deg
+  int used = 0;      // frames that contributed
+  int repeated = 0;  // of these, frames at an angle that was there already; averaged
 };
 
 /// For each of `angles` even angles the two neighbouring frames and their weights, interpolating linearly over the
