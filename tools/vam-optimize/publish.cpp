@@ -20,8 +20,8 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
          " voxels of the part are in the insert's shadow from all sides; they will not print");
   }
   const model::DoseMetrics& m = outcome.metrics;
-  const bool asked = !options.until.empty() || options.max_intensity || options.turns;
-  if (!asked || outcome.reason == "goal" || options.demands.grey || m.ver == 0) return;
+  const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
+  if (!has_goal || outcome.reason == "goal" || options.demands.grey || m.ver == 0) return;
   const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
   warn(options.input + ": does not print after " + std::to_string(outcome.iterations) +
        " iterations: voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +

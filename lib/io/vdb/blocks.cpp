@@ -14,48 +14,29 @@ class Taker {
  public:
   Taker(Receiver& in, const std::function<BlockTaker(const VolumeFacts&)>& begin) : in_(in), begin_(begin) {}
 
-  void run() {
-    while (true) {
-      switch (in_.get<Record>()) {
-        case Record::grid:
-          start(receive_head(in_));
-          break;
-        case Record::other:
-          name(in_.get_text());
-          break;
-        case Record::tile:
-          take_tile(in_.get<TileRecord>());
-          break;
-        case Record::leaf:
-          take_leaf();
-          break;
-        case Record::end:
-          return;
-      }
-    }
-  }
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] const std::string& names() const { return names_; }  // of all grids
 
- private:
   void start(const GridHead& head) {
     found_ = true;
     first_ = {head.first.x(), head.first.y(), head.first.z()};
     background_ = head.facts.background;
-    name(head.facts.name);
+    other(head.facts.name);
     take_ = begin_(head.facts);
   }
-  void name(const std::string& text) { names_ += (names_.empty() ? "" : ", ") + text; }
+  void other(const std::string& text) { names_ += (names_.empty() ? "" : ", ") + text; }
 
-  void take_tile(const TileRecord& tile) const {
+  void tile(const TileRecord& tile) const {
     constexpr std::array<int, 3> edges{8, 128, 4096};
     const auto level = static_cast<std::size_t>(std::clamp(tile.level, 1, 3) - 1);
     if (tile.value != background_) pass(tile.corner, edges[level], nullptr, tile.value);
   }
-  void take_leaf() {
+  void leaf() {
     in_.get(&leaf_, sizeof leaf_);
     pass(leaf_.corner, 8, leaf_.values.data(), 0);
   }
+
+ private:
   void pass(const std::array<std::int32_t, 3>& corner, int edge, const float* values, float value) const {
     if (take_) take_({corner[0] - first_[0], corner[1] - first_[1], corner[2] - first_[2], edge, values, value});
   }
@@ -83,7 +64,7 @@ void read_blocks(const std::string& path, const std::string& name,
       {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, wanted, out); },
       [&](Receiver& in) {
         Taker taker(in, begin);
-        taker.run();
+        receive_records(in, taker);
         found = taker.found();
         names = taker.names();
       });

@@ -84,7 +84,7 @@ class PassingGrid : public FloatGrid {
   void send(const Leaf& leaf) const {
     LeafRecord record;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled at once
     record.corner = numbers(leaf.origin());
-    record.unused = 0;
+    record.padding = 0;
     for (openvdb::Index word = 0; word < Leaf::NodeMaskType::WORD_COUNT; ++word) {
       record.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
     }

@@ -25,31 +25,9 @@ class Builder {
  public:
   explicit Builder(Receiver& in) : in_(in) {}
 
-  void run() {
-    while (true) {
-      switch (in_.get<Record>()) {
-        case Record::grid:
-          start(receive_head(in_));
-          break;
-        case Record::other:
-          others_ += " " + in_.get_text();
-          break;
-        case Record::tile:
-          hang(in_.get<TileRecord>());
-          break;
-        case Record::leaf:
-          hang_leaf();
-          break;
-        case Record::end:
-          return;
-      }
-    }
-  }
-
   std::vector<SparseVolume> volumes;
   [[nodiscard]] const std::string& others() const { return others_; }
 
- private:
   // From the unit map, as SparseVolume does, so that a grid that is written again keeps its numbers to the last bit.
   void start(GridHead head) {
     SparseVolume& volume = volumes.emplace_back(head.facts.name, head.facts.grid, head.facts.background);
@@ -70,26 +48,29 @@ class Builder {
     accessor_ = std::make_unique<Accessor>(state.sparse->tree());
   }
 
-  void hang(const TileRecord& tile) {
+  void other(const std::string& text) { others_ += " " + text; }
+
+  void tile(const TileRecord& tile) {
     if (!accessor_) return;
     const auto level = static_cast<openvdb::Index>(std::clamp(tile.level, 1, 3));
     accessor_->addTile(level, Coord(tile.corner.data()), tile.value, tile.active != 0);
   }
 
   // Values go from the record into the leaf's own memory at once.
-  void hang_leaf() {
+  void leaf() {
     static_assert(offsetof(LeafRecord, corner) == 64 && offsetof(LeafRecord, values) == 80);
     const auto words = in_.get<std::array<std::uint64_t, Leaf::NodeMaskType::WORD_COUNT>>();
     const auto corner = in_.get<std::array<std::int32_t, 4>>();
-    auto leaf = std::make_unique<Leaf>(openvdb::PartialCreate(), Coord(corner.data()), 0.0F, false);
-    leaf->allocate();
+    auto made = std::make_unique<Leaf>(openvdb::PartialCreate(), Coord(corner.data()), 0.0F, false);
+    made->allocate();
     Leaf::NodeMaskType active;
     for (openvdb::Index word = 0; word < words.size(); ++word) active.getWord<openvdb::Index64>(word) = words[word];
-    leaf->setValueMask(active);
-    in_.get(leaf->buffer().data(), Leaf::SIZE * sizeof(float));
-    if (accessor_) accessor_->addLeaf(leaf.release());
+    made->setValueMask(active);
+    in_.get(made->buffer().data(), Leaf::SIZE * sizeof(float));
+    if (accessor_) accessor_->addLeaf(made.release());
   }
 
+ private:
   Receiver& in_;
   std::map<std::string, FloatGrid::Ptr> by_name_;  // the unique name of the archive; the last of that name
   std::unique_ptr<Accessor> accessor_;
@@ -107,7 +88,7 @@ std::vector<SparseVolume> read_volumes(const std::string& path) {
       {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, std::nullopt, out); },
       [&](Receiver& in) {
         Builder builder(in);
-        builder.run();
+        receive_records(in, builder);
         volumes = std::move(builder.volumes);
         others = builder.others();
       });

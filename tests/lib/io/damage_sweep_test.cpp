@@ -16,6 +16,7 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/resin_record.hpp"
 #include "io/settings/response_file.hpp"
+#include "lib/io/box_mesh.hpp"
 #include "lib/io/vdb_volumes.hpp"
 #include "lib/io/zip_writer.hpp"
 
@@ -61,18 +62,10 @@ const std::string faces_text = "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
 std::string package() {
   std::string model =
       "<model unit=\"millimeter\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
-      "<resources><object id=\"1\"><mesh><vertices>";
-  for (const auto& p : tetrahedron().points) {
-    model += "<vertex x=\"" + std::to_string(p[0]) + "\" y=\"" + std::to_string(p[1]) + "\" z=\"" +
-             std::to_string(p[2]) + "\"/>";
-  }
-  model += "</vertices><triangles>";
-  for (const auto& t : tetrahedron().triangles) {
-    model += "<triangle v1=\"" + std::to_string(t[0]) + "\" v2=\"" + std::to_string(t[1]) + "\" v3=\"" +
-             std::to_string(t[2]) + "\"/>";
-  }
+      "<resources><object id=\"1\">";
+  model += samples::mesh_xml(tetrahedron());
   model +=
-      "</triangles></mesh></object><object id=\"2\"><components><component objectid=\"1\"/><component "
+      "</object><object id=\"2\"><components><component objectid=\"1\"/><component "
       "objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 5 0 0\"/></components></object></resources>"
       "<build><item objectid=\"2\"/></build></model>";
   samples::Zip zip;

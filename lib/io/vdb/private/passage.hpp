@@ -41,7 +41,7 @@ struct TileRecord {
 struct LeafRecord {
   std::array<std::uint64_t, 8> active;
   std::array<std::int32_t, 3> corner;
-  std::int32_t unused;  // without it there would be a gap
+  std::int32_t padding;  // up to the alignment of the values, so that all bytes sent are set
   std::array<float, 512> values;
 };
 
@@ -52,5 +52,29 @@ void send_archives(InputFile& file, const std::optional<std::string>& wanted, Se
 void send_head(GridHead head, Sender& out);
 /// After its Record.
 [[nodiscard]] GridHead receive_head(Receiver& in);
+
+/// Hands on all records: start(GridHead), other(text), tile(TileRecord), and leaf(), which receives the LeafRecord
+/// itself.
+template <class Taker>
+void receive_records(Receiver& in, Taker& taker) {
+  while (true) {
+    switch (in.get<Record>()) {
+      case Record::grid:
+        taker.start(receive_head(in));
+        break;
+      case Record::other:
+        taker.other(in.get_text());
+        break;
+      case Record::tile:
+        taker.tile(in.get<TileRecord>());
+        break;
+      case Record::leaf:
+        taker.leaf();
+        break;
+      case Record::end:
+        return;
+    }
+  }
+}
 
 }  // namespace vam::io

@@ -1,0 +1,133 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "fault_of.hpp"
+#include "io/mesh/file.hpp"
+#include "lib/io/box_mesh.hpp"
+#include "lib/io/scratch.hpp"
+#include "lib/io/zip_writer.hpp"
+
+using namespace samples;
+using vam::io::read_mesh;
+
+namespace {
+
+constexpr const char* core_space = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
+
+std::string object(int id, const std::string& inside) {
+  return "<object id=\"" + std::to_string(id) + "\">" + inside + "</object>";
+}
+
+std::string component(int id, const std::string& more = "") {
+  return "<component objectid=\"" + std::to_string(id) + "\" " + more + "/>";
+}
+
+std::string model(const std::string& objects, const std::string& build, const std::string& attributes = "") {
+  return "<model " + std::string(core_space) + " " + attributes + "><resources>" + objects + "</resources><build>" +
+         build + "</build></model>";
+}
+
+std::string item(int id, const std::string& more = "") {
+  return "<item objectid=\"" + std::to_string(id) + "\" " + more + "/>";
+}
+
+std::string package(const std::string& root, const std::string& second = "") {
+  Zip zip;
+  zip.add("3D/3dmodel.model", root);
+  if (!second.empty()) zip.add("3D/Objects/second.model", second);
+  return zip.done();
+}
+
+}  // namespace
+
+TEST_CASE("3MF: components are placed from the inside out, mirrored ones stay outside out, unprintable ones stay out") {
+  const scratch::Folder folder;
+  const std::string nested = object(1, mesh_xml(box())) +
+                             object(2, "<components>" + component(1, "transform=\"2 0 0 0 1 0 0 0 1 1 0 0\"") +
+                                           component(1, "transform=\"-1 0 0 0 1 0 0 0 1 0 0 0\"") + "</components>");
+  const auto mesh = read_mesh(folder.write(
+      "a", package(model(nested, item(2, "transform=\"0 1 0 -1 0 0 0 0 1 0 0 5\"") + item(1, "printable=\"0\"")))));
+  CHECK(mesh.triangles.size() == 24);
+  CHECK(volume(mesh) == doctest::Approx(12 + 6));
+  double low = 1e9;
+  double high = -1e9;
+  for (const auto& p :
+       mesh.points) {  // x of the box runs along y now: from -1 (mirrored) to 1 + 2 (stretched, shifted)
+    low = std::min(low, p[1]);
+    high = std::max(high, p[1]);
+    CHECK(p[2] >= 5);
+  }
+  CHECK(low == doctest::Approx(-1));
+  CHECK(high == doctest::Approx(3));
+}
+
+TEST_CASE("3MF: an object of another part, whose unit is its own") {
+  const scratch::Folder folder;
+  const std::string production =
+      "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\" "
+      "requiredextensions=\"p\"";
+  const std::string root =
+      model(object(1, "<components>" + component(7, "p:path=\"/3D/Objects/second.model\"") + "</components>"), item(1),
+            production);
+  const std::string bytes = package(root, model(object(7, mesh_xml(box())), "", "unit=\"centimeter\""));
+  CHECK(volume(read_mesh(folder.write("a", bytes))) == doctest::Approx(6000));
+  CHECK(has(refusal(folder, package(root)), "3D/Objects/second.model"));
+}
+
+TEST_CASE("3MF: what expands without end, or means another shape than its triangles, is refused before it is made") {
+  const scratch::Folder folder;
+  const auto ten = [](int id) {
+    std::string text = "<components>";
+    for (int i = 0; i < 10; ++i) text += component(id);
+    return text + "</components>";
+  };
+  std::string levels = object(1, mesh_xml(box()));
+  for (int id = 2; id <= 10; ++id) levels += object(id, ten(id - 1));
+  CHECK(has(refusal(folder, package(model(levels, item(10)))),
+            "expand to 1111111111 objects of 12000000000 triangles and 8000000000 vertices"));
+  for (int id = 11; id <= 40; ++id) levels += object(id, ten(id - 1));
+  CHECK(has(refusal(folder, package(model(levels, item(40)))), "more than 10^12"));
+  CHECK(has(refusal(folder, package(model(object(1, "<components>" + component(2) + "</components>") +
+                                              object(2, "<components>" + component(1) + "</components>"),
+                                          item(1)))),
+            "object 1 is a component of itself"));
+  std::string chain = object(1, mesh_xml(box()));
+  for (int id = 2; id <= 100; ++id) chain += object(id, "<components>" + component(id - 1) + "</components>");
+  CHECK(has(refusal(folder, package(model(chain, item(100)))), "nested deeper than 64"));
+
+  const std::string lattice = "xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\"";
+  std::string beams = mesh_xml(box());
+  beams.insert(beams.find("</mesh>"),
+               "<b:beamlattice radius=\"1\"><b:beams><b:beam v1=\"0\" v2=\"1\"/></b:beams></b:beamlattice>");
+  CHECK(has(refusal(folder, package(model(object(3, beams), item(3), lattice))), "object 3 has a 'beamlattice'"));
+  CHECK(has(refusal(folder, package(model(object(3, mesh_xml(box())), item(3),
+                                          "xmlns:v=\"http://example.com/volumes\" requiredextensions=\"v\""))),
+            "needs the 3MF extension 'http://example.com/volumes'"));
+  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), ""))), "its build has no item"));
+  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), item(2)))), "refers to object 2"));
+  CHECK(has(refusal(folder, package(model(object(1, mesh_xml(box())), item(1, "transform=\"1 0 0\"")))),
+            "its <item> has transform '1 0 0'"));
+  CHECK(has(
+      refusal(folder, package("<!DOCTYPE model [<!ENTITY a \"aaaa\">]>" + model(object(1, mesh_xml(box())), item(1)))),
+      "declares a document type"));
+}
+
+TEST_CASE("3MF: the unit and the place of the build item count") {
+  const scratch::Folder folder;
+  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("inch", "")))) == doctest::Approx(6 * std::pow(25.4, 3)));
+  CHECK(volume(read_mesh(folder.write("mesh", box_3mf("micron", "")))) == doctest::Approx(6e-9));
+  // 3MF matrices are row by row, row vectors, translation last: a quarter turn about z, then (10, 20, 30).
+  const auto mesh = read_mesh(folder.write("mesh", box_3mf("millimeter", "0 1 0 -1 0 0 0 0 1 10 20 30")));
+  CHECK(volume(mesh) == doctest::Approx(6));
+  std::array<double, 3> low{1e9, 1e9, 1e9};
+  for (const auto& p : mesh.points) {
+    for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], p[axis]);
+  }
+  CHECK(low[0] == doctest::Approx(8));  // x' = -y + 10, y in [0, 2]
+  CHECK(low[1] == doctest::Approx(20));
+  CHECK(low[2] == doctest::Approx(30));
+  CHECK(has(refusal(folder, box_3mf("furlong", "")), "unknown 3MF unit 'furlong'"));
+}
