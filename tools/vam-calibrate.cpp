@@ -43,7 +43,7 @@ cli::Manual manual() {
        "is recorded but not put in force (status 1). Without a folder the record is written to standard output."},
       {{"The rotation axis in frames of a bead (here a printed piece) over one turn:",
         "vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis --from turn.exr --bands 3"},
+        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis turn.exr --bands 3"},
        {"The records in force:", "vam-calibrate check --set calibration.folder=cal"}},
       {},
       {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"},
@@ -52,7 +52,7 @@ cli::Manual manual() {
 }
 
 void add_input(cli::App& scan, ScanOptions& o, bool with_flips) {
-  scan.option("--from", "FILE", o.from, "The frames: an EXR stack or folder of vam-capture, or a folder of images.");
+  scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.", "--from");
   if (with_flips) {
     scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.")
         .default_is("frame n shows pattern frame n");
@@ -95,15 +95,22 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
             "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).");
   add_dark(line, o);
   line.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.");
-  line.option("--step", "MM", o.step_mm, cli::any, "Distance between planes.");
-  line.option("--pixel", "MM", o.pixel_mm, cli::non_negative, "Pixel of the bare sensor; with --side at the axis.");
+  line.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes; required without --side.")
+      .default_is("none")
+      .was("--step");
+  line.option("--pixel", "MM", o.pixel_mm, cli::non_negative,
+              "Pixel of the bare sensor, required; with --side at the axis.")
+      .default_is("that of the stack, with --side");
   auto& turn = app.subcommand("axis", "rotation axis and wobble in the camera's frames over a turn", o.command);
   add_input(turn, o, false);
-  turn.option("--step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.");
+  turn.option("--angle-step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.")
+      .default_is("none")
+      .was("--step");
   turn.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   auto& late = app.subcommand("lag", "delay of the camera's time stamps, from a bead that turns both ways", o.command);
   add_input(late, o, false);
-  late.option("--reverse", "FILE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).");
+  late.positional("REVERSE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).",
+                  "--reverse");
   late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o, true);
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);

@@ -24,7 +24,8 @@ cli::Manual manual() {
        "and is printed first; the light enters through the window, from the side of the last slice. \"Above\" a "
        "feature means towards the platform, the direction in which light propagates.",
        "Dose: Omega(n) = Phi_n (1 - q) + q Omega(n + 1), with q = 10^(-slice height / absorbance height), Omega in "
-       "critical doses and Phi in units of the critical intensity speed x critical dose. With --exposure layered the "
+       "critical doses and Phi in units of the critical intensity speed x critical dose. With --exposure-mode layered "
+       "the "
        "platform rests for each layer: Omega(n) = q (Phi_n + Omega(n + 1)) at the far side of layer n.",
        "correct: inside features the dose is at least 1 and at most --omega-max, 1 at both edges, below 1 outside. It "
        "rises below a feature at maximum intensity, as late as possible, and falls above it at minimum intensity. With "
@@ -40,11 +41,11 @@ cli::Manual manual() {
        "assumed critical dose and omega-max."},
       {{"The ladder of the paper and the result of ordinary slices:",
         std::string(ladder) +
-            " && vam-curethrough model ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --plane ordinary.png"},
+            " && vam-curethrough model ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section ordinary.png"},
        {"Its corrected slices, exact and as 8-bit images:",
         "vam-curethrough correct ladder.vdb --max-irradiance 110 --min-irradiance 0.2 -o slices.exr --png slices"},
        {"The result of the corrected slices:",
-        "vam-curethrough model slices.exr --part ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --plane "
+        "vam-curethrough model slices.exr --target ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section "
         "corrected.png --report corrected.json"},
        {"Comparison of three resins for this part:",
         "printf 'name,absorbance_height_um,critical_dose_mj_cm3\\nclear,2000,576\\ndyed,800,576\\ndark,300,576\\n' > "
@@ -73,7 +74,8 @@ cli::Manual manual() {
        "Accuracy: the recursion agrees with the integral of Beer's law over time to 1e-6, and the correction with the "
        "optimum of a linear program. Voxels are inside or outside the part by --threshold. Flow, diffusion and "
        "inhibition are neglected; the paper found the best critical dose to be five times the gelation dose.",
-       "With --exposure layered, the depth cured beyond a feature's top edge by the minimum intensity alone is not "
+       "With --exposure-mode layered, the depth cured beyond a feature's top edge by the minimum intensity alone is "
+       "not "
        "corrected: "
        "absorbance height x log10(1 + Phi_min).",
        "Source: Pritchard et al., Modelling and correcting cure-through in continuous stereolithographic 3D printing, "

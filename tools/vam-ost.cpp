@@ -22,14 +22,15 @@ cli::Manual manual() {
        "reconstructs the scattering density by filtered back-projection into a volume 'scatter', in view units per "
        "mm.",
        "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; the latter two need "
-       "--step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are weighted, and "
+       "--angle-step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are "
+       "weighted, and "
        "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the middle row is z = "
        "0.",
        "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
        "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator.",
        "--live reads frames as they arrive, keeps the last full turn, and for every turn (or every --every degrees) "
        "writes a volume into the folder -o, a line of JSON to --log, and updates --projections and --page. With "
-       "--reference it reports how much of the design is cured, missing and overcured; with --until it prints one line "
+       "--target it reports how much of the design is cured, missing and overcured; with --until it prints one line "
        "of JSON on standard output when the conditions hold, and exits: the signal to darken the projector. Frames are "
        "read while a volume is computed; dark and saturated frames are skipped and counted, and until something has "
        "gelled the log reports that the tool is waiting."},
@@ -37,10 +38,10 @@ cli::Manual manual() {
         "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
         "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},
        {"Reconstruct from a folder of images taken every 4 degrees:",
-        "vam-ost views --step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+        "vam-ost views --angle-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
         "scatter.vdb --projections seen.png"},
        {"Calibrate the gelation threshold with it, and use it:",
-        "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\nvam-ost views --step 4 --pixel 0.065 --set "
+        "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\nvam-ost views --angle-step 4 --pixel 0.065 --set "
         "camera.distance_mm=119.808 --resin resin.json --mesh print.ply -o again.vdb"}},
       {"Memory: about four times the views of one turn and the volume. Time: about a second for 180 views of 480 x 300 "
        "pixels on two cores.",
@@ -58,8 +59,10 @@ void declare(cli::App& app, Options& o) {
   app.positional("VIEWS", o.views, "EXR frame stack, folder of images or video; - is standard input.");
   cli::add_output(app, o.output);
   app.group("Camera");
-  app.option("--step", "DEG", o.step_deg, cli::any,
-             "Angular step of frames without recorded angles. Negative: opposite direction.");
+  app.option("--angle-step", "DEG", o.step_deg, cli::any,
+             "Angular step of frames without recorded angles. Negative: opposite direction.")
+      .default_is("none")
+      .was("--step");
   app.option("--dark", "FILE", o.dark,
              "Image or stack without a print (in the dark, or of the vial before printing); its mean is subtracted.");
   app.option(
@@ -83,14 +86,17 @@ void declare(cli::App& app, Options& o) {
   app.was("--window");
   app.option("--statistical", "N", o.how.statistical, {0, 1000},
              "Number of MLEM iterations after the back-projection, for noisy views.");
-  app.flag("--keep-negative", o.keep_negative, "Keep negative densities.");
+  app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.");
+  app.was("--keep-negative", "keep");
   app.flag("--no-refraction", o.no_refraction, "Treat image columns as parallel rays (for comparison).");
   app.group("Print");
   app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
   app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.");
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
-  app.option("--reference", "FILE.vdb", o.reference, "Design to compare with, in the same frame of reference.");
+  app.option("--target", "FILE.vdb", o.reference,
+             "Volume with the part to compare with, in the same frame of reference.")
+      .was("--reference");
   app.group("Live");
   app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.");
   app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.");

@@ -53,7 +53,7 @@ void run(const cli::App& app, Options& options) {
   how.interpolation = options.interpolation == "linear" ? optics::Interpolation::linear : optics::Interpolation::cubic;
   how.fresnel = projector ? !options.no_fresnel : options.fresnel;
   how.jacobian = projector ? !options.no_jacobian : options.jacobian;
-  how.keep_negative = !projector || options.keep_negative;
+  how.keep_negative = !projector || options.negative == "keep";
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
   if (options.explain) return explain(options, printer, how);
 

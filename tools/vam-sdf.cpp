@@ -24,7 +24,7 @@ cli::Manual manual() {
        "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
        "tried, "
        "and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps it. With "
-       "--scale a uniform scale is fitted too and reported as shrinkage.",
+       "--fit-scale a uniform scale is fitted too and reported as shrinkage.",
        "A summary goes to standard error if that is a terminal, the figures as JSON to --report, the print with "
        "distances and blue-white-red colours to -o. With --require the exit status is 1 unless all conditions hold.",
        "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
@@ -60,7 +60,7 @@ void declare(cli::App& app, Options& options) {
   app.was("--reference-level");
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the reference.");
-  app.flag("--scale", options.scale, "Fit a uniform scale too.");
+  app.flag("--fit-scale", options.scale, "Fit a uniform scale too.").was("--scale");
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Number of points on each surface.");
   app.option("--histogram", "FILE", options.histogram,

@@ -42,7 +42,7 @@ cli::Manual manual() {
            "when it is ready, and serves any GenICam client until a signal ends it. It views a simulated, refracting "
            "vial: the print scatters and grows with its dose, and the projected image fluoresces in the resin.",
            "The vial turns according to the log of vam-sim-stage (--angles), or at a constant --speed. The projector "
-           "shows the frames given by the log of vam-project (--shown), which also make the print grow: the test "
+           "shows the frames given by the log of vam-project (--flips), which also make the print grow: the test "
            "pattern named in the log, else the frames of --frames or --pattern. Without that log the first frame is "
            "shown all the time. A camera frame integrates over its whole exposure, also across changes of the image.",
            "Its own log is the reference for tests of the tools: for every frame its number, the angle, the exposed "
@@ -68,13 +68,14 @@ void declare(cli::App& app, Options& o) {
              "Exposed time that completes the print; its volume grows in proportion. 0: it is there from the start.");
   app.option("--angles", "FILE", o.camera.sources.angles, "Log of vam-sim-stage: the true stage angle.");
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Stage speed without --angles.");
-  app.option("--shown", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.");
+  app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.")
+      .was("--shown");
   app.option("--frames", "FILE", o.frames,
              "Frames shown by vam-project: an EXR frame stack, video or folder of images.");
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
   app.option("--pitch", "PX", o.pattern.pitch_px, {1, 100000}, "Pitch of the pattern.");
   app.option("--width", "PX", o.pattern.width_px, {1, 100000}, "Width of the pattern's lines.");
-  app.option("--grey", "PART", o.pattern.level, {0, 1}, "Grey level of the pattern, as a fraction of full grey.")
+  app.option("--grey", "FRACTION", o.pattern.level, {0, 1}, "Grey level of the pattern, as a fraction of full grey.")
       .was("--level");
   app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the pattern ramp.");
   app.group("Misalignment of the bench");
@@ -91,13 +92,13 @@ void declare(cli::App& app, Options& o) {
   app.option("--divergence", "DEG", bench.divergence_deg, {0, 45},
              "Increase of that width with the distance from focus.");
   app.flag("--card", bench.card, "Uniform card in place of the vial, lit by the mean of the image.");
-  app.option("--glow", "PART", bench.glow, {0, 10000},
+  app.option("--glow", "FRACTION", bench.glow, {0, 10000},
              "Fluorescence of a fully lit vial, as a fraction of full scale in 20 ms. A thin line needs more.");
   app.option("--gamma", "N", bench.gamma, {0.1, 10}, "Intensity = (grey / full grey) to this power.");
-  app.option("--vignetting", "PART", bench.vignetting, {0, 1},
+  app.option("--vignetting", "FRACTION", bench.vignetting, {0, 1},
              "Relative loss of intensity at the corners of the image.");
-  app.option("--background", "PART", bench.background, {0, 1}, "Background, as a fraction of full scale.");
-  app.option("--noise", "PART", bench.noise, {0, 1}, "Standard deviation of noise, as a fraction of full scale.");
+  app.option("--background", "FRACTION", bench.background, {0, 1}, "Background, as a fraction of full scale.");
+  app.option("--noise", "FRACTION", bench.noise, {0, 1}, "Standard deviation of noise, as a fraction of full scale.");
   app.option("--lag", "MS", o.lag_ms, {-1000, 1000}, "Delay from exposure to time stamp.");
   app.group("Camera");
   app.option("--address", "IP", o.address, "Address of this machine to serve on.");

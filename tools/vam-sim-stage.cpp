@@ -59,8 +59,9 @@ void declare(cli::App& app, Options& options) {
   app.group("Stage");
   app.option("--acceleration", "DEG/S2", motor.acceleration_deg_s2, {1, 10000},
              "Acceleration of ramps and smooth stops.");
-  app.option("--speed-error", "PART", motor.speed_error, {-0.5, 0.5}, "Relative speed error: 0.01 turns 1 % too fast.");
-  app.option("--ripple", "PART", motor.ripple, {0, 0.5},
+  app.option("--speed-error", "FRACTION", motor.speed_error, {-0.5, 0.5},
+             "Relative speed error: 0.01 turns 1 % too fast.");
+  app.option("--ripple", "FRACTION", motor.ripple, {0, 0.5},
              "Relative amplitude of a speed error that repeats every 30 degrees.");
   app.option("--max-speed", "DEG/S", options.stage.max_speed_deg_s, {1, 10000},
              "Maximum speed; faster commands are rejected with error 8.");

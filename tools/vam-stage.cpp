@@ -119,7 +119,7 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   spin.option("--direction", "SIGN", options.direction, {-1, 1},
               "1, or -1 to reverse; the reported angle increases either way.")
       .default_is("stage.direction");
-  spin.option("--speed-tolerance", "PART", options.plan.speed_tolerance, {1e-6, 1},
+  spin.option("--speed-tolerance", "FRACTION", options.plan.speed_tolerance, {1e-6, 1},
               "Largest relative speed error before angle 0.");
   spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
   spin.flag("--home", options.home_first, "Find the reference first.");

@@ -73,6 +73,7 @@ App::App(Manual manual) : state_(std::make_unique<State>()) {
   state_->owned = std::make_unique<CLI::App>();
   state_->parser = state_->owned.get();
   state_->parser->set_help_flag();
+  state_->parser->require_subcommand(0, 1);  // an operand of the first may have the name of another
   state_->parser->option_defaults()->always_capture_default(false);
   state_->tool.manual = std::move(manual);
 }
@@ -100,9 +101,10 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
 }
 
 // An operand is required when nothing stands for it, or when a required one follows.
-App& App::positional(const std::string& value_name, std::string& target, const std::string& help) {
+App& App::positional(const std::string& value_name, std::string& target, const std::string& help,
+                     const std::string& former) {
   state_->parser->add_option(value_name, target)->type_size(1)->expected(1);
-  state_->tool.positionals.push_back({value_name, help, target});
+  state_->tool.positionals.push_back({value_name, help, target, former});
   if (!target.empty()) return *this;
   for (auto& positional : state_->tool.positionals) positional.default_text.clear();
   return *this;
@@ -218,8 +220,8 @@ App& App::not_in_job() {
   return *this;
 }
 
-App& App::was(const std::string& old_flag) {
-  state_->current_group().options.back().former.push_back(old_flag);
+App& App::was(const std::string& old_flag, const std::string& value) {
+  state_->current_group().options.back().former.push_back({old_flag, value});
   return *this;
 }
 

@@ -53,7 +53,9 @@ class App {
 
   static constexpr const char* plain_heading = "Options";  // that of options without one
   App& group(const std::string& title);                    // heading of the options that follow
-  App& positional(const std::string& value_name, std::string& target, const std::string& help);  // empty: required
+  /// An empty target: required. former: the option that the operand was, which works with one line on stderr.
+  App& positional(const std::string& value_name, std::string& target, const std::string& help,
+                  const std::string& former = "");
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, double& target, Range range,
               const std::string& help);
@@ -77,8 +79,8 @@ class App {
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
-  /// completions do not show it.
-  App& was(const std::string& old_flag);
+  /// completions do not show it. A value stands for a former flag that took none: --keep-negative, --negative keep.
+  App& was(const std::string& old_flag, const std::string& value = "");
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
   /// chosen is set to the name when the user names it. A tool with operands or options of its own has a plain form,
   /// which runs without a command; else a command must be given. Options may stand before the command.

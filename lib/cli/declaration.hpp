@@ -9,6 +9,11 @@
 
 namespace vam::cli {
 
+struct Former {
+  std::string flag;   // the old spelling
+  std::string value;  // of the present option where the old one took none; else empty
+};
+
 struct Option {
   std::string flag;        // "--voxel"; "-o,--output"
   std::string value_name;  // "MM"; empty for a flag
@@ -17,7 +22,7 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::vector<std::string> former = {};     // old spellings; not shown
+  std::vector<Former> former = {};          // not shown
   std::function<std::string()> value = {};  // in force
   bool in_job = true;                       // App::job() lists it
 };
@@ -31,6 +36,7 @@ struct Positional {
   std::string value_name;
   std::string help;
   std::string default_text;  // empty: must be given
+  std::string former = {};   // the option that it was; not shown
 };
 
 struct Declaration {

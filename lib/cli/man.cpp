@@ -197,6 +197,11 @@ std::string environment(const Declaration& tool) {
     out += ".It Ev VAM_PRINTER\nThe printer file, when\n.Fl -printer\nis not given.\n";
   if (find_option(tool, "--threads") != nullptr)
     out += ".It Ev VAM_SIMD\nHighest instruction set to use: baseline, avx2 or avx512.\n";
+  const auto& statuses = tool.manual.statuses;
+  if (std::any_of(statuses.begin(), statuses.end(), [](const auto& status) { return status.code == 75; }))  // busy
+    out +=
+        ".It Ev VAM_LOCK_DIR\nFolder of the locks that reserve a device for one program.\nDefault:\n"
+        ".Pa /run/lock ,\nelse\n.Pa /tmp .\n";
   return out.empty() ? "" : ".Sh ENVIRONMENT\n.Bl -tag -width Ds\n" + out + ".El\n";
 }
 

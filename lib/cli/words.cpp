@@ -13,10 +13,16 @@ namespace {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
 
+// Null when it is none.
+const Former* former_name(const Option& option, const std::string& flag) {
+  const auto found = std::find_if(option.former.begin(), option.former.end(),
+                                  [&](const Former& former) { return former.flag == flag; });
+  return found == option.former.end() ? nullptr : &*found;
+}
+
 bool has_name(const Option& option, const std::string& flag) {
   const auto names = split(option.flag, ',');
-  return std::find(names.begin(), names.end(), flag) != names.end() ||
-         std::find(option.former.begin(), option.former.end(), flag) != option.former.end();
+  return std::find(names.begin(), names.end(), flag) != names.end() || former_name(option, flag) != nullptr;
 }
 
 const Option* find_own(const Declaration& tool, const std::string& flag) {
@@ -59,6 +65,20 @@ std::string takers(const Declaration& tool, const std::string& flag) {
     if (find_own(nested, flag) != nullptr) names.push_back(nested.manual.name);
   }
   return join(names, ", ");
+}
+
+// "--from FILE" and "--from=FILE" become "FILE".
+void make_operand(const std::string& tool, const Positional& positional, std::vector<std::string>& words) {
+  const auto word = std::find_if(words.begin(), words.end(),
+                                 [&](const std::string& text) { return flag_of(text) == positional.former; });
+  if (word == words.end()) return;
+  if (*word == positional.former) {
+    words.erase(word);
+  } else {
+    word->erase(0, positional.former.size() + 1);
+  }
+  std::fprintf(stderr, "%s: %s FILE is now the operand %s\n", tool.c_str(), positional.former.c_str(),
+               positional.value_name.c_str());
 }
 
 // Where the first word stands that is neither an option nor an option's value; -1 when there is none.
@@ -107,17 +127,23 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 }
 
 void rename_former(const Declaration& tool, std::vector<std::string>& words) {
-  const Declaration& form = form_of(tool, words);
+  const Declaration form = form_of(tool, words);
+  for (const auto& positional : form.positionals) {
+    if (!positional.former.empty()) make_operand(tool.manual.name, positional, words);
+  }
   std::set<std::string> reported;
   for (auto& word : words) {
     if (word == "--") return;
     const std::string flag = flag_of(word);
     const Option* option = find_own(form, flag);
-    if (option == nullptr || std::count(option->former.begin(), option->former.end(), flag) == 0) continue;
+    const Former* former = option == nullptr ? nullptr : former_name(*option, flag);
+    if (former == nullptr) continue;
+    const std::string value = former->value.empty() ? "" : " " + former->value;
     const std::string present = long_flag(*option);
-    word.replace(0, flag.size(), present);
+    word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
     if (!reported.insert(flag).second) continue;
-    std::fprintf(stderr, "%s: %s is now %s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str());
+    std::fprintf(stderr, "%s: %s is now %s%s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str(),
+                 value.c_str());
   }
 }
 

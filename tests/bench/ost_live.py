@@ -29,7 +29,7 @@ def main():
     stream = open("views.exr", "rb").read()
     frame = 480 * 300 * 4 + 300 * 12  # pixels, and 12 bytes before each row
     head = len(stream) - VIEWS * frame
-    tool = [BUILD + "/bin/vam-ost", "--live", "--isovalue", "0.5", "--reference", "design.vdb", "--log", "-", "-o", "turns",
+    tool = [BUILD + "/bin/vam-ost", "--live", "--isovalue", "0.5", "--target", "design.vdb", "--log", "-", "-o", "turns",
             "--projections", "turns.png", "--page", "turns.html"]
     for setting in RIG:
         tool += ["--set", setting]

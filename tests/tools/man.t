@@ -26,7 +26,12 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   (cd "examples-$tool" && sh -e "../$tool.sh") >.log/example 2>&1; status=$?
   report $status "$tool: the examples run"
   [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
+  is "$tool: the examples use no former spelling" "$(grep ' is now ' .log/example)" ""
 done
+
+# Their other examples name real devices.
+examples "$VAM_SOURCE/man/vam-print.1" | sed '/drm:/,$d' >print.sh
+ok 'vam-print: the dry run of its page' env PATH="$VAM_SOURCE/scripts:$PATH" sh -e print.sh
 
 for script in vam-print vam-calibrate-all; do
   page=$VAM_SOURCE/man/$script.1

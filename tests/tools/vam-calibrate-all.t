@@ -46,7 +46,7 @@ fails 64 'names no scan' vam-calibrate-all --screen null: --scans ' '
 # A bench out of adjustment. The projector's log tells the camera's simulator which pattern is on.
 screen_up 208 96
 bench() {  # bench OPTIONS...
-  camera_up --angles truth --shown keep/flips --log seen --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --gamma 1.8 \
+  camera_up --angles truth --flips keep/flips --log seen --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --gamma 1.8 \
     --axis-column 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
 calibrate() { vam-calibrate-all --screen sdl:0 --light sim: --keep keep --log events --home --pitch ${pitch:-2} --sweep-exposure 19000 --scans "$@"; }

@@ -6,7 +6,7 @@ light="--max-irradiance 110 --min-irradiance 0.2"  # what gives the paper's figu
 quiet "slice the ladder" vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb
 
 # ---- ordinary slices: one fused feature, undercured at the bottom [CURE19 fig 2]
-ok "model ordinary slices" vam-curethrough model ladder.vdb $light --plane ordinary.png --report ordinary.json
+ok "model ordinary slices" vam-curethrough model ladder.vdb $light --section ordinary.png --report ordinary.json
 is "both gaps, 10 slices of 6000 columns each, are cured" "$(json ordinary.json cure_through.voxels)" 120000
 holds "the bottom edge is undercured" "$(json ordinary.json undercured.voxels) > 0"
 quiet "model a part from a pipe" sh -c "cat ladder.vdb | vam-curethrough model $light --report piped.json -o dose.vdb"
@@ -19,10 +19,10 @@ is "three extra slices, as in the paper" "$(json correct.json extra_slices)" 3
 is "no column is infeasible" "$(json correct.json infeasible.columns)" 0
 is "slice and index files" "$(ls slices | wc -l)" 54
 is "the last slice is shown at 52 x 0.18 s" "$(tail -n 1 slices/frames.csv)" "00052.png,9.36,0"
-ok "model corrected slices" vam-curethrough model slices.exr --part ladder.vdb $light --plane corrected.png --report exact.json
+ok "model corrected slices" vam-curethrough model slices.exr --target ladder.vdb $light --section corrected.png --report exact.json
 is "no cure-through" "$(json exact.json cure_through.voxels)" 0
 is "no undercure" "$(json exact.json undercured.voxels)" 0
-ok "model the 8-bit images" vam-curethrough model slices --part ladder.vdb $light --report grey.json
+ok "model the 8-bit images" vam-curethrough model slices --target ladder.vdb $light --report grey.json
 is "8 bits: no undercure" "$(json grey.json undercured.voxels)" 0
 is "8 bits: no cure-through" "$(json grey.json cure_through.voxels)" 0
 holds "8 bits: height errors fall by more than 99 %" \
@@ -30,17 +30,17 @@ holds "8 bits: height errors fall by more than 99 %" \
 
 # ---- an egg shell at the paper's h_a = 2000 um and 750 mm/h: at least 85 %
 quiet "slice an egg" vam-slice --shape egg-shell:length=7,diameter=5,wall=0.6,opening=1.5 --voxel 0.05 --stretch-z 1 -o egg.vdb
-ok "ordinary egg" vam-curethrough model egg.vdb $light --speed 750 --report egg0.json
-ok "corrected egg" vam-curethrough correct egg.vdb $light --speed 750 --png egg --report egg.json
-ok "its dose" vam-curethrough model egg --part egg.vdb $light --speed 750 --report egg1.json
+ok "ordinary egg" vam-curethrough model egg.vdb $light --print-speed 750 --report egg0.json
+ok "corrected egg" vam-curethrough correct egg.vdb $light --print-speed 750 --png egg --report egg.json
+ok "its dose" vam-curethrough model egg --target egg.vdb $light --print-speed 750 --report egg1.json
 holds "height errors fall by 85 % and more" \
   "$(json egg1.json height_error.mean_error_um) <= 0.15 * $(json egg0.json height_error.mean_error_um)"
 
 # ---- the same of the ladder, and of the bunny where its mesh is at hand ($VAM_BUNNY)
 falls() {  # falls NAME FILE: by at least 85 %, with 8-bit slices
-  vam-curethrough model $2 $light --speed 750 --report before.json >/dev/null &&
-    vam-curethrough correct $2 $light --speed 750 --png falls-$2 2>/dev/null &&
-    vam-curethrough model falls-$2 --part $2 $light --speed 750 --report after.json >table
+  vam-curethrough model $2 $light --print-speed 750 --report before.json >/dev/null &&
+    vam-curethrough correct $2 $light --print-speed 750 --png falls-$2 2>/dev/null &&
+    vam-curethrough model falls-$2 --target $2 $light --print-speed 750 --report after.json >table
   holds "height errors of $1 fall by 85 % and more" \
     "$(json after.json height_error.mean_error_um) <= 0.15 * $(json before.json height_error.mean_error_um)"
 }
@@ -59,20 +59,20 @@ fi
 # ---- the forms of the output
 quiet "the response on the way out and in again" sh -c "printf 'grey,intensity\n0,0.2\n60,4\n128,25\n255,110\n' > response.csv &&
   vam-curethrough correct ladder.vdb --max-irradiance 110 --response response.csv --values grey -o grey.exr &&
-  vam-curethrough model grey.exr --part ladder.vdb --max-irradiance 110 --response response.csv --report response.json >/dev/null"
+  vam-curethrough model grey.exr --target ladder.vdb --max-irradiance 110 --response response.csv --report response.json >/dev/null"
 is "no cure-through after the round trip" "$(json response.json cure_through.voxels)" 0
 is "no undercure after the round trip" "$(json response.json undercured.voxels)" 0
 quiet "a stack of levels" vam-curethrough correct ladder.vdb $light --quantise -o levels.exr
-ok "equals the images" vam-curethrough model levels.exr --part ladder.vdb $light --report levels.json
+ok "equals the images" vam-curethrough model levels.exr --target ladder.vdb $light --report levels.json
 is "same errors" "$(json levels.json height_error.mean_error_um)" "$(json grey.json height_error.mean_error_um)"
 quiet "platform at the top" vam-curethrough correct ladder.vdb $light --platform top -o top.exr
-ok "and back" vam-curethrough model top.exr --part ladder.vdb --platform top $light --report top.json
+ok "and back" vam-curethrough model top.exr --target ladder.vdb --platform top $light --report top.json
 is "no cure-through either" "$(json top.json cure_through.voxels)" 0
 quiet "omega-max" vam-curethrough correct ladder.vdb $light --omega-max inf -o inf.exr
-ok "model it" vam-curethrough model inf.exr --part ladder.vdb $light --report inf.json
+ok "model it" vam-curethrough model inf.exr --target ladder.vdb $light --report inf.json
 is "still no cure-through" "$(json inf.json cure_through.voxels)" 0
-quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure layered --speed 100 -o layered.exr
-ok "its dose" vam-curethrough model layered.exr --part ladder.vdb $light --report layered.json
+quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure-mode layered --print-speed 100 -o layered.exr
+ok "its dose" vam-curethrough model layered.exr --target ladder.vdb $light --report layered.json
 is "no undercure layer by layer" "$(json layered.json undercured.voxels)" 0
 is "no cure-through layer by layer" "$(json layered.json cure_through.voxels)" 0
 quiet "one thread" vam-curethrough correct ladder.vdb $light --threads 1 -o same.exr
@@ -83,7 +83,7 @@ quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame 
 
 # ---- a catalogue
 printf 'name,absorbance_height_um,critical_dose_mj_cm3\nclear,2000,576\ndark,300,576\n' >resins.csv
-ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --speeds 1000,8000 --report catalogue.json
+ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --print-speeds 1000,8000 --report catalogue.json
 holds "the darker resin keeps narrower gaps open" \
   "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
 is "nothing prints beyond the speed limit" "$(json catalogue.json catalogue.1.prints)" false
@@ -118,8 +118,8 @@ fails 65 '2 different exposures are too few for a line fit; measure at least 3' 
 printf 'exposure,thickness_um\n20,370\n' >names.csv
 fails 65 "no column 'exposure_mj_cm2'" vam-curethrough working-curve names.csv
 fails 64 '0.5 is out of range' vam-curethrough correct ladder.vdb $light --omega-max 0.5 -o no.exr
-fails 65 'do not match' vam-curethrough model full.exr --part ladder.vdb $light
-fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder.vdb --part egg.vdb $light
+fails 65 'do not match' vam-curethrough model full.exr --target ladder.vdb $light
+fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder.vdb --target egg.vdb $light
 fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
 mkdir letters; echo hello >letters/letter.txt
 fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters

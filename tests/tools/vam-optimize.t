@@ -133,15 +133,15 @@ quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
 quiet "weights of a file" vam-optimize --angles 90 --iterations 5 --weights part.vdb part.vdb -o weights.exr
 printf 'dose,response\n0.2,0\n0.7,0.05\n0.9,0.95\n1.2,1\n' >cure.csv
-quiet "a measured response" vam-optimize --method bclp --response cure.csv --angles 90 --iterations 20 --report cure.json part.vdb -o cure.exr
+quiet "a measured response" vam-optimize --method bclp --resin-response cure.csv --angles 90 --iterations 20 --report cure.json part.vdb -o cure.exr
 holds "its window's middle is the threshold" "$(value cure.json threshold_dose) > 0.79 && $(value cure.json threshold_dose) < 0.81"
-quiet "a step" vam-optimize --method bclp --response step --angles 90 --iterations 5 part.vdb -o step.exr
-quiet "a grey target" vam-optimize --grey --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
+quiet "a step" vam-optimize --method bclp --resin-response step --angles 90 --iterations 5 part.vdb -o step.exr
+quiet "a grey target" vam-optimize --grey-target --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
 holds "most are within their band" "$(value grey.json ver) < 0.05"
 printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
-fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --response falls.csv part.vdb -o out.exr
-fails 66 'none.csv' vam-optimize --method bclp --response none.csv part.vdb -o out.exr
-fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey --method osmo part.vdb -o out.exr
+fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --resin-response falls.csv part.vdb -o out.exr
+fails 66 'none.csv' vam-optimize --method bclp --resin-response none.csv part.vdb -o out.exr
+fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey-target --method osmo part.vdb -o out.exr
 fails 64 'no-blur' vam-optimize --method osmo --set projector.telecentric=true --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
 fails 65 "grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr

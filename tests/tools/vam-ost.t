@@ -19,20 +19,20 @@ vam-resample sino.exr --printer coarse.toml -o seen.exr
 vam-project seen.exr --printer coarse.toml -o views
 is 'as many views as angles' "$(ls views | grep -c png)" 60
 
-quiet 'a folder of views' vam-ost views --step 6 $rig -o scatter.vdb --report ost.json --projections sums.png
+quiet 'a folder of views' vam-ost views --angle-step 6 $rig -o scatter.vdb --report ost.json --projections sums.png
 holds 'the axis is where it was put' "$(json ost.json axis_column_px) > 165.9 && $(json ost.json axis_column_px) < 166.1"
 holds 'and upright' "$(json ost.json axis_tilt_deg) > -0.05 && $(json ost.json axis_tilt_deg) < 0.05"
 quiet 'threshold of a standard' vam-calibrate resin scatter.vdb --diameter 6 -o resin.json
 holds 'the circle is seen at its size' "$(json resin.json apparent_diameter_mm) > 5.7 && $(json resin.json apparent_diameter_mm) < 6.3"
-quiet 'with the record' vam-ost views --step 6 $rig --resin resin.json --mesh print.ply -o again.vdb
+quiet 'with the record' vam-ost views --angle-step 6 $rig --resin resin.json --mesh print.ply -o again.vdb
 quiet 'the print is the design' vam-sdf print.ply design.vdb --align icp --require 'rms<=0.15'
 
-quiet 'live' vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb \
+quiet 'live' vam-ost views --angle-step 6 $rig --live --resin resin.json --target design.vdb \
   -o live --log log.jsonl --projections now.png --page now.html
 is 'one volume a turn' "$(ls live)" scatter-0000.vdb
 is 'one line per volume' "$(grep -c missing_percent log.jsonl)" 1
 grep -q 'now.png' now.html; report $? 'the page shows the image'
-event=$(vam-ost views --step 6 $rig --live --resin resin.json --reference design.vdb --until 'iou>=0.5')
+event=$(vam-ost views --angle-step 6 $rig --live --resin resin.json --target design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
 
 # What follows sees a standard through glass and resin by traced rays, with noise: 3 % of the brightest in each pixel.
@@ -57,7 +57,7 @@ open("profile.png", "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pac
 PY
 quiet 'I_p by a profilometer' vam-calibrate resin standard.vdb --profile profile.png --profile-pixel 0.05 -o profile.json
 holds 'measures the standard' "$(json profile.json diameter_mm) > 5.95 && $(json profile.json diameter_mm) < 6.05"
-holds 'and its isovalue is on the edge' "$(json profile.json level) > 0.3 && $(json profile.json level) < 0.7"
+holds 'and its isovalue is on the edge' "$(json profile.json isovalue) > 0.3 && $(json profile.json isovalue) < 0.7"
 "$render" cylinder:diameter=4,height=4 other.exr noise=0.2
 quiet 'the record is read' vam-ost other.exr $glass --resin glass.json --mesh other.ply -o other.vdb
 diameter=$(python3 - <<'PY'
@@ -80,7 +80,7 @@ is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
 
 # A print that grows: nothing at first, then three turns; live through a pipe until it is done.
 "$render" cylinder:diameter=4,height=4 grows.exr noise=0.05 turns=4 growth=0.5 angles=60
-cat grows.exr | vam-ost --live $glass --resin glass.json --reference four.vdb --until 'missing<=5%' \
+cat grows.exr | vam-ost --live $glass --resin glass.json --target four.vdb --until 'missing<=5%' \
   -o turns --log turns.jsonl --projections 'turns"><b>.png' --page turns.html >event.json 2>.log/err
 report $? 'a print that grows'
 is 'nothing on standard error' "$(cat .log/err)" ''
@@ -101,19 +101,19 @@ is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is 
 grep -q 'nothing visible' .log/err; report $? 'the log is there'
 quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
 is 'and is reported' "$(grep -c 'nothing visible' faint.jsonl)" 1
-fails 65 'no volume' vam-ost views --step 2 $rig --live
+fails 65 'no volume' vam-ost views --angle-step 2 $rig --live
 
-fails 64 'give their distance with --step' vam-ost views -o x.vdb
-fails 64 'need the gelation threshold' vam-ost views --step 6 --mesh p.ply -o x.vdb
-fails 64 'needs --projections' vam-ost views --step 6 --live --page p.html
+fails 64 'give their distance with --angle-step' vam-ost views -o x.vdb
+fails 64 'need the gelation threshold' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb
+fails 64 'needs --projections' vam-ost views --angle-step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: vam-ost threshold is now vam-calibrate resin'
 same 'with the same record' resin.json former.json
-fails 65 'no print at this threshold' vam-ost views --step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
-fails 65 'the turn is incomplete' vam-ost views --step 2 $rig -o x.vdb
+fails 65 'no print at this threshold' vam-ost views --angle-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
+fails 65 'the turn is incomplete' vam-ost views --angle-step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
-fails 65 'not a record' vam-ost views --step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
+fails 65 'not a record' vam-ost views --angle-step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
 fails 66 'absent' vam-ost absent.exr -o x.vdb
 cat >flat.py <<'PY'
 import struct, sys, zlib
@@ -128,8 +128,8 @@ first=$(ls views | head -n 1); last=$(ls views | grep png | tail -n 1)
 python3 flat.py "dark/$first" 333 40 0
 python3 flat.py "saturated/$first" 333 40 255
 python3 flat.py "sizes/$last" 300 40 100
-fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --step 6 $rig -o x.vdb
-fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --step 6 $rig -o x.vdb
-fails 65 'dark, every pixel' vam-ost dark --step 6 $rig -o x.vdb
+fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --angle-step 6 $rig -o x.vdb
+fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --angle-step 6 $rig -o x.vdb
+fails 65 'dark, every pixel' vam-ost dark --angle-step 6 $rig -o x.vdb
 
 done_testing

@@ -80,7 +80,7 @@ too_busy() {  # too_busy RUN: after a print that ended with $printed
 # The print of the guarantees: 1 % too fast, answers up to 5 ms late, at 25 deg/s, with a camera beside it.
 for attempt in 1 2 3; do
   turntable --speed-error 0.01 --jitter 5
-  camera_up --address $address --angles truth --shown run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
+  camera_up --address $address --angles truth --flips run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
   $screen watch 45 1 >seen &
   watcher=$!
   print --run-up 0.2 --frames-per-turn 3600 --missed 0.2 --views 10 --run run 2>errors
@@ -116,7 +116,7 @@ stage_down
 ok 'the design' vam-slice box.stl --voxel 0.5 $plain -o part.vdb
 for attempt in 1 2 3; do
   turntable
-  print --run-up 0.05 --missed 0.9 --turns 3 --views 10 --until 'missing<=100' --reference part.vdb --isovalue 0.001 --run live \
+  print --run-up 0.05 --missed 0.9 --turns 3 --views 10 --until 'missing<=100' --target part.vdb --isovalue 0.001 --run live \
     --set stage.speed_deg_s=120 --set camera.device="sim:?angles=$PWD/truth&lit_s=0.01" 2>errors
   printed=$?
   too_busy live || break

@@ -22,25 +22,25 @@ holds "after the table" "$(wc -l <table) > 10"
 quiet "at a critical dose" vam-score --grid target part.vdb --critical-dose 0.5 --report at.json
 is "all of the part cures" "$(json at.json cured_part)" 1.0
 
-quiet "the print as a mesh" vam-score --grid target part.vdb --print print.ply
+quiet "the print as a mesh" vam-score --grid target part.vdb --mesh print.ply
 is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
-quiet "the print as points" vam-score --grid target part.vdb --print points.ply --print-as points
+quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
 fails 64 "no figure is called 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
 fails 64 "is not a number" vam-score --grid target part.vdb --require 'ver<=x'
 fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
-fails 64 'print-at' vam-score --grid target part.vdb --print-at -1
-fails 64 'is also the input' vam-score --grid target part.vdb --print part.vdb
+fails 64 'isovalue' vam-score --grid target part.vdb --isovalue -1
+fails 64 'is also the input' vam-score --grid target part.vdb --mesh part.vdb
 fails 65 "no grid 'dose'" vam-score part.vdb
 fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
-fails 65 'nothing prints' vam-score --grid target part.vdb --print none.ply --print-at 7
+fails 65 'nothing prints' vam-score --grid target part.vdb --mesh none.ply --isovalue 7
 fails 66 'absent.vdb' vam-score absent.vdb
 fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb
 head -c 2000 part.vdb >cut.vdb
 fails 65 'cut.vdb' vam-score --grid target cut.vdb
-fails 73 'nowhere' vam-score --grid target part.vdb --print nowhere/print.ply
-fails 74 'full' vam-score --grid target part.vdb --print /dev/full
+fails 73 'nowhere' vam-score --grid target part.vdb --mesh nowhere/print.ply
+fails 74 'full' vam-score --grid target part.vdb --mesh /dev/full
 fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
 
 done_testing

@@ -7,7 +7,7 @@ awk 'NR < 3 { print; next } NF == 3 { print -1.01 * $2 + 10, 1.01 * $1 + 20, 1.0
 
 quiet 'a box against itself' vam-sdf box.off box.off --align none --report same.json
 holds 'deviates by nothing' "$(json same.json print_to_reference.rms_mm) < 1e-9"
-quiet 'a moved and enlarged box' vam-sdf moved.off box.off --scale --report moved.json -o moved.ply --histogram moved.csv
+quiet 'a moved and enlarged box' vam-sdf moved.off box.off --fit-scale --report moved.json -o moved.ply --histogram moved.csv
 holds 'is found again' "$(json moved.json hausdorff_mm) < 1e-3"
 holds 'with its growth' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
 quiet 'the histogram as an image' vam-sdf moved.off box.off --histogram moved.png

@@ -50,7 +50,7 @@ holds 'which is known within the time-out and 5 s, and what a busy machine adds'
 is 'nothing is left of the stack' "$(ls | grep -c gone)" 0
 wait $camera 2>/dev/null
 
-camera_up --pattern sweep --pitch 200 --width 40 --shown flips --background 0 --set projector.rows=60 --set projector.axis_row=30 --log truth2
+camera_up --pattern sweep --pitch 200 --width 40 --flips flips --background 0 --set projector.rows=60 --set projector.axis_row=30 --log truth2
 $take --format Mono16 --frames 60 -o swept/ & tool=$!
 sleep 0.5
 vam-project --pattern sweep --pitch 200 --width 40 --hold 0.2 -o null: --log flips --set projector.rows=60 --set projector.axis_row=30

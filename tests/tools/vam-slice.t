@@ -119,14 +119,14 @@ fails 65 'truncated' vam-slice cut.stl -o x.vdb
 fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
 fails 65 'no size' vam-slice point.stl -o x.vdb
-fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-center --voxel 0.3 -o x.vdb
+fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
 fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
-fails 65 'beyond the writable radius' vam-slice far.stl --no-center -o x.vdb
+fails 65 'beyond the writable radius' vam-slice far.stl --no-centre -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
 fails 65 'more than 4096 per axis' vam-slice cube.stl --voxel 0.001 -o x.vdb
-fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-center -o x.vdb
-fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-center -o x.vdb
+fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-centre -o x.vdb
+fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-centre -o x.vdb
 fails 65 'black' vam-slice black -o x.vdb
 fails 66 'missing.stl' vam-slice missing.stl -o x.vdb
 fails 66 'printer' vam-slice cube.stl --printer none.toml -o x.vdb

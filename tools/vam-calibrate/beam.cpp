@@ -40,7 +40,7 @@ class Dark {
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
   if (options.pixel_mm <= 0 || options.step_mm == 0) {
     throw Error{Fault::usage,
-                "beam: needs --pixel, the sensor's pitch, and --first and --step, the positions of the planes; or "
+                "beam: needs --pixel, the sensor's pitch, and --first and --spacing, the positions of the planes; or "
                 "--side"};
   }
   const Dark dark(options.dark);
@@ -58,7 +58,7 @@ metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Pr
 
 metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Printer& printer) {
   if (options.step_mm != 0 || options.first_mm != 0) {
-    throw Error{Fault::usage, "beam: --side covers all planes; omit --first and --step"};
+    throw Error{Fault::usage, "beam: --side covers all planes; omit --first and --spacing"};
   }
   metrology::FrameMean frames;
   metrology::SideView view;

@@ -12,7 +12,7 @@ constexpr double wanted_sigma_ms = 0.5;
 }
 
 Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
-  if (options.reverse.empty()) throw Error{Fault::usage, "lag: needs --reverse, the frames of a turn the other way"};
+  if (options.reverse.empty()) throw Error{Fault::usage, "lag: needs REVERSE, the frames of a turn the other way"};
   ScanOptions other = options;
   other.from = options.reverse;
   const BeadTurn forwards = read_turn(options, printer);

@@ -52,10 +52,10 @@ PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSo
     const auto found = slices.facts.find(name);
     return found == slices.facts.end() ? std::string() : found->second;
   };
-  if (const auto speed = parse_number(fact("vam:speed_mm_h")); speed && *speed > 0 && !app.given("--speed")) {
+  if (const auto speed = parse_number(fact("vam:speed_mm_h")); speed && *speed > 0 && !app.given("--print-speed")) {
     options.speed_mm_h = *speed;
   }
-  if (fact("vam:exposure") == "layered" && !app.given("--exposure")) options.exposure = "layered";
+  if (fact("vam:exposure") == "layered" && !app.given("--exposure-mode")) options.exposure = "layered";
   return options;
 }
 
@@ -65,14 +65,14 @@ double slice_height_um(const ModelOptions& options, const Inputs& in) {
   const auto fact = in.slices.facts.find("vam:slice_mm");
   const auto height = fact == in.slices.facts.end() ? std::nullopt : parse_number(fact->second);
   if (height && *height > 0) return *height * 1e3;
-  throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice or --part"};
+  throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice or --target"};
 }
 
 Inputs open_inputs(const cli::App& app, const ModelOptions& options) {
   Inputs in{nullptr, {}, resolve(options.print, 50)};
   PartOptions design = options.part;
   if (is_volume(options.input) && !design.path.empty()) {
-    throw Error{Fault::usage, "--part: " + options.input + " is a part itself; give slices, or omit --part"};
+    throw Error{Fault::usage, "--target: " + options.input + " is a part itself; give slices, or omit --target"};
   }
   if (is_volume(options.input)) design.path = options.input;
   if (!design.path.empty()) in.part = std::make_shared<PartFile>(design, exposure_of(options.print));
@@ -200,13 +200,15 @@ void declare(cli::App& app, ModelOptions& options) {
                  "intensity in the part, minimum outside.");
   app.option("-o,--output", "FILE", options.output,
              "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).");
-  app.option("--part", "FILE", options.part.path, "Part that the slices should give, for the cure map.");
+  app.option("--target", "FILE", options.part.path, "Part that the slices should give, for the cure map.")
+      .was("--part");
   add_part(app, options.part);
-  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of images without --part.");
+  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of images without --target.");
   app.group("Figure");
-  app.option("--plane", "FILE", options.plane,
-             "PNG of an x-z plane: slices, cure map, and intensity and dose along one column.");
-  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the plane.").default_is("the middle");
+  app.option("--section", "FILE", options.section,
+             "PNG of an x-z plane: slices, cure map, and intensity and dose along one column.")
+      .was("--plane");
+  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.").default_is("the middle");
   app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.").default_is("the middle");
   add_print(app, options.print);
   app.group("Report and performance");
@@ -233,7 +235,7 @@ void run(const cli::App& root, const cli::App& app, const ModelOptions& options)
     report.update(to_json(totals, in.print.process));
     if (options.output.empty() && options.report != "-") io::write_text("-", table_of(totals, in.print.process));
   }
-  if (!options.plane.empty()) draw_plane(options.plane, judge.plane_, in.print);
+  if (!options.section.empty()) draw_plane(options.section, judge.plane_, in.print);
   io::write_report(options.report, "vam-curethrough-model/1", report);
 }
 

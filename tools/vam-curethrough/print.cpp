@@ -12,7 +12,7 @@ namespace vam::curethrough {
 
 void add_print(cli::App& app, PrintOptions& options) {
   app.group("Print");
-  app.option("--speed", "MM_H", options.speed_mm_h, cli::positive, "Speed of the platform.");
+  app.option("--print-speed", "MM_H", options.speed_mm_h, cli::positive, "Speed of the platform.").was("--speed");
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("determined by resin.absorption_per_mm, else 2000");
@@ -27,8 +27,9 @@ void add_print(cli::App& app, PrintOptions& options) {
   app.option("--response", "FILE", options.response,
              "Measured grey response (CSV grey,intensity). Its first entry determines the minimum irradiance.");
   app.default_is("projector.response, else a straight line");
-  app.choice("--exposure", options.exposure, {"continuous", "layered"},
+  app.choice("--exposure-mode", options.exposure, {"continuous", "layered"},
              "The platform moves continuously, or rests for each layer (exposed for slice height / speed).");
+  app.was("--exposure");
   cli::add_printer(app, options.printer);
 }
 

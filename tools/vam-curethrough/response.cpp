@@ -16,7 +16,8 @@ void declare(cli::App& app, GreyResponseOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.");
   cli::add_output(app, options.output);
   app.option("--dark", "READING", options.dark, cli::any, "Dark reading of the photodiode; subtracted.");
-  app.option("--scale", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.");
+  app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.")
+      .was("--scale");
   app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.");
   cli::add_report(app, options.report);
 }

@@ -37,7 +37,7 @@ struct ModelOptions {
   PartOptions part;
   PrintOptions print;
   std::string output;
-  std::string plane;
+  std::string section;
   std::optional<int> row;
   std::optional<int> column;
   std::optional<double> slice_um;

@@ -24,7 +24,7 @@ void warn_about(const Options& options, const light::LightSeen& seen, bool proje
   warn(options.input + ": " + format_number(100 * seen.negative / seen.values, 3) +
        " % of the intensities are negative, the minimum is " + format_number(seen.least, 3) + ", the maximum " +
        format_number(seen.peak, 3) +
-       (options.keep_negative ? "; kept, though no projector can show them" : "; set to 0"));
+       (options.negative == "keep" ? "; kept, though no projector can show them" : "; set to 0"));
 }
 
 /// Doses of slices, in ascending order, through what beam and resin smear.
@@ -103,10 +103,10 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
                io::SparseVolume& volume) {
   const model::StackInfo& info = in.info();
   const bool projector = info.space == model::Space::projector;
-  const auto climb = options.flat ? light::Climb::flat : light::Climb::follow;
+  const auto climb = options.in_plane ? light::Climb::flat : light::Climb::follow;
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
-  const light::DisplayRange light{projector && !options.keep_negative, options.full_scale,
+  const light::DisplayRange light{projector && options.negative == "clip", options.full_scale,
                                   printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
   if (options.exposure_plan) judged = model::writable_circle(place.grid, optics::writable_radius_mm(printer));

@@ -12,7 +12,7 @@ cli::Manual manual() {
        "voxel and stage angle the column and row whose ray passes through the voxel, including refraction and Fresnel "
        "losses, the density of the rays there, and absorption along the path through the resin. The rays of a "
        "projector that is not telecentric climb: a row exposes other slices than its own, by several voxels at the "
-       "ends of the part. --flat neglects that, for comparison. With --like the dose also covers the resin around "
+       "ends of the part. --in-plane neglects that, for comparison. With --like the dose also covers the resin around "
        "the part that is exposed: up to the writable radius, and above and below as far as the rays climb. "
        "Virtual sinograms (vam-sinogram, "
        "vam-optimize --geometry parallel) are back-projected along parallel rays, with absorption if the resin has "

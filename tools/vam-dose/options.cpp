@@ -28,11 +28,13 @@ void declare(cli::App& app, Options& options) {
            "Determine whole turns and the fraction of full intensity that put the critical dose in the middle of the "
            "process window, and write the dose of that exposure. Requires --like with a target.");
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
-  app.flag("--flat", options.flat,
+  app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
-  app.flag("--keep-negative", options.keep_negative,
-           "Keep negative intensities of a projector sinogram, which no projector can show. Those of a virtual "
-           "sinogram are always kept.");
+  app.was("--flat");
+  app.choice("--negative", options.negative, {"clip", "keep"},
+             "Negative intensities of a projector sinogram, which no projector can show: clip them to 0, or keep them. "
+             "Those of a virtual sinogram are always kept.");
+  app.was("--keep-negative", "keep");
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
              "Columns between projector.axis_column and the image of the axis, positive to the right.");

@@ -19,8 +19,8 @@ struct Options {
   std::optional<double> full_scale;
   std::optional<double> seconds;
   bool no_blur = false;
-  bool flat = false;
-  bool keep_negative = false;
+  bool in_plane = false;
+  std::string negative = "clip";
   bool exposure_plan = false;
   double angle_offset_deg = 0;
   optics::AxisAlignment alignment;

@@ -51,11 +51,11 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
   report["model"] = light != model::Space::projector ? "parallel" : exposed.climbs ? "chief rays" : "level chief rays";
   report["full_scale"] = options.full_scale.value_or(seen.peak);
-  report["light_efficiency"] = seen.efficiency.value();
+  report["efficiency"] = seen.efficiency.value();
   report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
   if (unit.plan) {
     score::add_to(report, *unit.plan);
-    report["peak_value"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
+    report["planned_full_scale"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;

@@ -50,7 +50,8 @@ std::vector<std::string> description() {
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void: they are unconstrained, and "
        "so is the band of --tolerance-mm around the surface. --surface constrains them, too. A slice with only such "
        "voxels is printed if any of them is at least half covered. --weights sets the relative cost of errors.",
-       "With --grey the target is a dose for every voxel, for graded stiffness or colour: doses (or responses) must be "
+       "With --grey-target the target is a dose for every voxel, for graded stiffness or colour: doses (or responses) "
+       "must be "
        "met within --band, or within the tolerance of each voxel. The projections are not scaled then. VER is the "
        "fraction of voxels outside their band, PW the smallest margin of any voxel, negative outside, IPDR the largest "
        "and CV the root mean square error, IoU 1 - VER.",
@@ -79,7 +80,7 @@ cli::Manual manual() {
        {"Graded stiffness: a bar whose dose rises from one grey image to the next, each to 0.25:",
         "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
         "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
-        "--grey --response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o graded.exr"}},
+        "--grey-target --resin-response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o graded.exr"}},
       {"Figures of merit (VER, PW, IPDR, CV, IoU; defined in vam-score(1)) are computed slice by slice. In --trace and "
        "--until PW is that of the worst slice, IPDR the largest, the others are means weighted by voxel count.",
        "Speed: skew rays couple the slices, and all are then optimised together; two projections of 160 "

@@ -47,18 +47,19 @@ void declare_constraints(cli::App& app, Options& options) {
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
              "leaves the voxel unconstrained.");
   app.default_is("the grid 'weight' of the target file, if present");
-  app.flag("--grey", options.demands.grey,
+  app.flag("--grey-target", options.demands.grey,
            "Grey target: a dose (or response) for every voxel, to be met within --band.");
+  app.was("--grey");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
-             readers("--band", ", --grey") + "largest deviation of the resin's response from the target.");
+             readers("--band", ", --grey-target") + "largest deviation of the resin's response from the target.");
   app.option("--tolerances", "FILE", options.tolerances,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.");
   app.default_is("the grid 'tolerance' of the target file, if present");
-  app.option("--response", "CURVE", options.response,
-             readers("--response", ", --grey") +
+  app.option("--resin-response", "CURVE", options.response,
+             readers("--resin-response", ", --grey-target") +
                  "response of the resin to a dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
                  "CSV file with columns dose,response, which also sets LOW and HIGH.");
-  app.default_is("logistic; linear with --grey");
+  app.default_is("logistic; linear with --grey-target").was("--response");
   app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.");
 }
 
@@ -185,10 +186,10 @@ void refuse_contradictions(const Options& options, const optimize::MethodEntry& 
   if (options.demands.grey && !method.grey) {
     const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
     throw Error{Fault::usage,
-                "--grey: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
+                "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
   }
   if (options.demands.grey && (options.tolerance_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey: a grey target has no surface; omit --tolerance-mm and --surface"};
+    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --tolerance-mm and --surface"};
   }
 }
 
@@ -197,7 +198,7 @@ void settle_raising(const cli::App& app, Options& options) {
   if (options.shortest && options.limit.of_even <= 0) {
     throw Error{Fault::usage,
                 "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and "
-                "--grey, and use a method that reads --max-intensity"};
+                "--grey-target, and use a method that reads --max-intensity"};
   }
   if (options.shortest && options.until.empty()) {
     throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
@@ -230,7 +231,7 @@ void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
   refuse_contradictions(options, method);
-  if (options.demands.grey && !app.given("--response")) options.response = "linear";
+  if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);

@@ -52,7 +52,8 @@ void declare(cli::App& app, Options& options);
 /// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
 /// other.
 void settle(const cli::App& app, Options& options);
-/// The response curve of --response, and the window that a table of it gives. Throws Error when it cannot be read.
+/// The response curve of --resin-response, and the window that a table of it gives. Throws Error when it cannot be
+/// read.
 void settle_response(const cli::App& app, Options& options);
 
 }  // namespace vam::optimize_tool

@@ -18,7 +18,7 @@ struct Options {
   std::optional<double> pixel_mm, axis_column, tilt_deg;
   metrology::OstOptions how;
   bool no_refraction = false;
-  bool keep_negative = false;
+  std::string negative = "clip";
   std::optional<double> isovalue;
   std::string resin_record;
   std::string mesh, projections;

@@ -20,7 +20,7 @@ namespace {
 std::optional<double> isovalue_of(const Options& o) {
   if (o.resin_record.empty()) return o.isovalue;
   if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
-  return io::gelation_level(o.resin_record);
+  return io::gelation_isovalue(o.resin_record);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ Session::Session(const cli::App& app, const Options& options)
   if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
   if (!isovalue_ && (!options.mesh.empty() || !options.until.empty()))
     throw Error{Fault::usage, "--mesh and --until: need the gelation threshold; give --isovalue or --resin"};
-  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design; give --reference"};
+  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design; give --target"};
 }
 
 metrology::CameraView Session::take(const io::CameraFrame& frame) {
@@ -120,7 +120,7 @@ Json Session::figures(const model::Volume& volume) const {
             {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
-  if (isovalue_) json["level"] = *isovalue_;
+  if (isovalue_) json["isovalue"] = *isovalue_;
   if (isovalue_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *isovalue_, *reference_));
   return json;
 }
@@ -150,7 +150,7 @@ void Session::set_up(std::span<const metrology::CameraView> views, double stack_
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
   how.refraction = !options_.no_refraction;
-  how.non_negative = !options_.keep_negative;
+  how.non_negative = options_.negative == "clip";
   rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
                                                        axis_.pose, how);
   note("axis at column " + format_number(axis_.pose.column, 6) + " +- " + format_number(axis_.column_sigma, 2) +

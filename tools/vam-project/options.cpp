@@ -17,7 +17,8 @@ void add_live(cli::App& app, LiveOptions& options) {
       .default_is("one for each angle of the sinogram");
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
       .default_is("projector.latency_ms");
-  app.option("--missed", "PART", options.allowed_missed, {0, 1}, "Largest allowed fraction of missed vertical blanks.");
+  app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
+             "Largest allowed fraction of missed vertical blanks.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
@@ -30,7 +31,7 @@ void add_patterns(cli::App& app, PatternOptions& options) {
   app.option("--pattern", "NAME", options.plan.name,
              "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) "
              "or row (a line at z = 0, for vam-calibrate beam).");
-  app.option("--grey", "PART", options.plan.level, {0, 1},
+  app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
       .was("--level");
   app.option("--pitch", "PX", options.plan.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.");

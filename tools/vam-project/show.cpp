@@ -59,14 +59,14 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
   return all;
 }
 
-Json figures(const Frames& frames, int bits, double peak, const resin::LightTally& tally) {
+Json figures(const Frames& frames, int bits, double full_scale, const resin::LightTally& tally) {
   const auto lit = static_cast<double>(std::max(tally.lit, 1L));
   return {{"frames", frames.count},
           {"fps_hz", frames.fps},
           {"step_deg", frames.step_deg},
           {"duration_s", frames.count / frames.fps},
           {"bits", bits},
-          {"peak", peak},
+          {"full_scale", full_scale},
           {"mean_intensity_fraction", tally.light / static_cast<double>(tally.pixels)},
           {"mean_lit_intensity_fraction", tally.light / lit},
           {"clipped_fraction", static_cast<double>(tally.clipped) / lit}};

@@ -41,7 +41,7 @@ cli::Manual manual() {
        "360 and core.",
        "Accuracy: the ray map agrees with a vector ray tracer to 1e-9. Cubic (Catmull-Rom) interpolation is of third "
        "order and the default because it is more accurate than linear, which the paper uses. Negative values, its "
-       "overshoot included, are set to 0 for a projector, which cannot show them, unless --keep-negative is given. An "
+       "overshoot included, are set to 0 for a projector, which cannot show them, unless --negative keep is given. An "
        "output with coarser columns than the input is averaged over the width of its columns.",
        "Weights: to the projector J/T by default. From the camera none by default; --fresnel divides by T, "
        "the loss on the way out, and --jacobian divides by J.",

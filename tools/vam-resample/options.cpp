@@ -20,7 +20,9 @@ void declare(cli::App& app, Options& options) {
   app.flag("--no-jacobian", options.no_jacobian, "--to projector: do not multiply by J.");
   app.flag("--fresnel", options.fresnel, "--to virtual: divide by T.");
   app.flag("--jacobian", options.jacobian, "--to virtual: divide by J.");
-  app.flag("--keep-negative", options.keep_negative, "--to projector: keep negative values.");
+  app.choice("--negative", options.negative, {"clip", "keep"},
+             "--to projector: clip negative values to 0, or keep them.");
+  app.was("--keep-negative", "keep");
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
              "Columns between projector.axis_column (or the middle of the camera) and the image of the axis, positive "

@@ -20,7 +20,7 @@ struct Options {
   bool no_jacobian = false;
   bool fresnel = false;
   bool jacobian = false;
-  bool keep_negative = false;
+  std::string negative = "clip";
   double angle_offset_deg = 0;
   optics::AxisAlignment alignment;
   std::optional<double> voxel_mm;

@@ -24,11 +24,11 @@ cli::Manual manual() {
         "dose.vdb && vam-score dose.vdb --target part.vdb"},
        {"Reject a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
        {"Write the print as a mesh and as points coloured by dose:",
-        "vam-score dose.vdb --target part.vdb --print print.ply && vam-score dose.vdb --target part.vdb --print "
-        "points.ply --print-as points"}},
+        "vam-score dose.vdb --target part.vdb --mesh print.ply && vam-score dose.vdb --target part.vdb --mesh "
+        "points.ply --ply-as points"}},
       {"Accuracy: extremes, means and the figures at the critical dose are exact; VER, IoU and percentiles resolve the "
        "dose to 2^-12 of its value, and VER counts undecided voxels as errors.",
-       "Memory: both volumes as in their files, and 16 slices. --print keeps a second copy of the dose.",
+       "Memory: both volumes as in their files, and 16 slices. --mesh keeps a second copy of the dose.",
        "Sources: Kelly et al., Computed Axial Lithography, 2017, fig 8 (print as points); Rackson et al., Object-space "
        "optimization of tomographic reconstructions, 2021 (VER, PW, IPDR)."},
       {"vam-dose", "vam-optimize", "vam-sdf", "vam-view"}};

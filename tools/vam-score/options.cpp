@@ -19,9 +19,10 @@ void declare(cli::App& app, Options& options) {
   app.flag("--surface", options.how.surface, "Score surface voxels, too: as part when at least half covered.");
   app.flag("--absolute", options.how.absolute, "PW and IPDR in units of the dose.");
   app.group("Print");
-  app.option("--print", "FILE", options.print, "Write the print as PLY, in mm.");
-  app.choice("--print-as", options.print_as, {"mesh", "points"}, "Its surface, or its voxels coloured by dose.");
-  app.option("--print-at", "DOSE", options.print_at, cli::positive, "Threshold of the print.");
+  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print");
+  app.choice("--ply-as", options.print_as, {"mesh", "points"}, "Its surface, or its voxels coloured by dose.")
+      .was("--print-as");
+  app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold of the print.").was("--print-at");
   app.default_is("the critical dose, else the best threshold");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

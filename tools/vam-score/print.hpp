@@ -6,7 +6,7 @@
 
 namespace vam::score_tool {
 
-/// To --print. Throws Fault::data when nothing prints at this dose.
+/// To --mesh. Throws Fault::data when nothing prints at this dose.
 void write_print(const Options& options, const io::SparseVolume& dose, double threshold);
 
 }  // namespace vam::score_tool

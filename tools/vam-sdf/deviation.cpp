@@ -91,7 +91,7 @@ void deviation(const cli::App& app, const Options& options) {
   if (options.isovalue && !options.resin_record.empty())
     throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
   const std::optional<double> isovalue =
-      options.resin_record.empty() ? options.isovalue : io::gelation_level(options.resin_record);
+      options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
   io::refuse_two_stdins({options.print, options.reference});
   for (const auto& input : {options.print, options.reference}) {
     if (!options.output.empty()) io::refuse_same_file(input, options.output);

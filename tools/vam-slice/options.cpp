@@ -30,8 +30,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive, "Scale so that the largest dimension is MM.");
   app.flag("--fit-writable", options.placement.fit_writable,
            "Scale to fill the writable cylinder, so that all voxels are lit from all sides.");
-  app.flag("--no-center", options.no_center,
+  app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
+  app.was("--no-center");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
   app.default_is("1/M_vp of the printer");
   cli::add_printer(app, options.printer);
@@ -52,8 +53,8 @@ void check(const cli::App& app, const Options& options) {
   if (options.placement.fit_mm && options.placement.fit_writable) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
   }
-  if (options.placement.fit_writable && options.no_center) {
-    throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-center"};
+  if (options.placement.fit_writable && options.no_centre) {
+    throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-centre"};
   }
   if (!options.insert.empty() && !options.insert_shape.empty()) {
     throw Error{Fault::usage, "--insert-shape: give either --insert or --insert-shape"};
@@ -64,7 +65,7 @@ void check(const cli::App& app, const Options& options) {
     if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
   }
   if (is_folder(options.input)) {
-    for (const char* flag : {"--scale", "--rotate", "--fit", "--fit-writable", "--no-center", "--insert"}) {
+    for (const char* flag : {"--scale", "--rotate", "--fit", "--fit-writable", "--no-centre", "--insert"}) {
       if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to images; use --voxel"};
     }
   }
@@ -75,7 +76,7 @@ void settle(Options& options, const model::Printer& printer) {
   static const std::map<std::string, double> mm_per{{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
   placement.scale *= mm_per.at(options.unit);
   if (!options.rotate_deg.empty()) std::copy_n(options.rotate_deg.begin(), 3, placement.rotate_deg.begin());
-  placement.centre = !options.no_center;
+  placement.centre = !options.no_centre;
   placement.stretch_z = options.stretch_z.value_or(1 / model::vertical_magnification(printer));
   if (!options.voxel_mm) options.voxel_mm = printer.projector.pixel_mm;
   placement.voxel_mm = *options.voxel_mm;

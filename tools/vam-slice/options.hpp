@@ -24,7 +24,7 @@ struct Options {
   std::string unit = "mm";
   solid::Placement placement;
   std::vector<double> rotate_deg;
-  bool no_center = false;
+  bool no_centre = false;
   std::optional<double> stretch_z;
   std::string report;
   cli::PrinterOptions printer;

@@ -77,7 +77,8 @@ struct ViewSource::State {
   }
 
   [[nodiscard]] double needed_step() const {
-    if (step_deg == 0) throw Error{Fault::usage, path + ": the frames have no angles; give their distance with --step"};
+    if (step_deg == 0)
+      throw Error{Fault::usage, path + ": the frames have no angles; give their distance with --angle-step"};
     return step_deg;
   }
 };

@@ -13,19 +13,21 @@ namespace {
 constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
 }
 
-double gelation_level(const std::string& path) {
-  double level = 0;
+double gelation_isovalue(const std::string& path) {
+  double isovalue = 0;
   try {
     const Json record = Json::parse(read_all(path, Content::text, most_bytes));
     if (record.at("schema") != "vam-resin/1")
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
-    level = record.at("level").get<double>();
+    isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
   } catch (const Json::exception& error) {
     throw Error{Fault::data, path + ": not a record of vam-calibrate resin (" + error.what() + ")"};
   }
-  if (!(level > 0)) throw Error{Fault::data, path + ": level is " + format_number(level) + "; it must be above 0"};
-  return level;
+  if (!(isovalue > 0)) {
+    throw Error{Fault::data, path + ": isovalue is " + format_number(isovalue) + "; it must be above 0"};
+  }
+  return isovalue;
 }
 
 }  // namespace vam::io

@@ -6,7 +6,7 @@
 namespace vam::io {
 
 /// The gelation threshold I_p in the record that vam-calibrate resin wrote. Throws Error: no_input, data (not such a
-/// record, or its level is not above 0).
-[[nodiscard]] double gelation_level(const std::string& path);
+/// record, or its isovalue is not above 0).
+[[nodiscard]] double gelation_isovalue(const std::string& path);
 
 }  // namespace vam::io

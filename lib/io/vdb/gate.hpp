@@ -8,7 +8,8 @@
 
 namespace vam::io {
 
-/// What a target may be: coverage of the part, 0 to 1, or with --grey a dose or response for every voxel, 0 and more.
+/// What a target may be: coverage of the part, 0 to 1, or with --grey-target a dose or response for every voxel, 0 and
+/// more.
 enum class TargetKind { coverage, grey };
 
 /// Throws Fault::data with file, voxel and remedy: two grids of one name, a level set named target or insert, a

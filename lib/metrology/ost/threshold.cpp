@@ -155,14 +155,14 @@ Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double
     sum += value;
     square += value * value;
   }
-  result.level = sum / points;
-  result.spread = std::sqrt(std::max(0.0, square / points - result.level * result.level));
+  result.isovalue = sum / points;
+  result.spread = std::sqrt(std::max(0.0, square / points - result.isovalue * result.isovalue));
   return result;
 }
 
 Json to_json(const Threshold& t) {
   return {
-      {"level", t.level},
+      {"isovalue", t.isovalue},
       {"spread", t.spread},
       {"diameter_mm", t.diameter_mm},
       {"apparent_diameter_mm", t.apparent_diameter_mm},

@@ -31,7 +31,7 @@ struct OverheadMean {
 /// Threshold from the standard: the mean of the overhead mean projection under the circle of the true diameter, centred
 /// on the circle that the projection itself shows.
 struct Threshold {
-  double level = 0;                 // I_p
+  double isovalue = 0;              // I_p
   double spread = 0;                // standard deviation along the circle
   FittedCircle circle;              // in pixels of the overhead projection, with the true radius
   double diameter_mm = 0;           // true

@@ -52,7 +52,7 @@ MethodEntry bclp_method() {
           "with general band constraint Lp-norm minimization, 2024",
           60,
           true,
-          {"--band", "--response", "--softness", "--power", "--max-intensity"},
+          {"--band", "--resin-response", "--softness", "--power", "--max-intensity"},
           make<Bclp>};
 }
 

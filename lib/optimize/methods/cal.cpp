@@ -103,7 +103,7 @@ MethodEntry cal_method() {
           "Kelly et al., Computed Axial Lithography, 2017, fig 2, and Science 2019, eq 4",
           30,
           false,
-          {"--response", "--softness", "--max-intensity"},
+          {"--resin-response", "--softness", "--max-intensity"},
           make<Cal>};
 }
 

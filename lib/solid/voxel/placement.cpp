@@ -143,7 +143,7 @@ void require_within(const PlacedExtent& insert, double vial_radius_mm, const std
   if (insert.radius_mm <= vial_radius_mm) return;
   throw Error{Fault::data, subject + ": reaches " + format_number(insert.radius_mm, 4) +
                                " mm from the axis, beyond the vial's inner radius of " +
-                               format_number(vial_radius_mm, 4) + " mm; check --unit and --no-center"};
+                               format_number(vial_radius_mm, 4) + " mm; check --unit and --no-centre"};
 }
 
 }  // namespace vam::solid

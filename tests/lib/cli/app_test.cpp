@@ -15,6 +15,13 @@ using namespace vam::cli;
 
 namespace {
 
+int run_app(App& app, std::vector<std::string> words) {
+  words.insert(words.begin(), "vam-demo");
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
+}
+
 struct Tool {
   double voxel_mm = 0.065;
   int angles = 360;
@@ -33,12 +40,7 @@ struct Tool {
     app.choice("--window", window, {"hann", "cosine"}, "Window.").was("--taper");
     app.flag("--half", half, "Half.");
   }
-  int run(std::vector<std::string> words) {
-    words.insert(words.begin(), "vam-demo");
-    std::vector<char*> argv;
-    for (auto& word : words) argv.push_back(word.data());
-    return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
-  }
+  int run(const std::vector<std::string>& words) { return run_app(app, words); }
 };
 
 // What is written to the stream while the work runs.
@@ -118,7 +120,7 @@ namespace {
 
 // A tool that does nothing without a command, or, with `plain`, something.
 struct Stage {
-  std::string chosen, device = "sim:", input = "-";
+  std::string chosen, device = "sim:", input = "-", file;
   double speed = 1, angle = 0;
   bool quick = false;
   App app{Manual{"vam-demo", "shows commands", {}, {}, {}, {}}};
@@ -129,16 +131,20 @@ struct Stage {
     spin.option("--speed", "DEG_S", speed, positive, "Speed.").default_is("stage.speed_deg_s").was("--pace");
     App& move = app.subcommand("move", "go there", chosen);
     move.option("--device", "DEVICE", device, "The stage.").option("--angle", "DEG", angle, any, "Angle.");
+    move.positional("FILE", file, "A file.");
   }
-  int run(std::vector<std::string> words) {
-    words.insert(words.begin(), "vam-demo");
-    std::vector<char*> argv;
-    for (auto& word : words) argv.push_back(word.data());
-    return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
-  }
+  int run(const std::vector<std::string>& words) { return run_app(app, words); }
 };
 
 }  // namespace
+
+TEST_CASE("an operand of a command may have the name of another command") {
+  Stage stage;
+  CHECK(stage.run({"move", "spin", "--angle", "3"}) == 0);
+  CHECK(stage.chosen == "move");
+  CHECK(stage.file == "spin");
+  CHECK(stage.angle == 3);
+}
 
 TEST_CASE("options of a command may stand before or behind it") {
   for (const std::vector<std::string>& words :
@@ -238,6 +244,32 @@ TEST_CASE("a former spelling works as the option does, with one warning") {
   }
   Tool tool;
   CHECK(tool.run({"--taper", "hann", "--window", "hann"}) == 64);
+}
+
+TEST_CASE("a former flag stands for an option and its value") {
+  Tool tool;
+  std::string negative = "clip";
+  tool.app.choice("--negative", negative, {"clip", "keep"}, "Negative values.").was("--keep-negative", "keep");
+  int status = -1;
+  CHECK(written_to(stderr, [&] {
+          status = tool.run({"part.vdb", "--keep-negative"});
+        }) == "vam-demo: --keep-negative is now --negative keep\n");
+  CHECK(status == 0);
+  CHECK(negative == "keep");
+}
+
+TEST_CASE("an operand that was an option takes either spelling") {
+  for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+           {"--from", "turn.exr", "--bands", "3"}, {"--bands=3", "--from=turn.exr"}}) {
+    std::string frames;
+    int bands = 1;
+    App app(Manual{"vam-demo", "shows", {}, {}, {}, {}});
+    app.positional("FRAMES", frames, "Frames.", "--from").option("--bands", "N", bands, any, "Bands.");
+    CHECK(written_to(stderr, [&] { CHECK(run_app(app, words) == 0); }) ==
+          "vam-demo: --from FILE is now the operand FRAMES\n");
+    CHECK(frames == "turn.exr");
+    CHECK(bands == 3);
+  }
 }
 
 TEST_CASE("a former spelling is not shown") {

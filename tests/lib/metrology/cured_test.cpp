@@ -76,11 +76,11 @@ TEST_CASE("the threshold from a noisy standard cylinder reproduces its diameter 
   const Threshold found = gelation_threshold(overhead, pixel_mm, 12);
   CHECK(found.circle.x == doctest::Approx(62.3).epsilon(0.002));
   CHECK(found.circle.y == doctest::Approx(53.8).epsilon(0.002));
-  CHECK(found.level == doctest::Approx(0.45).epsilon(0.05));
+  CHECK(found.isovalue == doctest::Approx(0.45).epsilon(0.05));
   CHECK(found.spread < 0.1);
-  // Where the true profile falls through the level: the diameter that this threshold makes.
+  // Where the true profile falls through the isovalue: the diameter that this threshold makes.
   double r = 0;
-  while (edge(r) > found.level) r += 0.001;
+  while (edge(r) > found.isovalue) r += 0.001;
   CHECK(std::abs(2 * r - 12) < 0.1);
   CHECK(std::abs(found.apparent_diameter_mm - 12) < 0.1);
 }
