@@ -75,7 +75,8 @@ void AttenuatedOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, 
 
 void AttenuatedOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
 
-/// g = e^{mu sqrt(R^2 - t^2)} * (ramp on |k| >= mu) * T_mu f [TM80; physics §5]: weight e^{+mu u} on the way in.
+/// g = e^{mu sqrt(R^2 - t^2)} * (ramp on |k| >= mu) * T_mu f [TM80, CAL19 eq 2; physics §5]: weight e^{+mu u} on the
+/// way in.
 void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   if (correction_ == Correction::exact) {
     tomo::forward(with_alpha(dose_, -dose_.alpha_per_px), objects, sinograms);
@@ -93,7 +94,7 @@ void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> s
 }
 
 /// The projections of a uniform disc are made as if nothing were absorbed; what they give with absorption, relative to
-/// the disc, is divided out of the objects.
+/// the disc, is divided out of the objects [OST22 Methods; physics §5].
 void AttenuatedOperator::divide_by_disc_dose(std::span<Slab> objects) const {
   std::vector<Slab> disc = slabs(1, dose_.nx, dose_.ny);
   const model::Circle circle{dose_.axis_x, dose_.axis_y, std::min(radius_, 0.5 * dose_.columns - 1)};

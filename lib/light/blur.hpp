@@ -10,7 +10,7 @@
 namespace vam::light {
 
 /// Weights {middle, first neighbours, ...} of the discrete Gaussian e^{-t} I_n(t), t = sigma^2 in pixels: the heat
-/// kernel of the lattice (Lindeberg, IEEE PAMI 12, 1990). Its variance is sigma^2 exactly, however narrow it is, and
+/// kernel of the lattice [LIN90]. Its variance is sigma^2 exactly, however narrow it is, and
 /// two in a row are one with the sum of the variances. Cut where less than 1e-9 is left, then normalised.
 [[nodiscard]] std::vector<double> gaussian_weights(double sigma_px);
 

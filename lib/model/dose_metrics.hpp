@@ -21,8 +21,8 @@ inline constexpr float coverage_rounding = 1e-3F;
   return coverage <= coverage_rounding ? Label::void_ : Label::surface;
 }
 
-/// Process window, voxel error rate and their kin. G = part, V = void inside the writable circle, f = dose. Doses keep
-/// the unit they came in; pw and ipdr are divided by max_dose when relative.
+/// Process window, voxel error rate and their kin [OSMO21; physics §7]. G = part, V = void inside the writable circle,
+/// f = dose. Doses keep the unit they came in; pw and ipdr are divided by max_dose when relative.
 struct DoseMetrics {
   std::int64_t part = 0;   // #G
   std::int64_t void_ = 0;  // #V

@@ -1,5 +1,5 @@
-// The instrument: plain structs, units in the names, defaults in place. The defaults are the printer of Orth et al.,
-// "Correcting ray distortion in tomographic additive manufacturing", Opt. Express 2021 [RAY21].
+// The instrument: plain structs, units in the names, defaults in place.
+// The defaults are the printer of [RAY21].
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // Resampling between the ideal parallel-beam ("virtual") sinogram and the columns of a real projector or camera.
-// Sources: [RAY21] Orth et al., Opt. Express 2021, eq 3-7; [OST22] Orth et al., 2022, eq 5-9 (the way back).
+// Sources: [RAY21 eq 3]; the way back [OST22 eq 5, OST22 eq 6, OST22 eq 7, OST22 eq 8, OST22 eq 9; physics §3].
 #pragma once
 
 #include <span>

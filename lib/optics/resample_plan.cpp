@@ -12,7 +12,7 @@ namespace vam::optics {
 
 namespace {
 
-// Tent, or the cubic convolution kernel of Keys (1981) with a = -1/2 (Catmull-Rom: exact for quadratics).
+// Tent, or the cubic convolution kernel of [KEYS81] with a = -1/2 (Catmull-Rom: exact for quadratics).
 double kernel(Interpolation interpolation, double x) {
   x = std::abs(x);
   if (interpolation == Interpolation::linear) return std::max(0.0, 1.0 - x);

@@ -1,6 +1,6 @@
 // Chief rays through the vial in closed form: from a column of the projector (or camera) to a line of the part.
-// Sources: [RAY21] Orth et al., Correcting ray distortion in tomographic additive manufacturing, 2021, eq 4-7 (one
-// shell); Bouguer's invariant n b for any number of concentric shells.
+// Sources: [RAY21 eq 4, RAY21 eq 5, RAY21 eq 6, RAY21 eq 7] for one shell; Bouguer's invariant n b for any number of
+// concentric shells [physics §2].
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct Shell {
 
 /// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
 struct View {
-  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis as the columns see it; empty = telecentric
+  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis for columns [RAY21 eq 2]; empty = telecentric
   double bath_index = 1;          // n_0, what the outermost shell stands in
   double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
   std::vector<Shell> shells;      // outermost first; the last is the resin
@@ -31,7 +31,7 @@ struct ChiefRay {
   bool hits = false;         // false: passes beside the resin or is totally reflected; the rest is 0 then
   double x_v_mm = 0;         // signed offset from the axis in the resin
   double delta_rad = 0;      // angle of the line
-  double transmittance = 0;  // T, unpolarised intensity transmittance of all interfaces [0, 1]
+  double transmittance = 0;  // T, unpolarised intensity transmittance of all interfaces (Fresnel) [0, 1]
   double jacobian = 0;       // J = d x_v / d x_p
   double delta_rate = 0;     // d delta / d x_p in rad/mm
 };

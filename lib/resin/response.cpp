@@ -27,7 +27,7 @@ void require_monotone(const model::ResponseTable& table) {
 }
 
 // Slope at an inner point from its two secants a, b over widths h, k: their weighted harmonic mean, which keeps the
-// cubic inside the monotone region (Fritsch & Butland 1984, as in PCHIP).
+// cubic inside the monotone region ([FB84], as in PCHIP).
 double inner_slope(double a, double b, double h, double k) {
   if (a * b <= 0) return 0;
   const double w1 = 2 * k + h;

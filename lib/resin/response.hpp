@@ -12,7 +12,7 @@
 namespace vam::resin {
 
 /// A monotone curve from grey to intensity, both as fractions of full grey in [0, 1]: a monotone cubic through the
-/// measured points (Fritsch & Carlson, SIAM J. Numer. Anal. 17, 1980), so it never overshoots between them.
+/// measured points [FC80; physics §14.3], so it never overshoots between them.
 class Response {
  public:
   /// A straight line from dark_fraction (what leaks at grey 0) to 1.

@@ -59,7 +59,7 @@ void check(const std::vector<Level>& levels, double noise, const std::string& so
     throw Error{Fault::data, source + ": zero intensity at full grey; check the dark reading"};
 }
 
-// Pool adjacent violators: the non-decreasing means with the least weighted squared distance.
+// Pool adjacent violators: the non-decreasing means with the least weighted squared distance [AYER55; physics §14.3].
 int pool(std::vector<Level>& levels) {
   struct Block {
     double sum;

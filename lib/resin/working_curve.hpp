@@ -1,5 +1,5 @@
-// A resin's working curve: cured thickness = h_a log10(E / E_c), E the exposure at the surface [CURE19 fig 5a; Jacobs,
-// Rapid Prototyping & Manufacturing, 1992].
+// A resin's working curve: cured thickness = h_a log10(E / E_c), E the exposure at the surface [CURE19 fig 5a;
+// JACO92; physics §14.4].
 #pragma once
 
 #include <span>
@@ -38,8 +38,8 @@ struct WorkingCurve {
   std::vector<bool> outlier;        // flagged and kept: the deleted residual is beyond Bonferroni's 5 % bound
 };
 
-/// confidence in (0, 1). E_c by Fieller's theorem (exact for normal errors), D_gel by the delta method on its
-/// logarithm. Throws Fault::data: fewer than three distinct exposures, values not positive, thickness that does not
+/// confidence in (0, 1). E_c by Fieller's theorem [FIE54], exact for normal errors, D_gel by the delta method on
+/// its logarithm. Throws Fault::data: fewer than three distinct exposures, values not positive, thickness that does not
 /// rise.
 [[nodiscard]] WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double confidence = 0.95);
 

@@ -1,5 +1,5 @@
-// How long to print: turns and seconds until the dose of one turn, (mu / Omega) integral I e^{-mu s} dtheta [CAL19 eq
-// 1], adds up to the critical dose [physics §4].
+// How long to print: turns and seconds until the dose of one turn, (mu / Omega) integral I e^{-mu s} dtheta
+// [CAL19 eq 1], adds up to the critical dose [physics §4].
 #pragma once
 
 #include <cstdint>

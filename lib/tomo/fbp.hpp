@@ -16,7 +16,7 @@ namespace vam::tomo {
                                          double attenuation_per_mm = 0);
 
 /// Inverts forward(): images = (pi / angles) * adjoint(filter(sinograms)), for angles over a half or a full turn. With
-/// alpha != 0 (a full turn is needed) it is the inverse of Tretiak & Metz [TM80]: |k| < alpha blocked, weight e^{-alpha
+/// alpha != 0 (a full turn is needed) it is the inverse of [TM80, CAL19 eq 2]: |k| < alpha blocked, weight e^{-alpha
 /// u}. The sinograms are left filtered. spec.alpha_per_px is set from the geometry. Throws Error{Fault::usage}.
 void fbp(const ParallelGeometry& geometry, std::span<Slab> sinograms, std::span<Slab> images, FilterSpec spec = {});
 

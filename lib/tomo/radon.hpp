@@ -1,5 +1,5 @@
 // Parallel-beam projection A and its exact adjoint A* on slabs of 16 slices, by separable trapezoid footprints
-// (Long & Fessler 2010): pixel (i, j) spreads over the at most three detector bins that its shadow covers, with weights
+// [LF10; physics §1]: pixel (i, j) spreads over the at most three detector bins that its shadow covers, with weights
 // that add up to 1 in both directions.
 #pragma once
 
@@ -22,7 +22,7 @@ struct ParallelGeometry {
   double axis_y = 0;
   double angle_start_rad = 0;
   double angle_step_rad = 0;
-  double alpha_per_px = 0;  // exponential Radon transform: weight e^{alpha u} [TM80]; 0 = plain
+  double alpha_per_px = 0;  // exponential Radon transform: weight e^{alpha u} [CAL19 eq 3]; 0 = plain
 };
 
 /// sinogram(t, a) = sum over pixels of w(pixel, t, a) * image(pixel) * e^{alpha u}. Multiply by the voxel size to get

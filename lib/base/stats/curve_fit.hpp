@@ -25,11 +25,11 @@ struct CurveFit {
 /// same number of them.
 using Residuals = std::function<std::vector<double>(const std::vector<double>& parameters)>;
 
-/// Levenberg-Marquardt from `start`, derivatives by central differences of `step`. The covariance is the
-/// heteroscedasticity-consistent HC3 of MacKinnon & White (J. Econometrics 29, 1985), which needs no knowledge of the
-/// noise and errs on the wide side for few readings, widened by Student's t for the degrees of freedom, so that
-/// 2 sigma hold 95 %. Throws Fault::data, beginning with `subject`, when there are not more residuals than parameters,
-/// or the parameters cannot be told apart.
+/// Levenberg-Marquardt [MAR63] from `start`, derivatives by central differences of `step`. The covariance is the
+/// heteroscedasticity-consistent HC3 [MW85; physics §14.1], which needs no knowledge of the noise and errs on the wide
+/// side for few readings, widened by Student's t for the degrees of freedom, so that 2 sigma hold 95 %. Throws
+/// Fault::data, beginning with `subject`, when there are not more residuals than parameters, or the parameters cannot
+/// be told apart.
 [[nodiscard]] CurveFit fit_curve(const Residuals& residuals, std::vector<double> start, const std::vector<double>& step,
                                  const std::string& subject);
 

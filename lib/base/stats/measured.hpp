@@ -1,4 +1,4 @@
-// Measured numbers and what follows from several of them.
+// Measured numbers and what follows from several of them [physics §14.2].
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Where the vial stands in the projector's field: a lit column sweeps across it, and a camera at its side sees
-// fluorescence only while the line crosses resin [RAY21 "Printing procedure", eq 9; physics §10].
+// fluorescence only while the line crosses resin [RAY21 "Printing procedure", RAY21 eq 9; physics §10].
 #pragma once
 
 #include <vector>

@@ -41,7 +41,7 @@ stats::Measured mean_of(const std::vector<double>& readings) {
           static_cast<int>(readings.size())};
 }
 
-// Neighbours that fall become their mean, again and again (Ayer et al. 1955): the nearest curve that never falls.
+// Neighbours that fall become their mean, again and again [AYER55]: the nearest curve that never falls.
 std::vector<stats::Measured> monotone(const std::vector<stats::Measured>& levels) {
   struct Block {
     double sum = 0;

@@ -19,7 +19,7 @@ struct Plane {
   double per_row = 0;
 };
 
-// Otsu's threshold: the split into two classes with the largest variance between them.
+// Otsu's threshold: the split into two classes with the largest variance between them [OTSU79].
 double otsu(const std::vector<float>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   constexpr int bins = 512;

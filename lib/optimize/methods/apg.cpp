@@ -1,5 +1,5 @@
-// Accelerated projected gradient: FISTA (Beck & Teboulle 2009) on the one-sided quadratic loss, with the ramp filter as
-// preconditioner and restarts (O'Donoghue & Candes 2015), from the better of two quick answers.
+// Accelerated projected gradient: FISTA [BT09] on the one-sided quadratic loss, with the ramp filter as preconditioner
+// and restarts [OC15], from the better of two quick answers.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,5 +1,4 @@
-// Band-constraint Lp norm: Li, Toombs, Taylor and Wallin, Tomographic projection optimization for volumetric additive
-// manufacturing with general band constraint Lp-norm minimization, 2024 [BCLP24].
+// Band-constraint Lp norm [BCLP24].
 #include <cmath>
 
 #include "optimize/methods/private/descent.hpp"

@@ -27,8 +27,8 @@ class Cal final : public Method {
     prepare(problem, light, iterate);
   }
 
-  /// x = A* g, s = M(x), g <- max(0, g - lambda filter(A w (s - f))) [CAL19 eq 4], s - f being the slope of the loss of
-  /// losses(). lambda is found by line search: longer while that loss falls, else back and shorter.
+  /// x = A* g, s = M(x), g <- max(0, g - lambda P A w (s - f)) [CAL19 eq 4], P the preconditioner and s - f the slope
+  /// of the loss of losses(). lambda is found by line search: longer while that loss falls, else back and shorter.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
     if (update_.empty()) {
       update_ = iterate.g;
@@ -69,7 +69,7 @@ class Cal final : public Method {
   [[nodiscard]] bool keeps_scale() const override { return true; }
 
  private:
-  /// The line search begins with Newton's step for a resin whose response is the dose: filter is about (A A*)^-1.
+  /// The line search begins with Newton's step for a resin whose response is the dose: P is about (A A*)^-1.
   void prepare(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     enter_bounds(light, largest_light(options_, light), iterate);
     length_ = filled(iterate.g.size(), 1.0F);

@@ -1,4 +1,4 @@
-// Background and dose normalisation of Orth et al. 2022 [OST22 Methods, fig S6].
+// Background and dose normalisation [OST22 Methods, fig S6].
 #include <algorithm>
 
 #include "optimize/methods/method.hpp"

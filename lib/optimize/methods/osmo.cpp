@@ -1,4 +1,4 @@
-// Object-space model optimisation, Rackson et al. 2021 [OSMO21].
+// Object-space model optimisation [OSMO21].
 #include <algorithm>
 #include <limits>
 

@@ -1,4 +1,4 @@
-// Penalty minimisation, Bhattacharya et al. 2021 [PM21].
+// Penalty minimisation [PM21].
 #include <cmath>
 
 #include "optimize/methods/private/descent.hpp"

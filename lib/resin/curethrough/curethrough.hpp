@@ -1,4 +1,6 @@
-// Dose of a continuous (or layer-by-layer) stereolithographic print along one pixel column [CURE19].
+// Dose of a continuous (or layer-by-layer) stereolithographic print along one pixel column [CURE19; physics §9].
+// What the light of one slice adds while it is shown is the integral [CURE19 eq 2] of the rate [CURE19 eq 1], its sum
+// over the slices [CURE19 eq 3], without dimensions [CURE19 eq 4], the recursion of dose_at_nodes() [CURE19 eq 5].
 //
 // Direction, fixed once: slice 0 is printed first and sticks to the platform; light enters through the window on the
 // side of the highest slice, and depth zeta grows from the platform towards the window ([CURE19 fig 1d]: "z = 0 at the

@@ -65,11 +65,12 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Pose& pose, const Surfa
   return pairs;
 }
 
-// Huber's bound: farther points pull with constant force, so that debris turns the pose little. Not lower: to a bound
-// below the print's own growth or shrinkage, opposite faces that both stand out say nothing about where the middle is.
+// The bound of [HUB64]: farther points pull with constant force, so that debris turns the pose little. Not lower: to a
+// bound below the print's own growth or shrinkage, opposite faces that both stand out say nothing about where the
+// middle is.
 double huber_bound(const Pairs& pairs) { return 2.5 * pairs.rms + 1e-12; }
 
-// One Gauss-Newton step of the point-to-plane error (Chen & Medioni 1992), linearised about `centre`: unknowns are
+// One Gauss-Newton step of the point-to-plane error [CM92; physics §13.3], linearised about `centre`: unknowns are
 // rotation vector, shift and relative scale. Returns how far the step moves the farthest point.
 double step(const Pairs& pairs, bool with_scale, Pose& pose) {
   const Vector3d centre = mean_of(pairs.moved);

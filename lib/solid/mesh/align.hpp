@@ -1,4 +1,5 @@
-// Brings a print onto its reference: no start needed, then point-to-plane ICP, optionally with a scale (shrinkage).
+// Brings a print onto its reference: no start needed, then point-to-plane ICP, optionally with a scale (shrinkage)
+// [CM92; physics §13.3].
 #pragma once
 
 #include <array>

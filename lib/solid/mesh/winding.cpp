@@ -13,8 +13,8 @@ Vector3 area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t
 
 Vector3 centroid(const Corners& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
 
-// Solid angles of the triangles seen from a point: tan(angle / 2) = numerator / denominator (Van Oosterom & Strackee
-// 1983). Small half angles are added by multiplying complex numbers, so that a leaf needs one arctangent.
+// Solid angles of the triangles seen from a point: tan(angle / 2) = numerator / denominator [OS83; physics §13.2].
+// Small half angles are added by multiplying complex numbers, so that a leaf needs one arctangent.
 double triangle_angles(const Corners* begin, const Corners* end, const Vector3& point) {
   constexpr double small = 0.75;  // atan(0.75) x 4 triangles stays below pi
   double re = 1;
@@ -91,7 +91,7 @@ WindingNumber::Cluster WindingNumber::merged(const Cluster& a, const Cluster& b)
 }
 
 // Omega = sum of A . grad G with G = -1/r: first order A.r/r^3, second order the derivative of that along the offsets
-// [BAR18 eq 14-15].
+// [BAR18 eq 14, BAR18 eq 15].
 double WindingNumber::solid_angle(std::size_t index, const Vector3& point) const {
   const Cluster& cluster = clusters_[index];
   const Vector3 r = cluster.centre - point;

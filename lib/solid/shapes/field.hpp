@@ -27,8 +27,8 @@ struct Field {
 /// The solid moved by a map. Bounds, radius and ball stay bounds, tight where support_mm() is.
 [[nodiscard]] Field transformed(const Field& field, const Affine& map);
 
-/// Fraction of the unit cube centred at the origin where offset + dot(normal, x) < 0; normal of any length but 0.
-/// Scardovelli & Zaleski, J. Comput. Phys. 164 (2000), eq 3.
+/// Fraction of the unit cube centred at the origin where offset + dot(normal, x) < 0; normal of any length but 0
+/// [SZ00 eq 3; physics §13.1].
 [[nodiscard]] double cube_fraction(double offset, const Point& normal);
 
 /// Fractional coverage, 0...1, of the voxels of slices k0 .. k0 + count - 1: out[((k - k0) * ny + j) * nx + i]. A voxel

@@ -1,4 +1,4 @@
-// Fractional coverage of voxels by a mesh, exact where the mesh is closed.
+// Fractional coverage of voxels by a mesh, exact where the mesh is closed [physics §13.1].
 #pragma once
 
 #include <functional>

@@ -94,7 +94,7 @@ TEST_CASE("A and A* are adjoint with the blur between in the vial too, around an
 
 /// One row of a few columns in one slice makes a narrow beam. Where it goes, how wide it is and what Fresnel leaves of
 /// it is traced; across it the blurred dose is a box times a Gaussian, from slice to slice the lattice's heat kernel
-/// e^-t I_n(t) [Lindeberg 1990].
+/// e^-t I_n(t) [LIN90].
 TEST_CASE("a narrow beam through the vial has, blurred, the profile of light traced by Snell's law") {
   const int size = 256;
   const double sigma_px = 3;

@@ -9,7 +9,7 @@ TEST_CASE("the default printer is that of RAY21") {
   CHECK(*columns_lens_mm(printer.projector) == doctest::Approx(1.8 * 1024 * 0.065));
 }
 
-TEST_CASE("vertical magnification follows OST22 eq S1 and is 1 for a telecentric lens") {
+TEST_CASE("vertical magnification follows [OST22 eq S5] and is 1 for a telecentric lens") {
   Printer printer;
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - 12.7 * (1 - 1 / 1.53) / 119.808));
   printer.projector.telecentric = true;

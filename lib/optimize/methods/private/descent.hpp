@@ -6,7 +6,7 @@
 namespace vam::optimize {
 
 /// g <- clamp(g - alpha A r(A* g), 0, g_max), r the slope of the loss. Each slice has its own alpha: at first Cauchy's,
-/// then Barzilai & Borwein's (1988) <dg, dg> / <dg, A dr> = <dg, dg> / <dx, dr>, which needs no projection of its own.
+/// then that of [BB88], <dg, dg> / <dg, A dr> = <dg, dg> / <dx, dr>, which needs no projection of its own.
 /// A slice whose loss went up goes back and on with a shorter step, so that the loss never rises.
 class Descent : public Method {
  public:

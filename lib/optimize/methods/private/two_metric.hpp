@@ -1,4 +1,4 @@
-// Bounds and a preconditioner together: two-metric projection, Bertsekas 1982.
+// Bounds and a preconditioner together: two-metric projection [BER82; physics §6].
 #pragma once
 
 #include <algorithm>

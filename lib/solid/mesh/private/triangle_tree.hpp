@@ -42,7 +42,7 @@ struct TriangleTree {
 /// The corners of all triangles of a mesh that have an area.
 [[nodiscard]] std::vector<Corners> corners_of(const model::TriangleSoup& mesh);
 
-/// The nearest point of a triangle that has an area (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+/// The nearest point of a triangle that has an area [ERI05 section 5.1.5].
 [[nodiscard]] Vector3 nearest_on(const Corners& triangle, const Vector3& point);
 
 }  // namespace vam::solid
