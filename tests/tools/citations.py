@@ -3,8 +3,10 @@ but not defined, one a line, and fails if there is any.
 
 [physics §n] and [devices §n] are numbered sections, cited in no other form, [formats: heading] is a heading,
 [RAY21 eq 8] is a paper under REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an
-attribute of vam-formats.7. Keys of the printer file and schemas of reports are defined in vam-formats.7. Source paths
-in these pages and in CONTRIBUTING.md exist, and its diagram has every folder of lib/layers.txt."""
+attribute of vam-formats.7. Keys of the printer file, schemas of reports and every literal key of the JSON that the tools
+write are defined in vam-formats.7. Every equation that the pages take from a paper is cited somewhere in lib, every
+paper of the references is cited, and comments cite papers in no other form. Source paths in these pages and in
+CONTRIBUTING.md exist, and its diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
 import sys
@@ -42,12 +44,45 @@ def equations(bracket):
     return found
 
 
+def within(text, start):
+    """The text in the braces that open at start, and its elements."""
+    depth, first, elements, i = 0, start + 1, [], start
+    while i < len(text):
+        if text[i] == '"':
+            i = re.compile(r'(?:[^"\\]|\\.)*"').match(text, i + 1).end() - 1
+        depth += (text[i] in '{([') - (text[i] in '})]')
+        if depth == 0 or (depth == 1 and text[i] == ','):
+            elements.append(text[first:i].strip())
+            first = i + 1
+        if depth == 0:
+            break
+        i += 1
+    return elements
+
+
+def json_keys(text):
+    """Literal keys of the objects that C++ makes: {{"key", value}, ...}, json["key"] = value, and a scan's values. What
+    the guardian is ordered to do is no file."""
+    text = re.sub(r'//[^\n]*', '', text)
+    text = re.sub(r'(?:->add|\bgive)\(\{\{"do".*?\);', '', text, flags=re.S)
+    found = set(re.findall(r'\["(\w+)"\](?=(?:\["\w+"\])*\s*=[^=])|\bfinding\.value\("(\w+)"', text))
+    found = {key for pair in found for key in pair if key}
+    for object_ in re.finditer(r'\{\s*\{"\w+",', text):
+        pairs = [within(e, 0) for e in within(text, object_.start()) if e.startswith('{')]
+        if all(len(pair) == 2 for pair in pairs):  # else a table of something else
+            found |= {pair[0].strip('"') for pair in pairs if re.fullmatch(r'"\w+"', pair[0]) and pair[1][0] != '['}
+    return found
+
+
 physics, formats, devices = page('physics'), page('formats'), page('devices')
 sections = {name: set(re.findall(r'^\.S[hs] "?(\d+(?:\.\d+)?)[. ]', text, re.M))
             for name, text in (('physics', physics), ('devices', devices))}
 guarantees = len(re.findall(r'^\.It$', ''.join(re.findall(r'^\.Sh 9\. GUARANTEES$.*?^\.Sh ', devices, re.M | re.S)), re.M))
 papers = set(re.findall(rf'^\.It ({KEY})$', physics, re.M))
 defined = set().union(*(equations(b) for b in brackets(physics)), set())
+keys = {word for line in re.findall(r'^\..*?\bVa (.*)', formats, re.M)
+        for word in re.split(r' (?:Pq|No|Ns)\b', line)[0].replace(',', ' ').split()}
+keys |= set(re.findall(r'"(\w+)":', formats))
 attributes = set(re.findall(r'^\.It Va (vam:\w+)', formats, re.M))
 faults = []
 
@@ -71,11 +106,14 @@ def check(where, text):
                 faults.append(f'{where}: [{key}] is not among the references of vam-physics(7)')
         for equation in sorted(equations(bracket) - defined):
             faults.append(f'{where}: [{equation}] does not stand in vam-physics(7)')
+    for comment in re.findall(r'(?:^[ \t]*//.*\n)+|//.*', text, re.M):
+        for words in re.findall(r"\w+ et al|[A-Z][\w']+,? \(?(?:18|19|20)\d\d\b(?!-)", joined(comment)):
+            faults.append(f'{where}: "{words}" is to be cited by its key, [RAY21]')
     for name in sorted(set(re.findall(r'\bvam:[a-z_]+\w', text)) - attributes):
         faults.append(f'{where}: the attribute {name} is not defined in vam-formats(7)')
 
 
-used = ''
+used = cited = ''
 for top in ('lib', 'tools', 'tests', 'scripts'):
     for file in sorted((root / top).rglob('*')):
         if not file.is_file() or file.name.startswith('citations.') or '__pycache__' in file.parts:
@@ -84,7 +122,22 @@ for top in ('lib', 'tools', 'tests', 'scripts'):
         check(file.relative_to(root), text)
         if top in ('lib', 'tools', 'scripts'):
             used += text
+        if top == 'lib':
+            cited += joined(text)
+        written = set()
+        if top in ('lib', 'tools') and file.suffix in ('.cpp', '.hpp') and 'Json' in text:
+            written = json_keys(text)
+        elif top == 'scripts' and file.name.startswith('vam-'):  # what they print
+            written = set(re.findall(r'"(\w+)": ?[%["]', text))
+        for key in sorted(written - keys):
+            faults.append(f'{file.relative_to(root)}: the key "{key}" is not defined in vam-formats(7)')
 
+for equation in sorted(defined):
+    if not re.search(rf'{equation}(?!\d)', cited):
+        faults.append(f'man/vam-physics.7: nothing in lib cites [{equation}]')
+for paper in sorted(papers):
+    if not re.search(rf'(?<!\.It )\b{paper}\b', physics + cited):
+        faults.append(f'man/vam-physics.7: nothing cites {paper}')
 for name in sorted(attributes - set(re.findall(r'\bvam:\w+', used))):
     faults.append(f'man/vam-formats.7: nothing writes or reads {name}')
 for name in ('physics', 'formats', 'devices'):

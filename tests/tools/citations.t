@@ -3,7 +3,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 check() { python3 "$VAM_SOURCE/tests/tools/citations.py" "$1"; }
-ok "every citation, attribute, printer key and schema is in the manual" check "$VAM_SOURCE"
+ok "every citation, attribute, printer key, schema and key of a report is in the manual" check "$VAM_SOURCE"
 
 finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the only one
   rm -rf tree
@@ -23,9 +23,16 @@ finds '.RAY21 eq 77. does not stand' '// as in [RAY21 eq 77]'
 finds 'the attribute vam:colour is not defined' 'const char* key = "vam:colour";'
 finds 'has no heading "weather"' '// as it is written [formats: weather]'
 finds "the printer file's projector.colour is missing" '    {"projector", "colour", at<&Printer::projector>},'
+finds 'the key "paint_mm" is not defined' '  Json report{{"turns", 1}, {"paint_mm", 2}};'
+finds 'the key "paint_mm" is not defined' '  Json report; report["repair"]["paint_mm"] = 2;'
+finds 'the key "paint_mm" is not defined' '  finding.value("paint_mm", found, "mm", "fit"); Json facts;'
+finds '"Kelvin, 1887" is to be cited by its key' '// cells of even faces (Kelvin, 1887)'
+finds '"Kelvin et al" is to be cited by its key' '// cells of even faces, Kelvin et al.'
 finds 'the schema vam-paint/1 is missing' 'write_report(path, "vam-paint/1", figures);'
 rm -r tree/lib/resin tree/lib/base/cited.hpp
 check tree >faults
+grep -q 'nothing in lib cites .CURE19 eq 5.' faults
+report $? 'found: an equation that no source cites'
 grep -q 'vam-physics.7: there is no lib/resin/' faults
 report $? 'found: a path that is not there'
 done_testing
