@@ -6,7 +6,7 @@ but not defined, one a line, and fails if there is any.
 attribute of vam-formats.7. Keys of the printer file, schemas of reports and every literal key of the JSON that the tools
 write are defined in vam-formats.7. Every equation that the pages take from a paper is cited somewhere in lib, every
 paper of the references is cited, and comments cite papers in no other form. Source paths in these pages and in
-CONTRIBUTING.md exist, and its diagram has every folder of lib/layers.txt."""
+CONTRIBUTING.md exist, the changes that its recipes show apply, and its diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
 import sys
@@ -148,6 +148,14 @@ guide = re.sub(r'```diff.*?```', '', (root / 'CONTRIBUTING.md').read_text(), fla
 for path in re.findall(r'(?:lib|tools|tests|scripts)/[\w/.-]*\w/?(?=[`,. ])', guide):
     if not (root / path).exists():
         faults.append(f'CONTRIBUTING.md: there is no {path}')
+for change in re.findall(r'^```diff\n(.*?)^```', (root / 'CONTRIBUTING.md').read_text(), re.M | re.S):
+    for name, hunks in re.findall(r'^\+\+\+ b/(\S+)\n(.*?)(?=^--- |\Z)', change, re.M | re.S):
+        path = root / name
+        there = set(path.read_text().splitlines()) if path.exists() else set()
+        lost = {sign: [line[1:] for line in hunks.splitlines() if line[:1] == sign and line[1:] not in there]
+                for sign in ' -+'}
+        for line in lost[' '] or (lost['-'] and lost['+']):  # it may have been applied
+            faults.append(f'CONTRIBUTING.md: a recipe changes "{line}", which is not in {name}')
 for folder in re.findall(r'^([\w/]+):', (root / 'lib/layers.txt').read_text(), re.M):
     if not re.search(rf'(?<![\w/]){folder}(?![\w/])', guide):
         faults.append(f'CONTRIBUTING.md: the diagram of the layers lacks {folder}')
