@@ -15,7 +15,7 @@ namespace vam::light {
 /// where little is absorbed. A and A* are exact in both cases.
 enum class Correction { exact, disc };
 
-/// Light enters at the resin's radius R and has lost e^{-mu s}, s = sqrt(R^2 - t^2) + u, at the point (t, u)
+/// Light enters at the resin's radius R and is e^{-mu s} as strong (Beer-Lambert), s = sqrt(R^2 - t^2) + u, at (t, u)
 /// [CAL19 eq 1; physics §4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an
 /// unknown. Throws Fault::data where e^{-mu R} is too small to divide by: resin that light does not get through.
 void require_translucent(double mu_per_px, double resin_radius_px);

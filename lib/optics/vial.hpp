@@ -1,6 +1,6 @@
 // Chief rays through the vial in closed form: from a column of the projector (or camera) to a line of the part.
 // Sources: [RAY21 eq 4, RAY21 eq 5, RAY21 eq 6, RAY21 eq 7] for one shell; Bouguer's invariant n b for any number of
-// concentric shells [physics §2].
+// concentric shells [physics §2]. [OST22 eq 2, OST22 eq 3, OST22 eq 4] are the same.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct Shell {
 
 /// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
 struct View {
-  std::optional<double> lens_mm;  // D, lens (entrance pupil) to axis for columns [RAY21 eq 2]; empty = telecentric
+  std::optional<double> lens_mm;  // D, lens (pupil) to axis for columns [RAY21 eq 1, RAY21 eq 2]; empty = telecentric
   double bath_index = 1;          // n_0, what the outermost shell stands in
   double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
   std::vector<Shell> shells;      // outermost first; the last is the resin
