@@ -5,10 +5,9 @@
 check() { python3 "$VAM_SOURCE/tests/tools/citations.py" "$1"; }
 ok "every citation, attribute, printer key, schema and key of a report is in the manual" check "$VAM_SOURCE"
 
+mkdir tree
+for part in CONTRIBUTING.md man lib tools scripts tests; do cp -r "$VAM_SOURCE/$part" tree; done
 finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the only one
-  rm -rf tree
-  mkdir -p tree
-  cp -r "$VAM_SOURCE"/CONTRIBUTING.md "$VAM_SOURCE"/man "$VAM_SOURCE"/lib "$VAM_SOURCE"/tools "$VAM_SOURCE"/scripts "$VAM_SOURCE"/tests tree
   printf '%s\n' "$2" >tree/lib/base/cited.hpp
   check tree >faults && report 1 "found: $2" && return
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
