@@ -51,8 +51,9 @@ struct CalibrationRecord {
                                     double utc_s);
 
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
-/// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat). The beam is
-/// for people: it is measured in air. Nothing without calibration.folder. Throws Fault::data with the first objection.
+/// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat),
+/// camera.latency_ms (lag). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
+/// first objection.
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s);
 
 }  // namespace vam::io
