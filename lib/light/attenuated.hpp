@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "light/operator.hpp"
+#include "light/private/inverse.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 
@@ -17,9 +18,7 @@ enum class Correction { exact, disc };
 
 /// Light enters at the resin's radius R and is e^{-mu s} as strong (Beer-Lambert), s = sqrt(R^2 - t^2) + u, at (t, u)
 /// [CAL19 eq 1; physics §4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an
-/// unknown. Throws Fault::data where e^{-mu R} is too small to divide by: resin that light does not get through.
-void require_translucent(double mu_per_px, double resin_radius_px);
-
+/// unknown.
 class AttenuatedOperator final : public Operator {
  public:
   /// mu and R in 1/px and px. Throws Fault::data when e^{mu u} overflows.
@@ -32,15 +31,11 @@ class AttenuatedOperator final : public Operator {
   [[nodiscard]] double row_angle_rad() const override { return std::abs(dose_.angle_step_rad); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
-  void filter(std::span<Slab> sinograms) const override;
-  void precondition(std::span<Slab> sinograms) const override;
+  void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
+  void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
   void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
-  void expand(const Slab& sinogram, Slab& image) const override;
-  void collapse(const Slab& image, Slab& sinogram) const override;
 
  private:
-  void scale_columns(std::span<Slab> sinograms, const std::vector<float>& factor, double gain = 1) const;
-  void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
   void divide_by_disc_dose(std::span<Slab> objects) const;
 
   tomo::ParallelGeometry dose_;  // weight e^{-mu u}
@@ -48,7 +43,9 @@ class AttenuatedOperator final : public Operator {
   Correction correction_;
   std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
   std::vector<float> amplified_;    // 1 / transmitted
-  tomo::Filter ramp_, preconditioner_, exponential_;
+  InverseLight inverse_;
+  InverseLight clear_;  // of resin that does not absorb
+  tomo::Filter exponential_;
 };
 
 }  // namespace vam::light

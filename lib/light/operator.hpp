@@ -47,15 +47,13 @@ class Operator {
   virtual void precondition(std::span<Slab> sinograms) const = 0;
 
   /// sinograms = light, negative in places, whose dose is about the objects: the start of most methods.
-  virtual void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
-    forward(objects, sinograms);
-    filter(sinograms);
-  }
+  virtual void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const;
 
-  /// Unknowns to fluence: dose(r) = angle step * sum over stage angles of the image along the rays.
-  virtual void expand(const Slab& sinogram, Slab& image) const = 0;
+  /// Unknowns to fluence: dose(r) = angle step * sum over stage angles of the image along the rays. As is where the
+  /// image has the shape of the sinogram.
+  virtual void expand(const Slab& sinogram, Slab& image) const;
   /// The way back; collapse(expand(g)) = g.
-  virtual void collapse(const Slab& image, Slab& sinogram) const = 0;
+  virtual void collapse(const Slab& image, Slab& sinogram) const;
 };
 
 }  // namespace vam::light

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "base/per_slice.hpp"
-#include "light/preconditioner.hpp"
 
 namespace vam::light {
 
@@ -28,22 +26,7 @@ ParallelOperator::ParallelOperator(const tomo::ParallelGeometry& turn)
     : turn_(turn),
       rows_(first_half(turn)),
       row_angle_rad_(row_angle(turn)),
-      ramp_(turn.columns, {}),
-      preconditioner_(turn.columns, preconditioner_spec(turn)) {}
-
-/// Filtered back-projection over a full turn is f = (1/2) integral of ramp * p over theta [KS88 eq 36]; a row's value
-/// is its fluence times the angle it stands for.
-void ParallelOperator::apply(const tomo::Filter& filter, std::span<Slab> sinograms) const {
-  const auto gain = static_cast<float>(0.5 * row_angle_rad_);
-  for (Slab& slab : sinograms) filter.apply(slab);
-  for_values(sinograms, [&](std::size_t s, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sinograms[s].values[i] *= gain;
-  });
-}
-
-void ParallelOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
-
-void ParallelOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
+      inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad_) {}
 
 void ParallelOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   tomo::forward(rows_, objects, sinograms);

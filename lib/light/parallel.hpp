@@ -2,7 +2,7 @@
 #pragma once
 
 #include "light/operator.hpp"
-#include "tomo/filter.hpp"
+#include "light/private/inverse.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -21,19 +21,17 @@ class ParallelOperator final : public Operator {
   [[nodiscard]] double row_angle_rad() const override { return row_angle_rad_; }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
-  void filter(std::span<Slab> sinograms) const override;
-  void precondition(std::span<Slab> sinograms) const override;
+  void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
+  void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
   void expand(const Slab& sinogram, Slab& image) const override;
   void collapse(const Slab& image, Slab& sinogram) const override;
 
  private:
-  void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
   [[nodiscard]] bool halved() const { return rows_.angles != turn_.angles; }
   tomo::ParallelGeometry turn_;
   tomo::ParallelGeometry rows_;  // the rows that are unknowns: half a turn when halved
   double row_angle_rad_;         // the angle a row stands for
-  tomo::Filter ramp_;
-  tomo::Filter preconditioner_;
+  InverseLight inverse_;
 };
 
 }  // namespace vam::light

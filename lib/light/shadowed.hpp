@@ -6,7 +6,7 @@
 
 #include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
-#include "tomo/filter.hpp"
+#include "light/private/inverse.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -28,28 +28,31 @@ class ShadowedOperator final : public Operator {
   /// The spans are the pass's slabs from the first on.
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
-  void filter(std::span<Slab> sinograms) const override;
-  void precondition(std::span<Slab> sinograms) const override;
-  void expand(const Slab& sinogram, Slab& image) const override;
-  void collapse(const Slab& image, Slab& sinogram) const override;
+  void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
+  void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
 
  private:
   /// Where a voxel's shadow falls at one angle: columns first, first + 1, ... with weights that add up to 1.
+  static constexpr int most_columns = 4;
   struct Footprint {
     double u;
     int first;
-    float weight[4];
+    float weight[most_columns];
+  };
+  struct Direction {
+    double cosine, sine;
   };
   [[nodiscard]] Footprint footprint(int x, int y, int angle) const;
-  void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
-  [[nodiscard]] float left(int column, double u) const;  // e^{-mu s}
+  /// visit(column, weight, u up to which each slice is lit): the columns that light a voxel, absorption included.
+  template <class Visit>
+  void each_column(const Footprint& footprint, std::size_t slab, int angle, const Visit& visit) const;
 
   tomo::ParallelGeometry turn_;
   double mu_;
   std::vector<double> depth_;  // sqrt(R^2 - t^2) of each column
-  std::vector<double> cosine_, sine_;
+  std::vector<Direction> directions_;
   InsertShadow shadow_;
-  tomo::Filter ramp_, preconditioner_;
+  InverseLight inverse_;  // as without shadows
 };
 
 }  // namespace vam::light

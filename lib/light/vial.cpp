@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "base/per_slice.hpp"
-#include "light/preconditioner.hpp"
 #include "light/tile_light.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -15,12 +13,19 @@ namespace {
 
 constexpr double faint = 0.1;  // of the best column's: grazing rays are not amplified beyond
 
-/// The preconditioner of parallel light that has as many columns and rows.
-tomo::FilterSpec spec_of(const VialRays& rays) {
-  tomo::ParallelGeometry rows;
-  rows.columns = rays.columns();
-  rows.angle_step_rad = std::abs(rays.setup().turn.step_rad);
-  return preconditioner_spec(rows);
+/// Columns are projector pixels here: A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels
+/// and w = T e^{-mu depth}, and a ramp across columns is voxel / (J pitch) times one across voxels, which cancels the J
+/// of J / T [physics §3]: the gain is (1/2) step (voxel / pitch)^2.
+InverseLight inverse_of(const VialRays& rays) {
+  double most = 0;
+  for (int c = 0; c < rays.columns(); ++c) most = std::max(most, rays.transmitted(c));
+  std::vector<float> amplified;
+  for (int c = 0; c < rays.columns(); ++c) {
+    amplified.push_back(static_cast<float>(1 / std::max(rays.transmitted(c), faint * most)));
+  }
+  const double pitches = rays.setup().grid.voxel_mm / rays.setup().projector.pixel_mm;
+  const double step_rad = std::abs(rays.setup().turn.step_rad);
+  return {rays.columns(), step_rad, 0.5 * step_rad * pitches * pitches, std::move(amplified)};
 }
 
 /// Slabs in groups of as many as may share rays: 4, 2 or 1.
@@ -68,11 +73,7 @@ InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
 }  // namespace
 
 VialOperator::VialOperator(const VialSetup& setup, std::span<const Slab> inserts)
-    : rays_(setup),
-      tiles_(TileLight::tiles(rays_)),
-      shadow_(cast(rays_, inserts)),
-      ramp_(rays_.columns(), {}),
-      preconditioner_(rays_.columns(), spec_of(rays_)) {
+    : rays_(setup), tiles_(TileLight::tiles(rays_)), shadow_(cast(rays_, inserts)), inverse_(inverse_of(rays_)) {
   if (!rays_.climbs()) rays_.at_slices(0, 1, level_);
 }
 
@@ -129,33 +130,6 @@ void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> obje
     });
   });
 }
-
-/// A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels and w = T e^{-mu depth}; filtered
-/// back-projection over a full turn is f = (1/2) integral of ramp P f over theta [KS88 eq 36], and a ramp across
-/// columns is voxel / (J pitch) times one across voxels, which cancels the J of J / T [physics §3]: (A A*)^-1 is
-/// about (1/2) step (voxel / pitch)^2 w^-1 ramp w^-1.
-void VialOperator::apply(const tomo::Filter& filter, std::span<Slab> sinograms) const {
-  double most = 0;
-  for (int c = 0; c < rays_.columns(); ++c) most = std::max(most, rays_.transmitted(c));
-  std::vector<float> amplified;
-  for (int c = 0; c < rays_.columns(); ++c) {
-    amplified.push_back(static_cast<float>(1 / std::max(rays_.transmitted(c), faint * most)));
-  }
-  const double pitches = rays_.setup().grid.voxel_mm / rays_.setup().projector.pixel_mm;
-  const auto amplify = [&](double gain) {
-    for_values(sinograms, [&](std::size_t s, std::size_t first, std::size_t last) {
-      float* row = sinograms[s].values.data() + first;
-      for (std::size_t i = 0; i < last - first; ++i) row[i] *= amplified[i / lanes] * static_cast<float>(gain);
-    });
-  };
-  amplify(1);
-  for (Slab& slab : sinograms) filter.apply(slab);
-  amplify(0.5 * row_angle_rad() * pitches * pitches);
-}
-
-void VialOperator::filter(std::span<Slab> sinograms) const { apply(ramp_, sinograms); }
-
-void VialOperator::precondition(std::span<Slab> sinograms) const { apply(preconditioner_, sinograms); }
 
 void VialOperator::expand(const Slab& sinogram, Slab& image) const {
   std::fill(image.values.begin(), image.values.end(), 0.0F);

@@ -4,9 +4,9 @@
 
 #include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
+#include "light/private/inverse.hpp"
 #include "light/tile_light.hpp"
 #include "light/vial_rays.hpp"
-#include "tomo/filter.hpp"
 
 namespace vam::light {
 
@@ -28,21 +28,20 @@ class VialOperator final : public Operator {
   [[nodiscard]] bool couples_slices() const override { return rays_.climbs(); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
-  void filter(std::span<Slab> sinograms) const override;
-  void precondition(std::span<Slab> sinograms) const override;
+  void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
+  void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
   void expand(const Slab& sinogram, Slab& image) const override;
   void collapse(const Slab& image, Slab& sinogram) const override;
 
  private:
   template <class Visit>
   void each_chunk(std::size_t slabs, const Visit& visit) const;
-  void apply(const tomo::Filter& filter, std::span<Slab> sinograms) const;
 
   VialRays rays_;
   std::vector<Tile> tiles_;
   InsertShadow shadow_;
   RayNodes level_;  // of every chunk, where rays do not climb
-  tomo::Filter ramp_, preconditioner_;
+  InverseLight inverse_;
 };
 
 }  // namespace vam::light

@@ -10,7 +10,7 @@
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
-#include "light/attenuated.hpp"
+#include "light/private/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/skew_ray.hpp"
