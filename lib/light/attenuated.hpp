@@ -4,17 +4,13 @@
 #include <cmath>
 #include <vector>
 
+#include "light/beam.hpp"
 #include "light/operator.hpp"
 #include "light/private/inverse.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
-
-/// How the first projections make up for absorption: by the exact inverse of the exponential Radon transform [TM80], or
-/// by dividing the target by the dose that a uniform disc receives [OST22 Methods], which is cheap and nearly as good
-/// where little is absorbed. A and A* are exact in both cases.
-enum class Correction { exact, disc };
 
 /// Light enters at the resin's radius R and is e^{-mu s} as strong (Beer-Lambert), s = sqrt(R^2 - t^2) + u, at (t, u)
 /// [CAL19 eq 1; physics §4]; fluence is that at entry. Both sides of a turn differ, so every stage angle is an

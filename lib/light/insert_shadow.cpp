@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "light/insert.hpp"
 
 namespace vam::light {
 

@@ -22,12 +22,6 @@ struct PixelRay {
   double climb_per_mm = 0;
 };
 
-/// From a half on, coverage keeps light out.
-[[nodiscard]] constexpr bool opaque(float coverage) { return coverage >= 0.5F; }
-
-/// Behind an insert: of evenly lit pixels a voxel gets less than 1 % of the largest dose, with which nothing prints.
-[[nodiscard]] constexpr bool in_shadow(float even_dose, float largest) { return !(even_dose > 0.01F * largest); }
-
 /// Every ray is followed voxel by voxel through the insert, up to the first voxel that is at least half covered: there
 /// its light ends, whatever the insert's form. Rays have no width.
 class InsertShadow {
@@ -71,13 +65,5 @@ class InsertShadow {
   std::vector<Slab> ends_;              // columns x angles, 16 rows
   std::vector<unsigned char> hinders_;  // [column][angle]
 };
-
-/// No dose in the voxels that are at least half insert.
-template <class Voxels>
-void darken(const Voxels& insert, Voxels& dose) {
-  for (std::size_t i = 0; i < dose.values.size(); ++i) {
-    if (opaque(insert.values[i])) dose.values[i] = 0;
-  }
-}
 
 }  // namespace vam::light

@@ -2,73 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 
-#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
 #include "base/text.hpp"
-#include "light/attenuated.hpp"
-#include "light/parallel.hpp"
-#include "light/shadowed.hpp"
-#include "light/vial.hpp"
+#include "light/beam.hpp"
+#include "light/insert.hpp"
 
 namespace vam::light {
 
 namespace {
 
 std::string mm(double value) { return format_number(value) + " mm"; }
-
-void require_one_turn(const model::StackInfo& info) {
-  const double covered_deg = info.height * std::abs(info.angle_step_deg);
-  if (std::abs(covered_deg - 360) < 0.01 * std::abs(info.angle_step_deg)) return;
-  throw Error{Fault::data, "sinogram: its " + std::to_string(info.height) + " angles cover " +
-                               format_number(covered_deg) + " deg; the dose needs exactly one turn"};
-}
-
-tomo::ParallelGeometry parallel_turn(const model::StackInfo& info, const model::Grid& grid) {
-  require_one_turn(info);
-  if (!(std::abs(grid.voxel_mm / info.pixel_mm - 1) < 1e-3)) {
-    throw Error{Fault::data, "sinogram: its columns are " + mm(info.pixel_mm) + " wide, the voxels " +
-                                 mm(grid.voxel_mm) + "; the parallel dose needs them alike"};
-  }
-  return {grid.nx,
-          grid.ny,
-          info.width,
-          info.height,
-          -grid.origin_mm[0] / grid.voxel_mm,
-          -grid.origin_mm[1] / grid.voxel_mm,
-          info.angle_start_deg * rad_per_deg,
-          info.angle_step_deg * rad_per_deg,
-          0};
-}
-
-VialSetup projector_turn(const model::Printer& printer, const optics::AxisAlignment& alignment,
-                         const model::StackInfo& info, const model::Grid& grid) {
-  VialSetup setup;
-  setup.view = optics::projector_view(printer);
-  setup.projector = optics::projector_detector(printer, alignment);
-  if (info.width != setup.projector.columns || !(std::abs(info.pixel_mm / setup.projector.pixel_mm - 1) < 1e-3)) {
-    throw Error{Fault::data, "sinogram: it has " + std::to_string(info.width) + " columns of " + mm(info.pixel_mm) +
-                                 ", the projector " + std::to_string(setup.projector.columns) + " of " +
-                                 mm(setup.projector.pixel_mm) + "; use the printer it was resampled for"};
-  }
-  if (info.row_mm > 0 && !(std::abs(info.row_mm / grid.voxel_mm - 1) < 1e-3)) {
-    throw Error{Fault::data, "sinogram: its slices are " + mm(info.row_mm) + " apart, the voxels " + mm(grid.voxel_mm) +
-                                 ": they are not slices of the volume; make both from the same target"};
-  }
-  setup.turn = optics::turn_of(info);
-  setup.direction = alignment.reverse ? -printer.stage.direction : printer.stage.direction;
-  setup.angle_offset_rad = alignment.angle_offset_rad;
-  setup.absorption_per_mm = printer.resin.absorption_per_mm;
-  setup.grid = grid;
-  setup.z_scale = model::vertical_magnification(printer);
-  setup.rows = info.count;
-  setup.first_row_mm = info.z_start_mm;
-  return setup;
-}
 
 void require_shape(std::span<const Image> images, Shape shape, const std::string& what) {
   for (const Image& image : images) {
@@ -84,17 +31,36 @@ std::vector<Slab> slabs_of(std::span<const Image> images, Shape shape, const std
   return packed(images, shape.width, shape.height);
 }
 
+/// The operator's unknowns for the light that is shown.
+std::vector<Slab> collapsed(std::span<const Image> sinograms, const Operator& light) {
+  const Shape shape = light.sinogram();
+  std::vector<Slab> rows = slabs((sinograms.size() + lanes - 1) / lanes, shape.width, shape.height);
+  for (std::size_t s = 0; s < rows.size(); ++s) {
+    const auto slices = sinograms.subspan(s * lanes, std::min<std::size_t>(lanes, sinograms.size() - s * lanes));
+    light.collapse(slabs_of(slices, light.image(), "sinogram").front(), rows[s]);
+  }
+  return rows;
+}
+
 }  // namespace
 
-/// How to make the light, and the light itself where no insert stands in its way.
+/// The light, and its operator where no insert stands in its way.
 struct Simulation::State {
   model::Grid grid;
   double resin_mm = 0;
-  std::function<std::unique_ptr<Operator>(std::span<const Slab> inserts)> make;
+  Beam beam;
   std::unique_ptr<Operator> clear;
 
-  /// Outside the resin there is nothing that takes a dose.
-  [[nodiscard]] bool resin_at(int i, int j) const { return std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm; }
+  /// One slice of a slab; outside the resin there is nothing that takes a dose.
+  [[nodiscard]] Image in_resin(const Slab& slab, std::size_t lane) const {
+    Image image(grid.nx, grid.ny);
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        if (std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm) image(i, j) = slab.at(i, j)[lane];
+      }
+    }
+    return image;
+  }
 };
 
 Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment,
@@ -102,23 +68,10 @@ Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignmen
     : state_(std::make_unique<State>()) {
   state_->grid = grid;
   state_->resin_mm = model::resin_radius_mm(printer.vial);
-  if (info.space == model::Space::projector) {
-    VialSetup setup = projector_turn(printer, alignment, info, grid);
-    if (climb == Climb::flat) setup.view.rows_lens_mm.reset();
-    state_->make = [setup](std::span<const Slab> inserts) { return std::make_unique<VialOperator>(setup, inserts); };
-  } else if (info.space == model::Space::virtual_) {
-    const auto turn = parallel_turn(info, grid);
-    const double mu = printer.resin.absorption_per_mm * grid.voxel_mm;
-    const double radius = state_->resin_mm / grid.voxel_mm;
-    state_->make = [turn, mu, radius](std::span<const Slab> inserts) -> std::unique_ptr<Operator> {
-      if (!inserts.empty()) return std::make_unique<ShadowedOperator>(turn, mu, radius, inserts);
-      if (mu > 0) return std::make_unique<AttenuatedOperator>(turn, mu, radius);
-      return std::make_unique<ParallelOperator>(turn);
-    };
-  } else {
-    throw Error{Fault::data, "sinogram: a camera sinogram has no dose; a projector or virtual sinogram is required"};
-  }
-  state_->clear = state_->make({});
+  state_->beam = beam_of(printer, alignment, info, grid);
+  auto* vial = std::get_if<VialSetup>(&state_->beam);
+  if (vial != nullptr && climb == Climb::flat) vial->view.rows_lens_mm.reset();
+  state_->clear = make_operator(state_->beam);
 }
 
 Simulation::~Simulation() = default;
@@ -131,29 +84,15 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
   std::unique_ptr<Operator> around;
   if (!inserts.empty()) {
     bodies = slabs_of(inserts, state.clear->object(), "insert");
-    around = state.make(bodies);
+    around = make_operator(state.beam, bodies);
   }
   const Operator& light = around ? *around : *state.clear;
-  std::vector<Slab> rows =
-      slabs((sinograms.size() + lanes - 1) / lanes, light.sinogram().width, light.sinogram().height);
-  for (std::size_t s = 0; s < rows.size(); ++s) {
-    const auto slices = sinograms.subspan(s * lanes, std::min<std::size_t>(lanes, sinograms.size() - s * lanes));
-    light.collapse(slabs_of(slices, light.image(), "sinogram").front(), rows[s]);
-  }
+  const std::vector<Slab> rows = collapsed(sinograms, light);
   std::vector<Slab> out = slabs((doses.size() + lanes - 1) / lanes, state.grid.nx, state.grid.ny);
   light.adjoint(rows, out);
   for (std::size_t s = 0; s < bodies.size(); ++s) darken(bodies[s], out[s]);
-  parallel_for(static_cast<int>(doses.size()), [&](int k) {
-    const auto slice = static_cast<std::size_t>(k);
-    const Slab& slab = out[slice / lanes];
-    Image& image = doses[slice];
-    image = Image(state.grid.nx, state.grid.ny);
-    for (int j = 0; j < state.grid.ny; ++j) {
-      for (int i = 0; i < state.grid.nx; ++i) {
-        if (state.resin_at(i, j)) image(i, j) = slab.at(i, j)[slice % lanes];
-      }
-    }
-  });
+  parallel_for(static_cast<int>(doses.size()),
+               [&](int k) { doses[k] = state.in_resin(out[k / lanes], static_cast<std::size_t>(k % lanes)); });
 }
 
 model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info, std::optional<double> size_mm) {

@@ -5,14 +5,12 @@
 #include <numbers>
 #include <string>
 
-#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "light/private/absorption.hpp"
 #include "model/circle.hpp"
-#include "optics/resample_stack.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {
@@ -20,21 +18,6 @@ namespace vam::light {
 namespace {
 
 constexpr double turn_rad = 2 * std::numbers::pi;
-
-VialSetup checked(VialSetup setup) {
-  const double covered = setup.turn.rows * std::abs(setup.turn.step_rad);
-  if (setup.turn.rows < 1 || !(std::abs(covered - turn_rad) < 0.01 * std::abs(setup.turn.step_rad))) {
-    throw Error{Fault::data, "sinogram: its " + std::to_string(setup.turn.rows) + " angles cover " +
-                                 format_number(covered * deg_per_rad) + " deg; the vial needs exactly one turn"};
-  }
-  const double resin_mm = optics::resin_radius_mm(setup.view);
-  setup.radius_mm = setup.radius_mm > 0 ? std::min(setup.radius_mm, resin_mm) : resin_mm;
-  if (setup.rows == 0) {
-    setup.rows = setup.grid.nz;
-    setup.first_row_mm = setup.grid.z_mm(0);
-  }
-  return setup;
-}
 
 double farthest_mm(const VialSetup& setup) {
   const model::Grid& grid = setup.grid;
@@ -52,22 +35,6 @@ auto pick_aim() {
 }
 
 }  // namespace
-
-VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles, double radius_mm) {
-  VialSetup setup;
-  setup.view = optics::projector_view(printer);
-  setup.projector = optics::projector_detector(printer, {});
-  setup.turn = {angles, 0, turn_rad / angles};
-  setup.direction = printer.stage.direction;
-  setup.absorption_per_mm = printer.resin.absorption_per_mm;
-  setup.grid = grid;
-  setup.radius_mm = radius_mm;
-  setup.z_scale = model::vertical_magnification(printer);
-  const model::Projector& p = printer.projector;
-  setup.lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
-  setup.highest_mm = p.axis_row * p.pixel_mm;
-  return setup;
-}
 
 /// Slabs are looked up whole.
 double VialRays::top_mm() const {
@@ -87,7 +54,7 @@ RayTable::Setup VialRays::table_setup() const {
   return table;
 }
 
-VialRays::VialRays(const VialSetup& setup) : setup_(checked(setup)), table_(table_setup()) {
+VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_setup()) {
   const double resin_mm = optics::resin_radius_mm(setup_.view);
   require_translucent(setup_.absorption_per_mm, resin_mm);
   for (int c = 0; c < setup_.projector.columns; ++c) {

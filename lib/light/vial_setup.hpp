@@ -3,7 +3,8 @@
 
 #include "model/grid.hpp"
 #include "model/printer.hpp"
-#include "optics/resample.hpp"
+#include "model/stack.hpp"
+#include "optics/resample_stack.hpp"
 
 namespace vam::light {
 
@@ -31,8 +32,19 @@ struct VialSetup {
   }
 };
 
-/// The printer's projector and vial, `angles` rows from stage angle 0, a row of light for every slice.
+/// Light that is to be made: `angles` rows from stage angle 0, a row of light for every slice.
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles,
                                    double radius_mm);
+
+/// Light that a projector's stack holds: its rows and angles. Throws Fault::data unless its columns are the printer's
+/// and its slices the grid's.
+[[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
+                                   const model::StackInfo& info, const model::Grid& grid);
+
+/// The setup with numbers for what 0 stands for. Throws Fault::data unless the rows are one turn.
+[[nodiscard]] VialSetup completed(VialSetup setup);
+
+/// Throws Fault::data unless so many angles cover 360 degrees.
+void require_one_turn(int angles, double step_deg);
 
 }  // namespace vam::light

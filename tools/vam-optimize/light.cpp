@@ -4,11 +4,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "light/attenuated.hpp"
+#include "light/beam.hpp"
 #include "light/blur.hpp"
-#include "light/parallel.hpp"
-#include "light/shadowed.hpp"
-#include "light/vial.hpp"
 #include "optics/writable.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
@@ -17,17 +14,16 @@ namespace vam::optimize_tool {
 
 namespace {
 
-double mu_per_px(const Scene& scene, const Options& options) {
-  return options.absorption_model == "none" ? 0 : scene.printer.resin.absorption_per_mm * scene.grid.voxel_mm;
-}
-
-double radius_px(const Scene& scene) { return model::resin_radius_mm(scene.printer.vial) / scene.grid.voxel_mm; }
-
-light::VialSetup vial_setup(const Scene& scene, const Options& options) {
-  const double radius_mm = scene.circle.radius * scene.grid.voxel_mm;
-  light::VialSetup setup = light::vial_setup(scene.printer, scene.grid, scene.turn.angles, radius_mm);
-  if (options.absorption_model == "none") setup.absorption_per_mm = 0;
-  return setup;
+light::Beam beam_of(const Scene& scene, const Options& options) {
+  const double voxel_mm = scene.grid.voxel_mm;
+  model::Printer printer = scene.printer;
+  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  if (options.geometry == "vial") {
+    return light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * voxel_mm);
+  }
+  return light::ParallelBeam{scene.turn, printer.resin.absorption_per_mm * voxel_mm,
+                             model::resin_radius_mm(printer.vial) / voxel_mm,
+                             options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
 }
 
 /// Rows beyond the projector's stay dark.
@@ -49,7 +45,7 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
   const int columns = options.columns.value_or(optimize::columns_for(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
   if (options.geometry == "vial") {
-    require_rows(grid, vial_setup(scene, options));
+    require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options)));
   } else {
     scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
   }
@@ -64,20 +60,8 @@ double blur_px(const Scene& scene, const Options& options) {
   return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
 }
 
-std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options) {
-  if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options));
-  const double mu = mu_per_px(scene, options);
-  if (mu == 0) return std::make_unique<light::ParallelOperator>(scene.turn);
-  const auto correction = options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact;
-  return std::make_unique<light::AttenuatedOperator>(scene.turn, mu, radius_px(scene), correction);
-}
-
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
-  if (options.geometry == "vial") return std::make_unique<light::VialOperator>(vial_setup(scene, options), inserts);
-  if (options.absorption_model == "disc" && mu_per_px(scene, options) > 0) {
-    throw Error{Fault::usage, "--absorption-model disc: does not apply around an insert; use exact"};
-  }
-  return std::make_unique<light::ShadowedOperator>(scene.turn, mu_per_px(scene, options), radius_px(scene), inserts);
+  return light::make_operator(beam_of(scene, options), inserts);
 }
 
 }  // namespace vam::optimize_tool

@@ -28,10 +28,9 @@ struct Scene {
 /// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_px(const Scene& scene, const Options& options);
 
-/// Parallel beam or chief rays of the projector; with the resin's absorption unless neglected.
-[[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options);
-/// The same around opaque inserts, a slab for every slab of the pass.
+/// Parallel beam or chief rays of the projector, with the resin's absorption unless neglected; around opaque inserts if
+/// there are any, a slab for every slab of the pass.
 [[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options,
-                                                          std::span<const Slab> inserts);
+                                                          std::span<const Slab> inserts = {});
 
 }  // namespace vam::optimize_tool

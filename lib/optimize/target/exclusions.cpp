@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "light/insert_shadow.hpp"
+#include "light/insert.hpp"
 
 namespace vam::optimize {
 

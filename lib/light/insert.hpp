@@ -1,0 +1,22 @@
+// Opaque inserts (overprinting): what counts as insert, and what as dark behind it.
+#pragma once
+
+#include <cstddef>
+
+namespace vam::light {
+
+/// From a half on, coverage keeps light out.
+[[nodiscard]] constexpr bool opaque(float coverage) { return coverage >= 0.5F; }
+
+/// Behind an insert: of evenly lit pixels a voxel gets less than 1 % of the largest dose, with which nothing prints.
+[[nodiscard]] constexpr bool in_shadow(float even_dose, float largest) { return !(even_dose > 0.01F * largest); }
+
+/// No dose in the voxels that are at least half insert.
+template <class Voxels>
+void darken(const Voxels& insert, Voxels& dose) {
+  for (std::size_t i = 0; i < dose.values.size(); ++i) {
+    if (opaque(insert.values[i])) dose.values[i] = 0;
+  }
+}
+
+}  // namespace vam::light

@@ -1,0 +1,85 @@
+#include "light/vial_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam::light {
+
+namespace {
+
+std::string mm(double value) { return format_number(value) + " mm"; }
+
+/// What light that is made and light that is judged have in common.
+VialSetup on_the_bench(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::Grid& grid) {
+  VialSetup setup;
+  setup.view = optics::projector_view(printer);
+  setup.projector = optics::projector_detector(printer, alignment);
+  setup.direction = alignment.reverse ? -printer.stage.direction : printer.stage.direction;
+  setup.angle_offset_rad = alignment.angle_offset_rad;
+  setup.absorption_per_mm = printer.resin.absorption_per_mm;
+  setup.grid = grid;
+  setup.z_scale = model::vertical_magnification(printer);
+  return setup;
+}
+
+void require_columns_of(const optics::Detector& projector, const model::StackInfo& info) {
+  if (info.width == projector.columns && std::abs(info.pixel_mm / projector.pixel_mm - 1) < 1e-3) return;
+  throw Error{Fault::data, "sinogram: it has " + std::to_string(info.width) + " columns of " + mm(info.pixel_mm) +
+                               ", the projector " + std::to_string(projector.columns) + " of " +
+                               mm(projector.pixel_mm) + "; use the printer it was resampled for"};
+}
+
+void require_slices_of(const model::Grid& grid, const model::StackInfo& info) {
+  if (!(info.row_mm > 0) || std::abs(info.row_mm / grid.voxel_mm - 1) < 1e-3) return;
+  throw Error{Fault::data, "sinogram: its slices are " + mm(info.row_mm) + " apart, the voxels " + mm(grid.voxel_mm) +
+                               ": they are not slices of the volume; make both from the same target"};
+}
+
+}  // namespace
+
+VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles, double radius_mm) {
+  VialSetup setup = on_the_bench(printer, {}, grid);
+  setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
+  setup.radius_mm = radius_mm;
+  const model::Projector& p = printer.projector;
+  setup.lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
+  setup.highest_mm = p.axis_row * p.pixel_mm;
+  return setup;
+}
+
+VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
+                     const model::StackInfo& info, const model::Grid& grid) {
+  VialSetup setup = on_the_bench(printer, alignment, grid);
+  require_columns_of(setup.projector, info);
+  require_slices_of(grid, info);
+  setup.turn = optics::turn_of(info);
+  setup.rows = info.count;
+  setup.first_row_mm = info.z_start_mm;
+  return setup;
+}
+
+VialSetup completed(VialSetup setup) {
+  require_one_turn(setup.turn.rows, setup.turn.step_rad * deg_per_rad);
+  const double resin_mm = optics::resin_radius_mm(setup.view);
+  setup.radius_mm = setup.radius_mm > 0 ? std::min(setup.radius_mm, resin_mm) : resin_mm;
+  if (setup.rows == 0) {
+    setup.rows = setup.grid.nz;
+    setup.first_row_mm = setup.grid.z_mm(0);
+  }
+  return setup;
+}
+
+void require_one_turn(int angles, double step_deg) {
+  const double covered_deg = angles * std::abs(step_deg);
+  if (angles > 0 && std::abs(covered_deg - 360) < 0.01 * std::abs(step_deg)) return;
+  throw Error{Fault::data, "sinogram: its " + std::to_string(angles) + " angles cover " + format_number(covered_deg) +
+                               " deg; the dose needs exactly one turn"};
+}
+
+}  // namespace vam::light
