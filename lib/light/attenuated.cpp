@@ -1,4 +1,4 @@
-#include "light/attenuated.hpp"
+#include "light/private/attenuated.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,10 +6,10 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "light/attenuated.hpp"
-#include "light/parallel.hpp"
-#include "light/shadowed.hpp"
-#include "light/vial.hpp"
+#include "light/private/attenuated.hpp"
+#include "light/private/parallel.hpp"
+#include "light/private/shadowed.hpp"
+#include "light/private/vial.hpp"
 
 namespace vam::light {
 

@@ -1,4 +1,4 @@
-#include "light/insert_shadow.hpp"
+#include "light/private/insert_shadow.hpp"
 
 #include <algorithm>
 #include <array>

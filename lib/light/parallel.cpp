@@ -1,4 +1,4 @@
-#include "light/parallel.hpp"
+#include "light/private/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>

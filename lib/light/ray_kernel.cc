@@ -1,4 +1,4 @@
-#include "light/ray_kernel.hpp"
+#include "light/private/ray_kernel.hpp"
 
 #include "base/kernel_vector.hpp"
 

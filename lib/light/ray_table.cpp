@@ -1,4 +1,4 @@
-#include "light/ray_table.hpp"
+#include "light/private/ray_table.hpp"
 
 #include <algorithm>
 #include <cmath>

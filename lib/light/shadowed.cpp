@@ -1,4 +1,4 @@
-#include "light/shadowed.hpp"
+#include "light/private/shadowed.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "light/tile_light.hpp"
+#include "light/private/tile_light.hpp"
 
 #include <algorithm>
 #include <cmath>

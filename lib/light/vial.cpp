@@ -1,10 +1,10 @@
-#include "light/vial.hpp"
+#include "light/private/vial.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "light/tile_light.hpp"
+#include "light/private/tile_light.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {

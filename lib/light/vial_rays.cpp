@@ -1,4 +1,4 @@
-#include "light/vial_rays.hpp"
+#include "light/private/vial_rays.hpp"
 
 #include <algorithm>
 #include <cmath>

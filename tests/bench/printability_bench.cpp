@@ -90,10 +90,11 @@ void osmo() {
     for (int k = first; k < std::min(size, first + slices_per_pass); ++k) {
       slices.push_back(vam::oracle::gyroid(size, 3, 0.02 * k, 0.4));
     }
-    const light::ParallelOperator light(parts::turn(size, 360));
+    const auto made = parts::parallel_light(size, 360);
+    const vam::light::Operator& light = *made;
     const auto all = parts::stacked(slices);
     const auto problem =
-        optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, parts::circle(size), {});
+        parts::make_problem(all.data(), static_cast<int>(slices.size()), size, size, parts::circle(size), {});
     const auto method = optimize::make_method("osmo", {});
     optimize::Iterate state;
     method->start(problem, light, state);

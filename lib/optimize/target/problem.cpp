@@ -92,19 +92,4 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
   if (slices.tolerance != nullptr) problem.tolerance.push_back(packed(slices.tolerance));
 }
 
-Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
-                     const Demands& demands, const float* weight, const float* tolerance) {
-  check(demands);
-  Problem problem{.slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
-  const auto pixels = static_cast<std::size_t>(width) * height;
-  const auto from = [&](const float* images, int first) {
-    return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
-  };
-  for (int first = 0; first < count; first += lanes) {
-    append(problem, {from(slices, first), from(weight, first), from(tolerance, first)}, std::min(lanes, count - first),
-           width, height, circle);
-  }
-  return problem;
-}
-
 }  // namespace vam::optimize

@@ -66,10 +66,4 @@ struct Slices {
 /// part; otherwise it stays dark.
 void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
 
-/// `count` row-major slices of width x height, one after the other, and weights and tolerances for them if there are
-/// any. Throws Fault::usage for contradictory thresholds.
-[[nodiscard]] Problem make_problem(const float* slices, int count, int width, int height, const Circle& circle,
-                                   const Demands& demands, const float* weight = nullptr,
-                                   const float* tolerance = nullptr);
-
 }  // namespace vam::optimize

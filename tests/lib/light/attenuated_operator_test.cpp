@@ -5,7 +5,8 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/attenuated.hpp"
+#include "light/private/attenuated.hpp"
+#include "light/private/parallel.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 
@@ -57,7 +58,7 @@ TEST_CASE("1/mu = R: a gyroid keeps its process window when absorption is in the
   const int size = 128;
   const auto part = vam::oracle::gyroid(size, 3, 0.7, 0.5);
   const auto turn = parts::turn(size, 360);
-  const auto problem = make_problem(part.data(), 1, size, size, parts::circle(size), {});
+  const auto problem = parts::make_problem(part.data(), 1, size, size, parts::circle(size), {});
   const ParallelOperator clear(turn);
   const AttenuatedOperator absorbing(turn, 2.0 / size, size / 2.0);
   const auto solve = [&](const Operator& light, Iterate& state) {

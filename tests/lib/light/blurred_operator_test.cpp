@@ -8,6 +8,7 @@
 #include "lib/optimize/parts.hpp"
 #include "light/blur.hpp"
 #include "light/blurred.hpp"
+#include "light/private/parallel.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
@@ -178,7 +179,7 @@ TEST_CASE("a part compensated for the blur prints better under it than one that 
   const std::vector<float> empty(target.size(), 0.0F);
   for (const std::size_t end : {0, 1, 2, 13, 14, 15}) block[end] = empty;
   const auto all = parts::stacked(block);
-  const auto problem = make_problem(all.data(), lanes, size, size, parts::circle(size), {});
+  const auto problem = parts::make_problem(all.data(), lanes, size, size, parts::circle(size), {});
   const ParallelOperator sharp(parts::turn(size, 120));
   const BlurredOperator blurred(sharp, sigma_px, lanes);
   const auto run = [&](const Operator& light) {
@@ -202,7 +203,7 @@ TEST_CASE("slices that share dose decide together, so that doses stay those of t
   std::vector<std::vector<float>> block(5, wheel);
   block[0] = vam::oracle::resolution_target(size);
   const auto all = parts::stacked(block);
-  const auto problem = make_problem(all.data(), 5, size, size, parts::circle(size), {});
+  const auto problem = parts::make_problem(all.data(), 5, size, size, parts::circle(size), {});
   const ParallelOperator sharp(parts::turn(size, 60));
   const BlurredOperator light(sharp, 1, 5);
   for (const std::string name : {"apg", "cal", "pm", "bclp"}) {

@@ -5,8 +5,8 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/attenuated.hpp"
-#include "light/shadowed.hpp"
+#include "light/private/attenuated.hpp"
+#include "light/private/shadowed.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "oracle/part_2d.hpp"
@@ -92,7 +92,7 @@ TEST_CASE("a handle around a screwdriver's shaft: at least 98 % of the voxels ar
   });
   const Slab insert = packed(shaft, size);
   const ShadowedOperator light(parts::turn(size, 180), 0, 64, {&insert, 1});
-  auto problem = make_problem(handle.data(), 1, size, size, parts::circle(size), {});
+  auto problem = parts::make_problem(handle.data(), 1, size, size, parts::circle(size), {});
   exclude(problem, {&insert, 1});
   CHECK(exclude_dark(problem, light) ==
         std::vector<std::int64_t>(lanes, 0));  // round a convex insert everything can be lit from half the angles

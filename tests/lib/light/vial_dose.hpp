@@ -7,7 +7,7 @@
 #include "base/image.hpp"
 #include "base/per_slice.hpp"
 #include "base/slab.hpp"
-#include "light/vial.hpp"
+#include "light/private/vial.hpp"
 
 namespace parts {
 

@@ -1,4 +1,4 @@
-#include "light/vial.hpp"
+#include "light/private/vial.hpp"
 
 #include <doctest/doctest.h>
 

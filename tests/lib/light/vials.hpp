@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "light/vial.hpp"
+#include "light/private/vial.hpp"
 
 namespace parts {
 

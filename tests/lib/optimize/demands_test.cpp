@@ -26,12 +26,13 @@ long count(const Problem& problem, Label label) {
 
 Problem problem_of(const std::vector<float>& slice, const Demands& demands, const std::vector<float>& weight = {},
                    const std::vector<float>& tolerance = {}) {
-  return make_problem(slice.data(), 1, size, size, parts::circle(size), demands,
-                      weight.empty() ? nullptr : weight.data(), tolerance.empty() ? nullptr : tolerance.data());
+  return parts::make_problem(slice.data(), 1, size, size, parts::circle(size), demands,
+                             weight.empty() ? nullptr : weight.data(), tolerance.empty() ? nullptr : tolerance.data());
 }
 
 Iterate solve(const Problem& problem, const std::string& name, int iterations) {
-  const ParallelOperator light(parts::turn(size, 180));
+  const auto made = parts::parallel_light(size, 180);
+  const vam::light::Operator& light = *made;
   Iterate state;
   run_method(*make_method(name, {}), problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
   return state;

@@ -10,7 +10,6 @@
 #include "base/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
-#include "light/shadowed.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/target/schedule.hpp"

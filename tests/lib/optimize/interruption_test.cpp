@@ -11,7 +11,6 @@
 #include "base/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
-#include "light/shadowed.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/target/schedule.hpp"
 #include "oracle/part_2d.hpp"

@@ -67,8 +67,9 @@ TEST_CASE("apg: a binary resolution target prints exactly within 120 projections
 TEST_CASE("apg never makes the loss worse, beats the other methods, and keeps within its bounds") {
   const auto parts = some_parts();
   const auto all = parts::stacked(parts);
-  const ParallelOperator light(parts::turn(size, 360));
-  const auto problem = make_problem(all.data(), 4, size, size, parts::circle(size), {});
+  const auto made = parts::parallel_light(size, 360);
+  const vam::light::Operator& light = *made;
+  const auto problem = parts::make_problem(all.data(), 4, size, size, parts::circle(size), {});
   MethodOptions options;
   options.max_intensity = 3;
   const auto method = make_method("apg", options);
@@ -139,8 +140,9 @@ TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's lo
   options.power = 4;
   const auto fbp = parts::run({part}, 96, 180, "fbp", {}, 0)[0];
   CHECK(parts::run({part}, 96, 180, "pm", options, 20)[0].pw > fbp.pw);
-  const ParallelOperator light(parts::turn(96, 180));
-  const auto problem = make_problem(part.data(), 1, 96, 96, parts::circle(96), {});
+  const auto made = parts::parallel_light(96, 180);
+  const vam::light::Operator& light = *made;
+  const auto problem = parts::make_problem(part.data(), 1, 96, 96, parts::circle(96), {});
   const auto method = make_method("pm", {});  // p = 2: twice the one-sided loss
   Iterate state;
   method->start(problem, light, state);
@@ -156,8 +158,9 @@ TEST_CASE("a steeper norm works as well, and the chosen step never makes pm's lo
 TEST_CASE("osmo's and cal's loss never rises: osmo's by itself, cal's by line search") {
   const auto parts = some_parts();
   const auto all = parts::stacked(parts);
-  const ParallelOperator light(parts::turn(size, 360));
-  const auto problem = make_problem(all.data(), 4, size, size, parts::circle(size), {});
+  const auto made = parts::parallel_light(size, 360);
+  const vam::light::Operator& light = *made;
+  const auto problem = parts::make_problem(all.data(), 4, size, size, parts::circle(size), {});
   const CureCurve& curve = problem.demands.curve;
   // cal's: the integral of M(x) - f, for part less its value at a dose of 2 so that 0 is the least.
   const auto cross = [&](std::size_t s, std::size_t i, float x) {
@@ -191,9 +194,10 @@ TEST_CASE("osmo's and cal's loss never rises: osmo's by itself, cal's by line se
 TEST_CASE("projections are never negative") {
   for (const auto& name : method_names()) {
     CAPTURE(name);
-    const ParallelOperator light(parts::turn(64, 60));
+    const auto made = parts::parallel_light(64, 60);
+    const vam::light::Operator& light = *made;
     const auto part = vam::oracle::wheel(64);
-    const auto problem = make_problem(part.data(), 1, 64, 64, parts::circle(64), {});
+    const auto problem = parts::make_problem(part.data(), 1, 64, 64, parts::circle(64), {});
     Iterate state;
     run_method(*make_method(name, {}), problem, light, {.iterations = 3, .until = {}, .patience = 0}, state);
     CHECK(*std::min_element(state.g[0].values.begin(), state.g[0].values.end()) >= 0.0F);

@@ -1,12 +1,15 @@
 // What the optimisers' tests share: parts side by side in one pass, figures out.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "light/parallel.hpp"
+#include "light/beam.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/run_method.hpp"
 
@@ -19,6 +22,35 @@ inline vam::tomo::ParallelGeometry turn(int size, int angles) {
 
 inline vam::optimize::Circle circle(int size) { return {0.5 * (size - 1), 0.5 * (size - 1), 0.5 * (size - 1)}; }
 
+/// Through clear resin.
+inline std::unique_ptr<vam::light::Operator> parallel_light(int size, int angles) {
+  return vam::light::make_operator(vam::light::ParallelBeam{turn(size, angles)});
+}
+
+/// The same around inserts.
+inline std::unique_ptr<vam::light::Operator> parallel_light(int size, int angles, std::span<const vam::Slab> inserts) {
+  return vam::light::make_operator(vam::light::ParallelBeam{turn(size, angles), 0, 0.5 * size}, inserts);
+}
+
+/// `count` row-major slices of width x height, one after the other, and weights and tolerances for them if there are
+/// any. Throws Fault::usage for contradictory thresholds.
+inline vam::optimize::Problem make_problem(const float* slices, int count, int width, int height,
+                                           const vam::optimize::Circle& circle, const vam::optimize::Demands& demands,
+                                           const float* weight = nullptr, const float* tolerance = nullptr) {
+  check(demands);
+  vam::optimize::Problem problem{
+      .slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
+  const auto pixels = static_cast<std::size_t>(width) * height;
+  const auto from = [&](const float* images, int first) {
+    return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
+  };
+  for (int first = 0; first < count; first += vam::lanes) {
+    append(problem, {from(slices, first), from(weight, first), from(tolerance, first)},
+           std::min(vam::lanes, count - first), width, height, circle);
+  }
+  return problem;
+}
+
 inline std::vector<float> stacked(const std::vector<std::vector<float>>& slices) {
   std::vector<float> all;
   for (const auto& slice : slices) all.insert(all.end(), slice.begin(), slice.end());
@@ -29,13 +61,12 @@ inline std::vector<float> stacked(const std::vector<std::vector<float>>& slices)
 inline std::vector<vam::model::DoseMetrics> run(const std::vector<std::vector<float>>& slices, int size, int angles,
                                                 const std::string& name, const vam::optimize::MethodOptions& options,
                                                 int iterations, const vam::optimize::Demands& demands = {}) {
-  const vam::light::ParallelOperator light(turn(size, angles));
+  const auto light = parallel_light(size, angles);
   const auto all = stacked(slices);
-  const auto problem =
-      vam::optimize::make_problem(all.data(), static_cast<int>(slices.size()), size, size, circle(size), demands);
+  const auto problem = make_problem(all.data(), static_cast<int>(slices.size()), size, size, circle(size), demands);
   const auto method = vam::optimize::make_method(name, options);
   vam::optimize::Iterate state;
-  vam::optimize::run_method(*method, problem, light, {.iterations = iterations, .until = {}, .patience = 0}, state);
+  vam::optimize::run_method(*method, problem, *light, {.iterations = iterations, .until = {}, .patience = 0}, state);
   return vam::optimize::metrics(state.dose, problem);
 }
 

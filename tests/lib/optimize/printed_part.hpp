@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "light/parallel.hpp"
+#include "light/beam.hpp"
 #include "light/simulation.hpp"
-#include "light/vial.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/writable.hpp"
@@ -97,12 +96,11 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   std::unique_ptr<Operator> how;
   if (resampled) {
     const int columns = columns_for(task.circle, part.grid.nx);
-    how = std::make_unique<ParallelOperator>(vam::tomo::full_turn(part.grid, angles, columns));
+    how = make_operator(ParallelBeam{vam::tomo::full_turn(part.grid, angles, columns)});
     light.info.width = columns;
     light.info.pixel_mm = part.grid.voxel_mm;
   } else {
-    how =
-        std::make_unique<VialOperator>(vial_setup(printer, part.grid, angles, task.circle.radius * part.grid.voxel_mm));
+    how = make_operator(vial_setup(printer, part.grid, angles, task.circle.radius * part.grid.voxel_mm));
     light.info.space = vam::model::Space::projector;
     light.info.width = printer.projector.columns;
     light.info.pixel_mm = printer.projector.pixel_mm;

@@ -11,7 +11,6 @@
 #include "base/json.hpp"
 #include "lib/optimize/parts.hpp"
 #include "lib/optimize/volumes.hpp"
-#include "light/shadowed.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/target/schedule.hpp"
 #include "oracle/part_2d.hpp"
@@ -125,9 +124,7 @@ TEST_CASE("an insert that overlaps the part is refused; one that shadows it is r
   task.source.insert = [&](int, int count, float* out) {
     for (int i = 0; i < count; ++i) out = std::copy(ring.begin(), ring.end(), out);
   };
-  task.around = [](std::span<const Slab> inserts) {
-    return std::make_unique<ShadowedOperator>(parts::turn(size, angles), 0, 32, inserts);
-  };
+  task.around = [](std::span<const Slab> inserts) { return parts::parallel_light(size, angles, inserts); };
   const auto result = run({outside}, task);
   CHECK(result.outcome.dark_part_voxels > 250);  // the disc of 314 pixels inside the ring, its rim being surface
   CHECK(result.outcome.dark_part_voxels < 314);
@@ -146,9 +143,7 @@ TEST_CASE("an insert may fill a whole slice") {
       out = std::copy(from.begin(), from.end(), out);
     }
   };
-  task.around = [](std::span<const Slab> inserts) {
-    return std::make_unique<ShadowedOperator>(parts::turn(size, angles), 0, 32, inserts);
-  };
+  task.around = [](std::span<const Slab> inserts) { return parts::parallel_light(size, angles, inserts); };
   const auto result = run({nothing, wheel}, task);
   CHECK(result.outcome.metrics.iou > 0.9);
 }

@@ -24,7 +24,8 @@ struct Written {
 };
 
 inline Written run(const std::vector<std::vector<float>>& slices, VolumeTask task = {}) {
-  const vam::light::ParallelOperator light(parts::turn(size, angles));
+  const auto made = parts::parallel_light(size, angles);
+  const vam::light::Operator& light = *made;
   Written result;
   task.source.slices = static_cast<int>(slices.size());
   if (task.circle.radius == 0) task.circle = parts::circle(size);
@@ -56,7 +57,7 @@ inline std::vector<float> dose_of(const vam::Image& image) {
 inline double quality(const std::vector<std::vector<float>>& slices, const std::vector<vam::Image>& images) {
   double sum = 0;
   for (std::size_t k = 0; k < slices.size(); ++k) {
-    const auto problem = make_problem(slices[k].data(), 1, size, size, parts::circle(size), {});
+    const auto problem = parts::make_problem(slices[k].data(), 1, size, size, parts::circle(size), {});
     Slab dose(size, size);
     vam::pack(dose_of(images[k]).data(), 1, dose);
     const auto m = metrics({&dose, 1}, problem)[0];

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/slab.hpp"
-#include "light/insert_shadow.hpp"
-#include "light/vial_rays.hpp"
+#include "light/private/insert_shadow.hpp"
+#include "light/private/vial_rays.hpp"
 
 namespace vam::light {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
+#include "light/private/insert_shadow.hpp"
 #include "light/private/inverse.hpp"
 #include "tomo/radon.hpp"
 

@@ -2,11 +2,11 @@
 // the vial. What is optimised with it needs no resampling.
 #pragma once
 
-#include "light/insert_shadow.hpp"
 #include "light/operator.hpp"
+#include "light/private/insert_shadow.hpp"
 #include "light/private/inverse.hpp"
-#include "light/tile_light.hpp"
-#include "light/vial_rays.hpp"
+#include "light/private/tile_light.hpp"
+#include "light/private/vial_rays.hpp"
 
 namespace vam::light {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "light/ray_table.hpp"
+#include "light/private/ray_table.hpp"
 #include "light/vial_setup.hpp"
 
 namespace vam::light {

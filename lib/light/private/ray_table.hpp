@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/slab.hpp"
-#include "light/ray_kernel.hpp"
+#include "light/private/ray_kernel.hpp"
 #include "optics/vial.hpp"
 
 namespace vam::light {
