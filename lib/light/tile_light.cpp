@@ -5,6 +5,7 @@
 
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
+#include "light/private/columns_kernel.hpp"
 
 namespace vam::light {
 
@@ -119,8 +120,8 @@ void TileLight::store_voxels(std::span<Slab> objects) const {
 }
 
 /// The taps of all rays, and the columns and rows that they take from.
-void TileLight::aim(const RayNodes& nodes, int angle, std::size_t slabs) {
-  rays_.aim(nodes, tile_->rays.data(), count(), angle, chunk_.width(), taps_);
+void TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
+  rays_.find_taps(nodes, tile_->rays.data(), count(), angle, chunk_.width(), taps_);
   columns_ = taps_.last_cell - taps_.first_cell + taps_.taps;
   if (!rays_.climbs()) {
     row_ = chunk_.slice();
@@ -140,16 +141,16 @@ void TileLight::aim(const RayNodes& nodes, int angle, std::size_t slabs) {
 /// visit(slab's pixel, place in the tile's light, columns, rows): the lit pixels of the tile, slab by slab.
 template <class SlabType, class Visit>
 void TileLight::each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const {
-  const int left = std::max(0, rays_.padding() - taps_.first_cell);  // dark columns
-  const int column = taps_.first_cell + left - rays_.padding();
-  const int count = std::min(columns_ - left, rays_.columns() - column);
+  const int dark = std::max(0, rays_.padding() - taps_.first_cell);  // columns before the first
+  const int column = taps_.first_cell + dark - rays_.padding();
+  const int count = std::min(columns_ - dark, rays_.columns() - column);
   if (count <= 0) return;
   const int first = std::max(row_, lit_first_);
   const int end = std::min(row_ + rows_, lit_end_);
   for (int row = first; row < end;) {
     const int next = std::min(end, (row / lanes + 1) * lanes);
     visit(sinograms[row / lanes].at(column, angle) + row % lanes,
-          product(left, rows_) + static_cast<std::size_t>(row - row_), count, next - row);
+          product(dark, rows_) + static_cast<std::size_t>(row - row_), count, next - row);
     row = next;
   }
 }
@@ -204,7 +205,7 @@ TileColumns TileLight::columns() {
 }
 
 void TileLight::take(const RayNodes& nodes, int angle, std::span<const Slab> sinograms) {
-  aim(nodes, angle, sinograms.size());
+  find_taps(nodes, angle, sinograms.size());
   fetch(angle, sinograms);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
@@ -213,7 +214,7 @@ void TileLight::take(const RayNodes& nodes, int angle, std::span<const Slab> sin
 }
 
 void TileLight::give(const RayNodes& nodes, int angle, std::span<Slab> sinograms) {
-  aim(nodes, angle, sinograms.size());
+  find_taps(nodes, angle, sinograms.size());
   light_.assign(product(columns_, rows_), 0.0F);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);

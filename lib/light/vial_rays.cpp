@@ -26,12 +26,12 @@ double farthest_mm(const VialSetup& setup) {
   return std::min(setup.radius_mm, std::hypot(x, y));
 }
 
-auto pick_aim() {
+auto best_kernel() {
 #if defined(__x86_64__)
-  if (simd_level() == Simd::avx512) return &avx512::aim_rays;
-  if (simd_level() == Simd::avx2) return &avx2::aim_rays;
+  if (simd_level() == Simd::avx512) return &avx512::find_taps;
+  if (simd_level() == Simd::avx2) return &avx2::find_taps;
 #endif
-  return &baseline::aim_rays;
+  return &baseline::find_taps;
 }
 
 }  // namespace
@@ -167,9 +167,9 @@ void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
   table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), nodes);
 }
 
-void VialRays::aim(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
-                   RayTaps& taps) const {
-  static const auto kernel = pick_aim();
+void VialRays::find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
+                         RayTaps& taps) const {
+  static const auto kernel = best_kernel();
   const auto a = static_cast<std::size_t>(angle);
   const RayFrame frame{angle * table_.phases,
                        table_.phases,

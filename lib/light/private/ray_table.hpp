@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/slab.hpp"
-#include "light/private/ray_kernel.hpp"
+#include "light/private/taps_kernel.hpp"
 #include "optics/vial.hpp"
 
 namespace vam::light {
@@ -23,6 +23,15 @@ struct RayScale {
   double columns_per_voxel = 1;  // where d x_p / d r is 1
 };
 
+/// A point of the table: coefficients of 1, z^2 and z^4, z in units of the largest height.
+struct TableNode {
+  using Even = std::array<float, 3>;
+  Even x_p{}, row{1}, strength{}, spacing{1};  // z_p = z * row(z^2)
+  float cosine = 1, sine = 0;                  // of the ray's angle in plan
+};
+
+struct LevelRays;
+
 using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 
 /// Points at lab polar coordinates (r, alpha) of the rays' plan views { t (cos d, sin d) + u (-sin d, cos d) }.
@@ -34,6 +43,7 @@ using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 /// of low rays.
 class RayTable {
  public:
+  static constexpr int most_sheets = 4;  // front; rear: fold, middle, fold
   struct Zone {
     double first_mm = 0;  // radius of row 0
     double pitch_mm = 0;
@@ -72,22 +82,15 @@ class RayTable {
   Zone outer;          // nearest row
 
  private:
-  struct Light;
-  /// Coefficients of 1, z^2 and z^4.
-  using Even = std::array<float, 3>;
-  struct Node {
-    Even x_p{}, row{1}, strength{}, spacing{1};  // z_p = z * row(z^2)
-    float cosine = 1, sine = 0;
-  };
-  void fill_inner_row(const Light& light, int row);
-  void fill_outer_row(const Light& light, int row);
-  [[nodiscard]] Node* row_of(const Zone& zone, int row, int sheet) {
+  void fill_inner_row(const LevelRays& light, int row);
+  void fill_outer_row(const LevelRays& light, int row);
+  [[nodiscard]] TableNode* row_of(const Zone& zone, int row, int sheet) {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
 
   Setup setup_;
   bool climbs_ = false;
-  std::vector<Node> nodes_;  // [zone, row, sheet][direction]
+  std::vector<TableNode> nodes_;  // [zone, row, sheet][direction]
 };
 
 }  // namespace vam::light

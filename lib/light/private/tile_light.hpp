@@ -6,6 +6,7 @@
 
 #include "base/slab.hpp"
 #include "light/private/insert_shadow.hpp"
+#include "light/private/rays_kernel.hpp"
 #include "light/private/vial_rays.hpp"
 
 namespace vam::light {
@@ -50,7 +51,7 @@ class TileLight {
  private:
   template <class Visit>
   void each_voxel(const Visit& visit) const;
-  void aim(const RayNodes& nodes, int angle, std::size_t slabs);
+  void find_taps(const RayNodes& nodes, int angle, std::size_t slabs);
   template <class SlabType, class Visit>
   void each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const;
   void fetch(int angle, std::span<const Slab> sinograms);

@@ -35,13 +35,13 @@ class VialRays {
 
   /// A voxel column as the table knows it: up to four rays a stage angle (beyond the reach; one within it). Returns how
   /// many.
-  static constexpr int most_rays = 4;
+  static constexpr int most_rays = RayTable::most_sheets;
   int find(int i, int j, RaySource* rays) const;
 
   /// The table at the height of the middle of `slices` slices from `first` on.
   void at_slices(int first, int slices, RayNodes& nodes) const;
   /// Where `count` rays, whole blocks of them, take light from at a stage angle.
-  void aim(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices, RayTaps& taps) const;
+  void find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices, RayTaps& taps) const;
 
   /// The rows that may be lit.
   [[nodiscard]] int first_row() const { return first_row_; }

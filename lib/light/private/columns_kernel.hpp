@@ -1,0 +1,24 @@
+// Columns of light from the sinogram to a tile and back, once per instruction set.
+#pragma once
+
+namespace vam::light {
+
+#define VAM_COLUMNS_KERNELS                                                                                          \
+  /* to[c][i] = from[c][i], i < count <= 16, of columns that are 16 floats and `pitch` floats long; soon the columns \
+     `next` floats further on will be wanted */                                                                      \
+  void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to);                     \
+  /* to[c][i] += from[c][i], the other way */                                                                        \
+  void add_columns(const float* from, int columns, int count, int pitch, long next, float* to);
+
+namespace baseline {
+VAM_COLUMNS_KERNELS
+}
+namespace avx2 {
+VAM_COLUMNS_KERNELS
+}
+namespace avx512 {
+VAM_COLUMNS_KERNELS
+}
+#undef VAM_COLUMNS_KERNELS
+
+}  // namespace vam::light

@@ -1,0 +1,23 @@
+// Where the voxels of a tile take light from: what the kernels hand to each other. Slices lie side by side, 16, 32 or
+// 64 of them: a chunk.
+#pragma once
+
+namespace vam::light {
+
+inline constexpr int ray_block = 16;  // rays are looked up in blocks: arrays of them are as long as whole blocks
+inline constexpr int most_blocks = 16;
+
+/// Where the voxels of a tile take light from at one stage angle: columns cell, cell + 1, ... with these weights, and
+/// rows start + zoom * (slice of the chunk).
+struct RayTaps {
+  int* cell;
+  float* start;
+  float* zoom;
+  float* weight;  // [tap][ray], `pitch` rays
+  int pitch;
+  int taps;  // that are not all 0
+  int first_cell, last_cell;
+  float first_row, last_row;  // of any voxel's slices
+};
+
+}  // namespace vam::light
