@@ -29,24 +29,24 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
 }
 
 /// Nothing has improved for `patience` iterations.
-bool lost_patience(Course& course, const Limits& limits, double reached) {
-  if (reached > course.best + limits.least_gain) {
-    course.best = reached;
-    course.best_at = course.iteration;
+bool lost_patience(Standing& standing, const Limits& limits, double reached) {
+  if (reached > standing.best + limits.least_gain) {
+    standing.best = reached;
+    standing.best_at = standing.iteration;
   }
-  return limits.patience > 0 && course.iteration - course.best_at >= limits.patience;
+  return limits.patience > 0 && standing.iteration - standing.best_at >= limits.patience;
 }
 
 /// Why to stop at this iterate; empty = go on.
 std::string look(const Problem& problem, const light::Operator& light, const Limits& limits, const Iterate& state,
-                 Course& course, const Watch& watch) {
-  const bool last = course.iteration == limits.iterations;
+                 Standing& standing, const Watch& watch) {
+  const bool last = standing.iteration == limits.iterations;
   if (watch || !last) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
-    if (watch) watch(course.iteration, slices);
+    if (watch) watch(standing.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
-    if (course.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
-    if (!last && lost_patience(course, limits, mean_merit(slices))) return "no progress";
+    if (standing.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
+    if (!last && lost_patience(standing, limits, mean_merit(slices))) return "no progress";
   }
   return last ? "iterations" : "";
 }
@@ -54,16 +54,16 @@ std::string look(const Problem& problem, const light::Operator& light, const Lim
 }  // namespace
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                   Iterate& state, Course& course, const Watch& watch, const Pause& pause) {
-  bool looked = course.iteration >= 0;
+                   Iterate& state, Standing& standing, const Watch& watch, const Pause& pause) {
+  bool looked = standing.iteration >= 0;
   if (!looked) {
     state.g.empty() ? method.start(problem, light, state) : method.resume(problem, light, state);
-    course.iteration = 0;
+    standing.iteration = 0;
   }
-  for (;; ++course.iteration) {
-    const std::string reason = looked ? "" : look(problem, light, limits, state, course, watch);
-    if (!reason.empty()) return {course.iteration, reason};
-    if (pause && pause()) return {course.iteration, "interrupted"};
+  for (;; ++standing.iteration) {
+    const std::string reason = looked ? "" : look(problem, light, limits, state, standing, watch);
+    if (!reason.empty()) return {standing.iteration, reason};
+    if (pause && pause()) return {standing.iteration, "interrupted"};
     method.step(problem, light, state);
     looked = false;
   }
@@ -71,8 +71,8 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& state) {
-  Course course;
-  return run_method(method, problem, light, limits, state, course);
+  Standing standing;
+  return run_method(method, problem, light, limits, state, standing);
 }
 
 }  // namespace vam::optimize

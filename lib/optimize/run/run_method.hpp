@@ -30,16 +30,16 @@ using Watch = std::function<void(int iteration, const std::vector<model::DoseMet
 using Pause = std::function<bool()>;
 
 /// Where a run stands: after `iteration` complete steps, the best merit so far and when it was reached.
-struct Course {
+struct Standing {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
   int best_at = 0;
 };
 
-/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a course that has begun
+/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a run that has begun
 /// resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                   Iterate& iterate, Course& course, const Watch& watch = {}, const Pause& pause = {});
+                   Iterate& iterate, Standing& standing, const Watch& watch = {}, const Pause& pause = {});
 /// From the start to the end.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate);

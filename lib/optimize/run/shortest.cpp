@@ -5,9 +5,9 @@
 namespace vam::optimize {
 
 void Search::exchange(Archive& archive) {
-  archive(course.iteration);
-  archive(course.best);
-  archive(course.best_at);
+  archive(standing.iteration);
+  archive(standing.best);
+  archive(standing.best_at);
   archive(max_intensity);
   archive(until);
 }
@@ -15,18 +15,18 @@ void Search::exchange(Archive& archive) {
 Outcome run_shortest(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                      const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause) {
   if (raising.factor <= 0 || search.max_intensity <= 0) {
-    return run_method(method, problem, light, limits, state, search.course, watch, pause);
+    return run_method(method, problem, light, limits, state, search.standing, watch, pause);
   }
   if (search.until == 0) search.until = raising.first;
   for (;;) {
     Limits now = limits;
     now.iterations = std::min(limits.iterations, search.until);
-    const Outcome outcome = run_method(method, problem, light, now, state, search.course, watch, pause);
+    const Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
     const bool ended = outcome.reason == "goal" || outcome.reason == "interrupted";
     if (ended || outcome.iterations >= limits.iterations) return outcome;
     search.max_intensity *= raising.factor;
     search.until = outcome.iterations + raising.next;
-    search.course.best_at = outcome.iterations;
+    search.standing.best_at = outcome.iterations;
     method.allow(search.max_intensity);
   }
 }

@@ -23,7 +23,7 @@ inline constexpr Raising shortest_raising{.factor = 1.1, .first = 24, .next = 6}
 
 /// Where a search stands.
 struct Search {
-  Course course;
+  Standing standing;
   double max_intensity = 0;  // in force; 0: none
   int until = 0;             // the iteration up to which it is
   void exchange(Archive& archive);
