@@ -7,9 +7,11 @@
 #include "base/text.hpp"
 #include "light/blurred.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/run/private/even_dose.hpp"
 #include "optimize/run/private/finished.hpp"
 #include "optimize/run/private/ledger.hpp"
 #include "optimize/run/private/pass.hpp"
+#include "optimize/run/private/pass_light.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "optimize/target/schedule.hpp"
 
@@ -34,38 +36,6 @@ Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, ligh
   if (!alone) return make_schedule(digests, -1);
   const std::size_t bytes = static_cast<std::size_t>(image.width) * image.height * sizeof(float);
   return make_schedule(digests, static_cast<int>(std::max<std::size_t>(1, task.keep_bytes / bytes)));
-}
-
-/// Dose inside the circle where every pixel has intensity 1 at every angle.
-struct EvenDose {
-  double mean = 0;
-  double largest = 0;
-};
-
-EvenDose even_dose(const light::Operator& light, const Circle& circle, int slices) {
-  const auto count = static_cast<std::size_t>((slices + lanes - 1) / lanes);
-  Slab even(light.image().width, light.image().height);
-  std::fill(even.values.begin(), even.values.end(), 1.0F);
-  std::vector<Slab> sinograms = slabs(count, light.sinogram().width, light.sinogram().height);
-  for (Slab& slab : sinograms) light.collapse(even, slab);
-  std::vector<Slab> dose = slabs(count, light.object().width, light.object().height);
-  light.adjoint(sinograms, dose);
-  EvenDose result;
-  double sum = 0;
-  std::int64_t voxels = 0;
-  for (int y = 0; y < light.object().height; ++y) {
-    for (int x = 0; x < light.object().width; ++x) {
-      if (!circle.contains(x, y)) continue;
-      for (int k = 0; k < slices; ++k) {
-        const auto here = static_cast<double>(dose[k / lanes].at(x, y)[k % lanes]);
-        sum += here;
-        result.largest = std::max(result.largest, here);
-      }
-      voxels += slices;
-    }
-  }
-  result.mean = voxels > 0 ? sum / static_cast<double>(voxels) : 0;
-  return result;
 }
 
 /// One pass after the other.
@@ -144,36 +114,32 @@ class Run {
   bool run_pass(const Pass& pass, Work& work) {
     auto [problem, inserts] = read_pass(
         pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
-    const light::Operator* light = &light_;
     std::unique_ptr<light::Operator> around;
-    if (!inserts.empty()) light = (around = go_around(problem, pass, inserts, work)).get();
-    const light::Operator& sharp =
-        *light;  // whose rows are the iterate's: fewer than the image's where half a turn is enough
-    std::unique_ptr<light::Operator> blurred;
-    if (task_.blur_px > 0)
-      light = (blurred = std::make_unique<light::BlurredOperator>(*light, task_.blur_px, pass.slices())).get();
-    if (!work.method) {
-      work.search.max_intensity = max_intensity_;
-      work.method = task_.make(max_intensity_);
-      if (task_.initial) {
-        work.state.g = collapse_images(
-            pass, [&](int job) { return task_.initial(slice(job)); }, sharp);
-      }
-    }
+    if (!inserts.empty()) around = go_around(problem, pass, inserts, work);
+    const PassLight light(light_, std::move(around), task_.blur_px, pass.slices());
+    if (!work.method) begin(work, pass, light.sharp());
     Watch watch;
     if (task_.watch) {
       watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
     }
-    const Outcome outcome = run_shortest(*work.method, problem, *light, task_.limits, task_.raising, work.state,
-                                         work.search, watch, task_.interruption.pause);
+    const Outcome outcome = run_shortest(*work.method, problem, light.smeared(), task_.limits, task_.raising,
+                                         work.state, work.search, watch, task_.interruption.pause);
     if (outcome.reason == "interrupted") {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
     }
     ledger_.end(outcome);
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
-    finish(problem, work.state, pass, sharp);
+    finish(problem, work.state, pass, light.sharp());
     return true;
+  }
+
+  void begin(Work& work, const Pass& pass, const light::Operator& light) {
+    work.search.max_intensity = max_intensity_;
+    work.method = task_.make(max_intensity_);
+    if (!task_.initial) return;
+    work.state.g = collapse_images(
+        pass, [&](int job) { return task_.initial(slice(job)); }, light);
   }
 
   /// The operator around these inserts; the problem loses what the inserts fill and hide.

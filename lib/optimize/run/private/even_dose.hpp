@@ -1,0 +1,17 @@
+// What the brightest light there is would do.
+#pragma once
+
+#include "light/operator.hpp"
+#include "model/circle.hpp"
+
+namespace vam::optimize {
+
+/// Dose inside the circle where every pixel has intensity 1 at every angle.
+struct EvenDose {
+  double mean = 0;
+  double largest = 0;
+};
+
+[[nodiscard]] EvenDose even_dose(const light::Operator& light, const model::Circle& circle, int slices);
+
+}  // namespace vam::optimize

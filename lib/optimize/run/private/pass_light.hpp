@@ -1,0 +1,31 @@
+// The operators of a pass, one around the other.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "light/blurred.hpp"
+
+namespace vam::optimize {
+
+/// The light, around inserts if there are any, and what beam and resin smear of it.
+class PassLight {
+ public:
+  /// `clear` must outlive this; `around` takes its place unless it is null. No blur: 0.
+  PassLight(const light::Operator& clear, std::unique_ptr<light::Operator> around, double blur_px, int slices)
+      : around_(std::move(around)), sharp_(around_ ? *around_ : clear) {
+    if (blur_px > 0) blurred_ = std::make_unique<light::BlurredOperator>(sharp_, blur_px, slices);
+  }
+
+  /// Its rows are the iterate's: fewer than the image's where half a turn is enough.
+  [[nodiscard]] const light::Operator& sharp() const { return sharp_; }
+  /// What the dose is optimised with.
+  [[nodiscard]] const light::Operator& smeared() const { return blurred_ ? *blurred_ : sharp_; }
+
+ private:
+  std::unique_ptr<light::Operator> around_;
+  const light::Operator& sharp_;
+  std::unique_ptr<light::Operator> blurred_;
+};
+
+}  // namespace vam::optimize
