@@ -55,6 +55,11 @@ ParallelGeometry full_turn(const model::Grid& grid, int angles, int columns, dou
   return geometry;
 }
 
+int columns_across(const model::Circle& circle, int nx) {
+  const int least = 2 * static_cast<int>(std::ceil(circle.radius + 0.5)) + 1;
+  return least + (least + nx) % 2;
+}
+
 void fbp(const ParallelGeometry& geometry, std::span<Slab> sinograms, std::span<Slab> images, FilterSpec spec) {
   check_turn(geometry);
   spec.alpha_per_px = geometry.alpha_per_px;

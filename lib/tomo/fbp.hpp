@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
@@ -14,6 +15,9 @@ namespace vam::tomo {
 /// bins of angle 0 are the pixels. Throws Error{Fault::usage} unless angles >= 1 and columns >= 0.
 [[nodiscard]] ParallelGeometry full_turn(const model::Grid& grid, int angles, int columns = 0,
                                          double attenuation_per_mm = 0);
+
+/// The fewest columns that see the circle, odd or even as nx, so that the columns of angle 0 are voxels.
+[[nodiscard]] int columns_across(const model::Circle& circle, int nx);
 
 /// Inverts forward(): images = (pi / angles) * adjoint(filter(sinograms)), for angles over a half or a full turn. With
 /// alpha != 0 (a full turn is needed) it is the inverse of [TM80, CAL19 eq 2]: |k| < alpha blocked, weight e^{-alpha

@@ -42,7 +42,7 @@ Scene make_scene(const model::Grid& grid, const model::Printer& printer, const O
   const light::Margin margin = options.geometry == "vial" ? light::lit_margin(printer, grid) : light::Margin{};
   const model::Grid lit = light::extended(grid, margin);
   Scene scene{lit, margin, printer, model::writable_circle(lit, optics::writable_radius_mm(printer)), {}};
-  const int columns = options.columns.value_or(optimize::columns_for(scene.circle, lit.nx));
+  const int columns = options.columns.value_or(tomo::columns_across(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
   if (options.geometry == "vial") {
     require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options)));

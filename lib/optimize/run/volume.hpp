@@ -57,9 +57,6 @@ struct VolumeOutcome {
 /// method that does not keep doses to scale.
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light);
 
-/// The fewest columns that see the circle, odd or even as nx, so that the columns of angle 0 are voxels.
-[[nodiscard]] int columns_for(const Circle& circle, int nx);
-
 /// For --report and --trace.
 [[nodiscard]] Json report(const VolumeOutcome& outcome);
 [[nodiscard]] std::string trace_csv(const std::vector<model::DoseMetrics>& trace);

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <sstream>
 
 #include "base/json.hpp"
@@ -8,11 +7,6 @@
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize {
-
-int columns_for(const Circle& circle, int nx) {
-  const int least = 2 * static_cast<int>(std::ceil(circle.radius + 0.5)) + 1;
-  return least + (least + nx) % 2;
-}
 
 Json report(const VolumeOutcome& outcome) {
   Json json;

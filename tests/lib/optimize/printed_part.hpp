@@ -95,7 +95,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   const auto start = std::chrono::steady_clock::now();
   std::unique_ptr<Operator> how;
   if (resampled) {
-    const int columns = columns_for(task.circle, part.grid.nx);
+    const int columns = vam::tomo::columns_across(task.circle, part.grid.nx);
     how = make_operator(ParallelBeam{vam::tomo::full_turn(part.grid, angles, columns)});
     light.info.width = columns;
     light.info.pixel_mm = part.grid.voxel_mm;
