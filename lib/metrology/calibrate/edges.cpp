@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "base/constants.hpp"
@@ -267,6 +268,64 @@ BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, con
   return out;
 }
 
+void require_camera_beside(double azimuth_deg) {
+  const double from_light_deg = std::acos(std::cos(azimuth_deg * rad_per_deg)) * deg_per_rad;
+  if (from_light_deg >= nearest_deg - 1e-9 && from_light_deg <= furthest_deg + 1e-9) return;
+  throw Error{Fault::data, "sweep: the camera looks at " + format_number(azimuth_deg) +
+                               " degrees to the beam; edges are detected from " + format_number(nearest_deg) + " to " +
+                               format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
+}
+
+/// A band with light between two dark sides.
+struct LitBand {
+  std::size_t band;
+  Steepest first;  // where its edges about are
+};
+
+std::vector<LitBand> lit_bands(const SweepScan& scan) {
+  std::vector<LitBand> lit;
+  for (std::size_t b = 0; b < scan.signal.size() && scan.column.size() >= 2 * count; ++b) {
+    const Steepest edges = steepest(scan.column, scan.signal[b]);
+    if (edges.clear) lit.push_back({b, edges});
+  }
+  if (!lit.empty()) return lit;
+  throw Error{Fault::data, "sweep: no height shows light between two dark sides in " +
+                               std::to_string(scan.column.size()) +
+                               " frames; sweep beyond both edges of the vial, with the camera exposed"};
+}
+
+/// Centre of each lit band, and the means of what they all have.
+void fit_bands(const SweepScan& scan, const EdgeShapes& shapes, std::span<const LitBand> lit, VialEdges& out) {
+  std::vector<stats::Measured> edges;
+  std::vector<stats::Measured> blurs;
+  out.centre_column.resize(scan.signal.size());
+  for (const auto& [b, first] : lit) {
+    const BandEdges band = fit_band(scan, scan.signal[b], shapes, first);
+    out.centre_column[b] = band.centre;
+    edges.push_back(band.edge);
+    blurs.push_back(band.blur);
+  }
+  out.edge_px = stats::weighted_mean(edges);
+  out.blur_px = stats::weighted_mean(blurs);
+}
+
+/// The line through the centres.
+void fit_axis(const SweepScan& scan, double pixel_mm, std::span<const LitBand> lit, VialEdges& out) {
+  if (lit.size() == 1) {
+    out.axis_column = out.centre_column[lit.front().band];
+    return;
+  }
+  std::vector<double> heights;
+  std::vector<stats::Measured> centres;
+  for (const LitBand& one : lit) {
+    heights.push_back(scan.height_mm[one.band]);
+    centres.push_back(out.centre_column[one.band]);
+  }
+  const stats::WeightedLine axis = stats::weighted_line(heights, centres);
+  out.axis_column = axis.at_zero;
+  out.tilt_deg = stats::lean_deg(axis.slope, pixel_mm);
+}
+
 }  // namespace
 
 std::vector<double> band_means(const Image& frame, int bands) {
@@ -287,54 +346,14 @@ std::vector<double> band_means(const Image& frame, int bands) {
 }
 
 VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
-  const double from_light_deg = std::acos(std::cos(printer.camera.azimuth_deg * rad_per_deg)) * deg_per_rad;
-  if (from_light_deg < nearest_deg - 1e-9 || from_light_deg > furthest_deg + 1e-9) {
-    throw Error{Fault::data, "sweep: the camera looks at " + format_number(printer.camera.azimuth_deg) +
-                                 " degrees to the beam; edges are detected from " + format_number(nearest_deg) +
-                                 " to " + format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
-  }
-  std::vector<std::size_t> seen;
-  std::vector<Steepest> first;
-  for (std::size_t b = 0; b < scan.signal.size() && scan.column.size() >= 2 * count; ++b) {
-    const Steepest edges = steepest(scan.column, scan.signal[b]);
-    if (!edges.clear) continue;
-    first.push_back(edges);
-    seen.push_back(b);
-  }
-  if (seen.empty()) {
-    throw Error{Fault::data, "sweep: no height shows light between two dark sides in " +
-                                 std::to_string(scan.column.size()) +
-                                 " frames; sweep beyond both edges of the vial, with the camera exposed"};
-  }
+  require_camera_beside(printer.camera.azimuth_deg);
+  const std::vector<LitBand> lit = lit_bands(scan);
   // How the camera sees an edge depends a little on the radius: the one that the steepest changes give will do.
   model::Printer about = printer;
-  about.vial.radius_mm = radius_mm(printer, 0.5 * (first.front().fall - first.front().rise));
-  const EdgeShapes shapes = edge_shapes(about);
+  about.vial.radius_mm = radius_mm(printer, 0.5 * (lit.front().first.fall - lit.front().first.rise));
   VialEdges out;
-  out.centre_column.resize(scan.signal.size());
-  std::vector<stats::Measured> edges;
-  std::vector<stats::Measured> blurs;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const BandEdges band = fit_band(scan, scan.signal[seen[i]], shapes, first[i]);
-    out.centre_column[seen[i]] = band.centre;
-    edges.push_back(band.edge);
-    blurs.push_back(band.blur);
-  }
-  out.edge_px = stats::weighted_mean(edges);
-  out.blur_px = stats::weighted_mean(blurs);
-  if (seen.size() > 1) {
-    std::vector<double> heights;
-    std::vector<stats::Measured> centres;
-    for (const std::size_t b : seen) {
-      heights.push_back(scan.height_mm[b]);
-      centres.push_back(out.centre_column[b]);
-    }
-    const stats::WeightedLine axis = stats::weighted_line(heights, centres);
-    out.axis_column = axis.at_zero;
-    out.tilt_deg = stats::lean_deg(axis.slope, printer.projector.pixel_mm);
-  } else {
-    out.axis_column = out.centre_column[seen.front()];
-  }
+  fit_bands(scan, edge_shapes(about), lit, out);
+  fit_axis(scan, printer.projector.pixel_mm, lit, out);
   const double edge_px = out.edge_px.value;
   const double slope = radius_mm(printer, edge_px + 1) - radius_mm(printer, edge_px);
   out.radius_mm = {radius_mm(printer, edge_px), slope * out.edge_px.sigma, out.edge_px.n};
