@@ -7,15 +7,12 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
-#include "base/text.hpp"
 #include "light/beam.hpp"
 #include "light/insert.hpp"
 
 namespace vam::light {
 
 namespace {
-
-std::string mm(double value) { return format_number(value) + " mm"; }
 
 void require_shape(std::span<const Image> images, Shape shape, const std::string& what) {
   for (const Image& image : images) {
@@ -93,49 +90,6 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
   for (std::size_t s = 0; s < bodies.size(); ++s) darken(bodies[s], out[s]);
   parallel_for(static_cast<int>(doses.size()),
                [&](int k) { doses[k] = state.in_resin(out[k / lanes], static_cast<std::size_t>(k % lanes)); });
-}
-
-model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info, std::optional<double> size_mm) {
-  const bool parallel = info.space == model::Space::virtual_;
-  const double voxel_mm = info.row_mm > 0 ? info.row_mm : info.pixel_mm;
-  if (parallel && !(std::abs(voxel_mm / info.pixel_mm - 1) < 1e-3)) {
-    throw Error{Fault::data, "sinogram: its slices are " + mm(voxel_mm) + " apart, its columns " + mm(info.pixel_mm) +
-                                 "; voxels are cubes"};
-  }
-  const double all = parallel ? info.width * info.pixel_mm : 2 * optics::reach_mm(optics::projector_view(printer));
-  const int n = std::max(1, static_cast<int>(std::ceil(size_mm.value_or(all) / voxel_mm - 1e-6)));
-  return model::centred_grid(n, n, info.count, voxel_mm, info.z_start_mm);
-}
-
-int first_slice(const model::Grid& grid, const model::StackInfo& info) {
-  const double pitch_mm = info.row_mm > 0 ? info.row_mm : grid.voxel_mm;
-  const double place = (info.z_start_mm - grid.origin_mm[2]) / grid.voxel_mm;
-  const double drift = info.count * std::abs(pitch_mm / grid.voxel_mm - 1);
-  const int first = static_cast<int>(std::lround(place));
-  // A hundredth of a voxel: rounding, not another grid.
-  if (drift > 0.01 || std::abs(place - first) > 0.01 || first < 0 || first + info.count > grid.nz) {
-    throw Error{Fault::data, "sinogram: " + std::to_string(info.count) + " slices of " + mm(pitch_mm) + " from z = " +
-                                 mm(info.z_start_mm) + " are not slices of the volume, " + std::to_string(grid.nz) +
-                                 " of " + mm(grid.voxel_mm) + " from z = " + mm(grid.origin_mm[2])};
-  }
-  return first;
-}
-
-void shine(const DisplayRange& light, std::span<Image> sinograms, LightSeen& seen) {
-  const float scale = light.full_scale ? static_cast<float>(1 / *light.full_scale) : 1.0F;
-  const float least = light.full_scale ? static_cast<float>(light.dark) : 0.0F;
-  for (Image& image : sinograms) {
-    for (float& value : image.values) {
-      seen.peak = std::max(seen.peak, static_cast<double>(value));
-      seen.least = std::min(seen.least, static_cast<double>(value));
-      seen.negative += value < 0 ? 1 : 0;
-      value *= scale;
-      if (light.clip) value = std::max(value, least);
-      if (light.full_scale) value = std::min(value, 1.0F);
-    }
-    seen.values += static_cast<double>(image.size());
-    seen.efficiency.add(image.values);
-  }
 }
 
 }  // namespace vam::light

@@ -2,28 +2,15 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "base/image.hpp"
-#include "model/dose_metrics.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 #include "optics/resample_stack.hpp"
 
 namespace vam::light {
-
-/// The grid of the dose when none is given: cubes as high as a slice, a square around the axis that holds every voxel
-/// that can be lit from all sides (projector) or the detector (virtual), or of size_mm. Throws Fault::data when voxels
-/// could not be cubes.
-[[nodiscard]] model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info,
-                                    std::optional<double> size_mm);
-
-/// The slice of the grid at the first slice of the stack. Throws Fault::data, with both numbers, unless the slices of
-/// the stack are slices of the grid.
-[[nodiscard]] int first_slice(const model::Grid& grid, const model::StackInfo& info);
 
 /// Whether the judge follows rays that climb, or lights each slice with its own row.
 enum class Climb { follow, flat };
@@ -50,24 +37,5 @@ class Simulation {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// What a projector makes of sinogram values.
-struct DisplayRange {
-  bool clip = true;                  // no negative light
-  std::optional<double> full_scale;  // the value shown at full intensity: light is value / this, at most 1
-  double dark = 0;                   // least light, of full; only with full_scale
-};
-
-/// What there was to see in the values.
-struct LightSeen {
-  double peak = 0;
-  model::LightEfficiency efficiency;  // of the light that was left
-  double least = 0;
-  double values = 0;
-  double negative = 0;
-};
-
-/// Turns values into light, in place.
-void shine(const DisplayRange& light, std::span<Image> sinograms, LightSeen& seen);
 
 }  // namespace vam::light

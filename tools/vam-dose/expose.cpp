@@ -9,6 +9,8 @@
 #include "base/text.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "light/blur.hpp"
+#include "light/dose_grid.hpp"
+#include "light/simulation.hpp"
 #include "optics/writable.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"

@@ -6,7 +6,7 @@
 
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
-#include "light/simulation.hpp"
+#include "light/display.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"

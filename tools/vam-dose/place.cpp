@@ -3,8 +3,8 @@
 #include "base/error.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/vdb/gate.hpp"
+#include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
-#include "light/simulation.hpp"
 
 namespace vam::dose_tool {
 

@@ -8,6 +8,8 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "light/display.hpp"
+#include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
 #include "score/exposure.hpp"
 
