@@ -21,10 +21,10 @@ tomo::ParallelGeometry with_alpha(tomo::ParallelGeometry geometry, double alpha_
 AttenuatedOperator::AttenuatedOperator(const tomo::ParallelGeometry& turn, double mu_per_px, double resin_radius_px,
                                        Correction correction)
     : dose_(with_alpha(turn, -mu_per_px)),
-      radius_(resin_radius_px),
+      radius_px_(resin_radius_px),
       correction_(correction),
-      transmitted_(to_the_axis(turn.columns, -mu_per_px, radius_)),
-      amplified_(to_the_axis(turn.columns, mu_per_px, radius_)),
+      transmitted_(to_the_axis(turn.columns, -mu_per_px, radius_px_)),
+      amplified_(to_the_axis(turn.columns, mu_per_px, radius_px_)),
       inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad(), amplified_),
       clear_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad()),
       exponential_(turn.columns, {.alpha_per_px = mu_per_px}) {
@@ -61,7 +61,7 @@ void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> s
 /// the disc, is divided out of the objects [OST22 Methods; physics §5].
 void AttenuatedOperator::divide_by_disc_dose(std::span<Slab> objects) const {
   std::vector<Slab> disc = slabs(1, dose_.nx, dose_.ny);
-  const model::Circle circle{dose_.axis_x, dose_.axis_y, std::min(radius_, 0.5 * dose_.columns - 1)};
+  const model::Circle circle{dose_.axis_x, dose_.axis_y, std::min(radius_px_, 0.5 * dose_.columns - 1)};
   for (int y = 0; y < dose_.ny; ++y) {
     for (int x = 0; x < dose_.nx; ++x) std::fill_n(disc[0].at(x, y), lanes, circle.contains(x, y) ? 1.0F : 0.0F);
   }

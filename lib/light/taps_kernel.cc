@@ -30,8 +30,8 @@ inline void find_node(const RayNode* nodes, const RaySource& source, const RayFr
 
 /// Weights of the columns under the shadows of one block of voxels.
 struct Shadows {
-  alignas(64) float left[ray_block];   // of the shadow's middle: the edge before the first column
-  alignas(64) float inner[ray_block];  // half the width of the trapezoid's top, and of its foot
+  alignas(64) float first_edge[ray_block];  // of the shadow's middle: the edge before the first column
+  alignas(64) float inner[ray_block];       // half the width of the trapezoid's top, and of its foot
   alignas(64) float outer[ray_block];
   alignas(64) float gain[ray_block];
 };
@@ -54,7 +54,7 @@ inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& 
     column = column > frame.last_column ? frame.last_column : column;
     const int first = static_cast<int>(positive(column - shadows.outer[i] + 0.5F));  // what lies before 0 is dark
     taps.cell[e + i] = first;
-    shadows.left[i] = static_cast<float>(first) - 0.5F - column;
+    shadows.first_edge[i] = static_cast<float>(first) - 0.5F - column;
     taps.zoom[e + i] = at[i][2];
     taps.start[e + i] = at[i][1] - frame.half * at[i][2];
   }
@@ -65,7 +65,7 @@ inline void weigh(const Shadows& shadows, int e, const RayTaps& taps) {
   for (int k = 0; k < taps.taps; ++k) {
     float* __restrict weights = taps.weight + static_cast<long>(k) * taps.pitch + e;
     for (int i = 0; i < ray_block; ++i) {
-      const float edge = shadows.left[i] + static_cast<float>(k + 1);
+      const float edge = shadows.first_edge[i] + static_cast<float>(k + 1);
       const float inner = shadows.inner[i];
       const float outer = shadows.outer[i];
       const float t = edge < outer ? edge : outer;

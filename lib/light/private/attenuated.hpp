@@ -35,7 +35,7 @@ class AttenuatedOperator final : public Operator {
   void divide_by_disc_dose(std::span<Slab> objects) const;
 
   tomo::ParallelGeometry dose_;  // weight e^{-mu u}
-  double radius_;
+  double radius_px_;
   Correction correction_;
   std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
   std::vector<float> amplified_;    // 1 / transmitted
