@@ -38,7 +38,7 @@ void run(const cli::App& app, Options& options) {
   settle_response(app, options);
 
   const optimize_tool::Inputs in = optimize_tool::read(options);
-  const Scene scene = make_scene(in.grid(), printer, options);
+  const Scene scene = make_scene(in.target.front(), printer, options);
   const model::StackInfo info = stack_info(scene, in.target.front(), app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
   std::optional<optimize_tool::Initial> initial;

@@ -13,12 +13,14 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
+#include "model/dose_metrics.hpp"
 #include "optics/writable.hpp"
 #include "printer.hpp"
 #include "score/score.hpp"
 #include "vam-score/inputs.hpp"
 #include "vam-score/options.hpp"
 #include "vam-score/print.hpp"
+#include "vam-score/reach.hpp"
 
 namespace {
 
@@ -45,7 +47,8 @@ score::Score score(const Inputs& in, const score::ScoreOptions& how) {
 
 /// A dose in mJ/cm3 has a critical dose and a duration of the print.
 void settle_exposure(score::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
-  how.circle = model::writable_circle(in.target().grid(), optics::writable_radius_mm(printer));
+  const double farthest_mm = io::farthest_mm(in.target(), model::coverage_rounding);
+  how.circle = model::writable_circle(in.target().grid(), optics::judged_radius_mm(printer, farthest_mm));
   if (in.dose().units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
   const auto turns = in.dose().metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan
@@ -59,14 +62,14 @@ void add_light(score::Score& result, const std::string& sinogram) {
 }
 
 void refuse_same_files(const Options& options) {
-  for (const auto& output : {options.print, options.report}) {
+  for (const auto& output : {options.print, options.report, options.reach}) {
     if (output.empty()) continue;
     io::refuse_same_file(options.input, output);
     if (!options.target.empty()) io::refuse_same_file(options.target, output);
   }
 }
 
-void run(Options& options) {
+void run(const cli::App& app, Options& options) {
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, score::Score::names());
   const model::Printer printer = tool::load_printer(options.printer);
@@ -78,6 +81,7 @@ void run(Options& options) {
   score::Score result = score(in, options.how);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
+  if (!options.reach.empty()) score_tool::write_reach(options.reach, in.target().grid(), printer, app);
   if (!options.print.empty()) {
     const double best = result.figure("threshold");
     write_print(options, in.dose(), options.print_at.value_or(options.how.threshold.value_or(best)));
@@ -94,5 +98,5 @@ int main(int argc, char** argv) {
   cli::App app(score_tool::manual());
   Options options;
   declare(app, options);
-  return app.run(argc, argv, [&] { run(options); });
+  return app.run(argc, argv, [&] { run(app, options); });
 }

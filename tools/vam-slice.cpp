@@ -50,10 +50,12 @@ void run(const cli::App& app, Options& options) {
     if (!input.empty()) io::refuse_same_file(input, options.output);
   }
 
-  const solid::Writable room = solid::writable(printer, optics::writable_radius_mm(printer));
+  const solid::Writable room = options.extent == "resin"
+                                   ? solid::whole_resin(printer)
+                                   : solid::writable(printer, optics::writable_radius_mm(printer));
   const solid::Part part = part_of(options, room);
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject);
-  double radius_mm = options.extent == "writable" ? room.radius_mm : 0;
+  double radius_mm = options.extent == "part" ? 0 : room.radius_mm;
   const std::optional<solid::Part> insert = insert_of(options, part, room);
   if (insert) {
     solid::require_within(insert->extent, model::resin_radius_mm(printer.vial), insert->subject);

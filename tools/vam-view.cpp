@@ -6,6 +6,7 @@
 #include "io/stream/file_type.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "model/circle.hpp"
+#include "model/dose_metrics.hpp"
 #include "optics/writable.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
@@ -32,9 +33,10 @@ void show_volume(const Options& options, const io::ImageText& text) {
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const model::Printer printer = tool::load_printer(options.printer);
-    const auto circle = model::writable_circle(volume.grid(), optics::writable_radius_mm(printer));
-    return io::write_png(options.output,
-                         plot::draw(plot::dose_histogram(volume, target_for(options), circle, options.view)), text);
+    const io::SparseVolume target = target_for(options);
+    const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
+    const auto circle = model::writable_circle(volume.grid(), optics::judged_radius_mm(printer, farthest_mm));
+    return io::write_png(options.output, plot::draw(plot::dose_histogram(volume, target, circle, options.view)), text);
   }
   if (options.target.empty()) return write_figure(options, plot::view_volume(volume, nullptr, options.view), text);
   const io::SparseVolume target = target_for(options);

@@ -4,31 +4,29 @@
 #include <cmath>
 
 #include "optics/skew_ray.hpp"
-#include "optics/writable.hpp"
 
 namespace vam::light {
 
 namespace {
 
-/// How much higher a low ray runs at one side of the writable circle than at the other.
-double climb_ratio(const model::Printer& printer) {
+/// How much higher a low ray runs at one side of the circle than at the other.
+double climb_ratio(const model::Printer& printer, double radius_mm) {
   constexpr double low_mm = 1e-3;
   const optics::SkewRay ray = optics::skew_ray(optics::projector_view(printer), 0, low_mm);
-  const double radius = optics::writable_radius_mm(printer);
-  const double near = ray.z_mm(-radius);
-  const double far = ray.z_mm(radius);
+  const double near = ray.z_mm(-radius_mm);
+  const double far = ray.z_mm(radius_mm);
   return std::max(near, far) / std::min(near, far);
 }
 
 }  // namespace
 
-Margin lit_margin(const model::Printer& printer, const model::Grid& grid) {
+Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm) {
   Margin margin;
   const double rim =
       0.5 * grid.voxel_mm + std::min({-grid.x_mm(0), -grid.y_mm(0), grid.x_mm(grid.nx - 1), grid.y_mm(grid.ny - 1)});
   const auto voxels = [&](double mm) { return std::max(0, static_cast<int>(std::ceil(mm / grid.voxel_mm - 1e-6))); };
-  margin.side = voxels(optics::writable_radius_mm(printer) - rim);
-  const double ratio = climb_ratio(printer);
+  margin.side = voxels(radius_mm - rim);
+  const double ratio = climb_ratio(printer, radius_mm);
   if (ratio == 1) return margin;
   const auto spread = [&](double z_mm) { return z_mm > 0 ? z_mm * (ratio - 1) : z_mm * (1 / ratio - 1); };
   margin.above = voxels(spread(grid.z_mm(grid.nz - 1))) + 1;

@@ -13,9 +13,9 @@ struct Margin {
   int above = 0;
 };
 
-/// Up to the writable radius on the sides; below and above as far as the light of the grid's own rows climbs. Nothing
-/// below and above where rays stay level. Throws Fault::data as projector_view does.
-[[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid);
+/// Up to that radius (optics::judged_radius_mm) on the sides; below and above as far as the light of the grid's own
+/// rows climbs. Nothing below and above where rays stay level. Throws Fault::data as projector_view does.
+[[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm);
 
 [[nodiscard]] model::Grid extended(const model::Grid& grid, const Margin& margin);
 

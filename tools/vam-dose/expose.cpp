@@ -11,7 +11,6 @@
 #include "light/blur.hpp"
 #include "light/dose_grid.hpp"
 #include "light/simulation.hpp"
-#include "optics/writable.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -111,7 +110,7 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
   const light::DisplayRange light{projector && options.negative == "clip", options.full_scale,
                                   printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   std::optional<model::Circle> judged;
-  if (options.exposure_plan) judged = model::writable_circle(place.grid, optics::writable_radius_mm(printer));
+  if (options.exposure_plan) judged = model::writable_circle(place.grid, place.judged_mm);
   Insert insert(place.insert, place.target, place.grid, info);
   Sink sink(volume, place, insert, first, judged);
 

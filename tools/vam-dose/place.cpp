@@ -5,6 +5,8 @@
 #include "io/vdb/gate.hpp"
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
+#include "model/dose_metrics.hpp"
+#include "optics/writable.hpp"
 
 namespace vam::dose_tool {
 
@@ -23,10 +25,12 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
   if (options.exposure_plan && place.target == nullptr) {
     throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan requires the part"};
   }
+  const double farthest_mm = place.target != nullptr ? io::farthest_mm(*place.target, model::coverage_rounding) : 0;
+  place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);
   place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
   if (info.space == model::Space::projector) {  // what prints around the part must be seen
     const model::Grid inner = place.grid;
-    place.grid = light::extended(inner, light::lit_margin(printer, inner));
+    place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm));
     for (io::SparseVolume& volume : place.like) {
       if (volume.grid() == inner) volume.extend_to(place.grid);
     }

@@ -17,6 +17,7 @@ struct Place {
   const io::SparseVolume* target = nullptr;
   const io::SparseVolume* insert = nullptr;
   model::Grid grid;
+  double judged_mm = 0;  // radius of the resin that is judged
 };
 
 /// The grid of --like, or one around what the light reaches. Throws Fault::data when an exposure is to be planned

@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "light/beam.hpp"
 #include "light/blur.hpp"
+#include "model/dose_metrics.hpp"
 #include "optics/writable.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
@@ -36,12 +38,30 @@ void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
                                format_number(setup.highest_mm, 4) + " mm; check projector.axis_row"};
 }
 
+/// The radius of the resin to constrain. Where the part reaches beyond the writable radius, that is reported.
+double constrained_mm(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+  const double writable = optics::writable_radius_mm(printer);
+  if (options.geometry != "vial") return writable;
+  const double farthest = io::farthest_mm(target, model::coverage_rounding);
+  const double radius = optics::judged_radius_mm(printer, farthest);
+  if (radius > writable) {
+    warn((options.input == "-" ? "stdin" : options.input) + ": reaches " + format_number(farthest, 4) +
+         " mm from the axis, beyond the writable radius of " + format_number(writable, 4) +
+         " mm; there light comes from " + format_number(100 * optics::lit_fraction(printer, farthest), 3) +
+         " % of the angles");
+  }
+  return radius;
+}
+
 }  // namespace
 
-Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options) {
-  const light::Margin margin = options.geometry == "vial" ? light::lit_margin(printer, grid) : light::Margin{};
+Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+  const model::Grid& grid = target.grid();
+  const double radius_mm = constrained_mm(target, printer, options);
+  const light::Margin margin =
+      options.geometry == "vial" ? light::lit_margin(printer, grid, radius_mm) : light::Margin{};
   const model::Grid lit = light::extended(grid, margin);
-  Scene scene{lit, margin, printer, model::writable_circle(lit, optics::writable_radius_mm(printer)), {}};
+  Scene scene{lit, margin, printer, model::writable_circle(lit, radius_mm), {}};
   const int columns = options.columns.value_or(tomo::columns_across(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
   if (options.geometry == "vial") {

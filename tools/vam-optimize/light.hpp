@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "io/vdb/vdb.hpp"
 #include "light/lit_grid.hpp"
 #include "light/operator.hpp"
 #include "model/circle.hpp"
@@ -23,7 +24,7 @@ struct Scene {
   tomo::ParallelGeometry turn;  // with --geometry parallel
 };
 
-[[nodiscard]] Scene make_scene(const model::Grid& grid, const model::Printer& printer, const Options& options);
+[[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);
 
 /// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_px(const Scene& scene, const Options& options);

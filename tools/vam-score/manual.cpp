@@ -16,6 +16,9 @@ cli::Manual manual() {
        "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
        "also determine the exposure: the minimum number of whole turns, their duration, and the fraction of full "
        "intensity that puts the critical dose in the middle of the process window.",
+       "V ends at the writable radius, or at the resin's edge for a part that reaches beyond (vam-slice --extent "
+       "resin). "
+       "There light comes from some stage angles only; --reach writes the fraction for every voxel.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
        "With --require the exit status is 1 if a condition does not hold, so that a Makefile can reject a part that "
        "will not print."},

@@ -18,6 +18,8 @@ void declare(cli::App& app, Options& options) {
   app.option("--trim", "ALPHA", options.how.trim, {0, 0.999}, "Fraction trimmed from both tails together.");
   app.flag("--surface", options.how.surface, "Score surface voxels, too: as part when at least half covered.");
   app.flag("--absolute", options.how.absolute, "PW and IPDR in units of the dose.");
+  app.option("--reach", "FILE", options.reach,
+             "Write a volume (OpenVDB grid reach): the fraction of stage angles from which each voxel is lit.");
   app.group("Print");
   app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print");
   app.choice("--ply-as", options.print_as, {"mesh", "points"}, "Its surface, or its voxels coloured by dose.")

@@ -17,6 +17,7 @@ struct Options {
   std::string sinogram;
   std::string require;
   std::string report;
+  std::string reach;
   std::string print;
   std::string print_as = "mesh";
   std::optional<double> print_at;

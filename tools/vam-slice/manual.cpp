@@ -20,7 +20,11 @@ cli::Manual manual() {
        "the median decides. A surface that encloses no volume is an error.",
        "The vial reduces the image of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. 2022). "
        "The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the print "
-       "has its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z."},
+       "has its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z.",
+       "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that reaches beyond "
+       "is "
+       "refused, unless --extent resin is given: vam-optimize then uses the rays there are and constrains all of the "
+       "resin. vam-score --reach shows from how many angles each voxel is lit."},
       {{"The gyroid of Orth et al. 2022, cell 7 mm, sheet 1 mm, in a cylinder of 14 mm x 10 mm:",
         "vam-slice --shape gyroid -o gyroid.vdb"},
        {"The disc grid of Orth et al. 2021 on a coarser grid, with a report:",

@@ -21,8 +21,10 @@ void declare(cli::App& app, Options& options) {
              "Inside test: exact, for closed meshes; by vote, for meshes with holes; or chosen by the mesh.");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
   app.default_is("projector.pixel_mm");
-  app.choice("--extent", options.extent, {"part", "writable"},
-             "Size of the volume in x and y: bounding circle of the part, or the whole writable circle.");
+  app.choice(
+      "--extent", options.extent, {"part", "writable", "resin"},
+      "Size of the volume in x and y: bounding circle of the part, the whole writable circle, or all of the resin. "
+      "resin: the part may reach beyond the writable radius, where light comes from some angles only.");
   app.group("Placement, applied in this order");
   app.choice("--unit", options.unit, {"mm", "cm", "m", "in", "um"}, "Unit of the file's coordinates.");
   app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
@@ -55,6 +57,9 @@ void check(const cli::App& app, const Options& options) {
   }
   if (options.placement.fit_writable && options.no_centre) {
     throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-centre"};
+  }
+  if (options.placement.fit_writable && options.extent == "resin") {
+    throw Error{Fault::usage, "--fit-writable: the part ends at the writable radius; omit --extent resin"};
   }
   if (!options.insert.empty() && !options.insert_shape.empty()) {
     throw Error{Fault::usage, "--insert-shape: give either --insert or --insert-shape"};

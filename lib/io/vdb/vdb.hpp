@@ -46,6 +46,10 @@ class SparseVolume {
   std::unique_ptr<State> state_;
 };
 
+/// Distance from the axis x = y = 0 to the farthest centre of a voxel whose value is above that, in mm; -1 where none
+/// is.
+[[nodiscard]] double farthest_mm(const SparseVolume& volume, float above);
+
 /// All float grids of a file or of the archives on stdin ("-"). Throws Error: no_input, data (not VDB, truncated, not
 /// float, non-uniform or rotated transform, NaN values), io.
 std::vector<SparseVolume> read_volumes(const std::string& path);

@@ -53,8 +53,12 @@ void require_radius(double reach_mm, const Writable& room, double voxel_mm, cons
   const auto both = [&](double mm) {
     return format_number(mm, 4) + " mm (" + format_number(mm / voxel_mm, 4) + " voxels)";
   };
-  throw Error{Fault::data, what + " " + both(reach_mm) + " from the axis, beyond the writable radius of " +
-                               both(room.radius_mm) + "; --fit-writable shrinks it"};
+  const std::string far = what + " " + both(reach_mm) + " from the axis, beyond the ";
+  if (!room.from_all_sides)
+    throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; scale it down"};
+  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) +
+                               "; --fit-writable shrinks it, --extent resin allows it as far as light comes from some "
+                               "angles"};
 }
 
 }  // namespace
@@ -64,6 +68,12 @@ Writable writable(const model::Printer& printer, double radius_mm) {
   // Rows are numbered downwards; z is up. Row r is centred at z = (axis_row - r) * pixel_mm.
   return {radius_mm, (projector.axis_row - (projector.rows - 0.5)) * projector.pixel_mm,
           (projector.axis_row + 0.5) * projector.pixel_mm};
+}
+
+Writable whole_resin(const model::Printer& printer) {
+  Writable resin = writable(printer, model::resin_radius_mm(printer.vial));
+  resin.from_all_sides = false;
+  return resin;
 }
 
 PlacedExtent extent(const model::TriangleSoup& soup) {

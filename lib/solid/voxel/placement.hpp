@@ -23,14 +23,18 @@ struct Placement {
   double stretch_z = 1;          // [OST22 eq S5]: 1 / M_vp undoes the projector's vertical magnification
 };
 
-/// The cylinder about the rotation axis that light reaches, z = 0 in the middle of the projector's rows.
+/// The cylinder about the rotation axis in which a part may be, z = 0 in the middle of the projector's rows.
 struct Writable {
   double radius_mm = 0;
   double low_mm = 0;  // z, in the stretched frame of the focal plane
   double high_mm = 0;
+  bool from_all_sides = true;  // lit so up to the radius; else it is the resin's
 };
 /// Of that radius (optics::writable_radius_mm), as high as the projector's rows.
 [[nodiscard]] Writable writable(const model::Printer& printer, double radius_mm);
+
+/// All of the resin, as high as the projector's rows.
+[[nodiscard]] Writable whole_resin(const model::Printer& printer);
 
 /// Extent of a placed part.
 struct PlacedExtent {

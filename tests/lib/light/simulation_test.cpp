@@ -11,6 +11,7 @@
 #include "light/display.hpp"
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
+#include "optics/writable.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;
@@ -106,11 +107,11 @@ TEST_CASE("rays stay horizontal where rows are telecentric") {
   CHECK(elsewhere() > 0.1);
   printer.projector.telecentric_columns = true;
   CHECK(elsewhere() > 0.1);
-  CHECK(lit_margin(printer, grid).above > 0);
+  CHECK(lit_margin(printer, grid, optics::writable_radius_mm(printer)).above > 0);
   printer.projector.telecentric_columns = false;
   printer.projector.telecentric_rows = true;
   CHECK(elsewhere() == 0);
-  CHECK(lit_margin(printer, grid).above == 0);
+  CHECK(lit_margin(printer, grid, optics::writable_radius_mm(printer)).above == 0);
 }
 
 TEST_CASE("grids: cubes, and slices that are slices of the volume") {

@@ -61,6 +61,17 @@ inline vam::model::StackInfo stack_info(const Part& part, int angles) {
   return info;
 }
 
+/// All resin that is constrained and judged.
+inline vam::model::Circle judged_circle(const Part& part, const vam::model::Printer& printer) {
+  double farthest = 0;
+  for (std::size_t v = 0; v < part.voxels.size(); ++v) {
+    if (part.voxels[v] <= vam::model::coverage_rounding) continue;
+    const auto at = static_cast<int>(v % part.grid.slice_size());
+    farthest = std::max(farthest, std::hypot(part.grid.x_mm(at % part.grid.nx), part.grid.y_mm(at / part.grid.nx)));
+  }
+  return vam::model::writable_circle(part.grid, vam::optics::judged_radius_mm(printer, farthest));
+}
+
 /// Projector's light for the part. `method` as vam-optimize takes it; resampled: by way of parallel light.
 inline Light make_light(const Part& part, const vam::model::Printer& printer, int angles, const std::string& method,
                         bool resampled, bool limited = true) {
@@ -70,7 +81,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
   const std::string name = automatic ? automatic_method : method;
   VolumeTask task;
   task.source.slices = part.grid.nz;
-  task.circle = vam::model::writable_circle(part.grid, vam::optics::writable_radius_mm(printer));
+  task.circle = judged_circle(part, printer);
   task.make = [&](double max_intensity) {
     MethodOptions options;
     options.max_intensity = max_intensity;
@@ -122,7 +133,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
 /// Of the whole part, by metrology's chief rays; voxels that the surface cuts are left out.
 inline vam::model::DoseMetrics judge(const Part& part, const vam::model::Printer& printer, const Light& light) {
   const vam::light::Simulation simulation(printer, {}, light.info, part.grid);
-  const auto circle = vam::model::writable_circle(part.grid, vam::optics::writable_radius_mm(printer));
+  const auto circle = judged_circle(part, printer);
   std::vector<vam::Image> doses(light.sinograms.size());
   simulation.dose(light.sinograms, doses);
   vam::model::DoseStatistics statistics;
