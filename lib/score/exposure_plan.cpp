@@ -14,19 +14,20 @@ double window_middle(const model::DoseMetrics& doses) {
   return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
 }
 
-ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer) {
+ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer) {
   constexpr double most_turns = 1e6;
   constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns is given 3
   const double critical = *printer.resin.critical_dose_mj_cm3;
-  const double full_turns = critical / middle_mj_cm3;
-  if (!(middle_mj_cm3 > 0) || !(full_turns <= most_turns)) {
+  const double middle = mj_cm3 * window_middle(doses);
+  const double quarter = mj_cm3 * std::max(0.0, 0.25 * (doses.min_part - doses.max_void));
+  if (!(middle > 0) || !(critical / middle <= most_turns)) {
     throw Error{Fault::data, "exposure: a turn at full intensity gives the middle of the process window " +
-                                 format_number(middle_mj_cm3) + " mJ/cm3 of the critical " + format_number(critical) +
+                                 format_number(middle) + " mJ/cm3 of the critical " + format_number(critical) +
                                  "; the part cannot be printed at this intensity"};
   }
   ExposurePlan plan;
-  plan.turns = static_cast<int>(std::max(1.0, std::ceil(full_turns * (1 - rounding))));
-  plan.multiplier = std::min(1.0, full_turns / plan.turns);
+  plan.turns = static_cast<int>(std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding))));
+  plan.multiplier = std::min(1.0, critical / (middle * plan.turns));
   plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
   return plan;

@@ -1,5 +1,5 @@
-// How bright and how long to print: whole turns, and light that puts the resin's critical dose in the middle of the
-// process window.
+// How bright and how long to print: whole turns, and light that puts the resin's critical dose within the process
+// window.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,11 @@ struct ExposurePlan {
 /// the thresholds that print best. `doses` are absolute (DoseStatistics::metrics(false)), in any unit.
 [[nodiscard]] double window_middle(const model::DoseMetrics& doses);
 
-/// The fewest whole turns in which full light gives the middle its critical dose, and the fraction of full light that
-/// gives exactly that. `middle_mj_cm3` is the middle's dose of one turn in full light. Throws Fault::data when it is
-/// not positive, or when the turns are more than a million. The printer must have a critical dose.
-[[nodiscard]] ExposurePlan plan_exposure(double middle_mj_cm3, const model::Printer& printer);
+/// The fewest whole turns at which full light brings the critical dose into the middle half of the process window, and
+/// the fraction of full light, at most 1, that puts it in the middle [physics §4]. `doses` times `mj_cm3` are those of
+/// one turn in full light. Throws Fault::data when the middle is not positive, or when the turns are more than a
+/// million. The printer must have a critical dose.
+[[nodiscard]] ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer);
 
 /// turns, seconds, multiplier and peak_intensity_mw_cm2, into a report.
 void add_to(Json& figures, const ExposurePlan& plan);

@@ -41,7 +41,7 @@ const std::vector<Figure>& figure_list() {
       {"cured_void", "at the critical dose: fraction of the void that cures"},
       {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
       {"cured_wrong", "at the critical dose: fraction of wrong voxels"},
-      {"turns", "whole turns that put the critical dose in the middle of the process window"},
+      {"turns", "whole turns that put the critical dose in the middle half of the process window"},
       {"seconds", "duration of these turns"},
       {"multiplier", "fraction of full intensity during these turns"},
       {"peak_irradiance", "irradiance of the brightest pixel during these turns, mW/cm2"},
@@ -100,9 +100,9 @@ double Score::figure(const std::string& name) const {
   if (name == "trimmed_pw") return statistics_.trimmed(options_.trim, !options_.absolute).pw;
   if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_irradiance") {
     if (!options_.exposure) return none;
-    const double middle = window_middle(statistics_.metrics(false)) / options_.exposure->full_light_turns;
-    if (!(middle > 0)) return none;
-    const ExposurePlan plan = plan_exposure(middle, options_.exposure->printer);
+    const model::DoseMetrics doses = statistics_.metrics(false);
+    if (!(window_middle(doses) > 0)) return none;
+    const ExposurePlan plan = plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer);
     if (name == "turns") return plan.turns;
     if (name == "seconds") return plan.seconds;
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;

@@ -23,7 +23,7 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
     warn("exposure: void receives up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 per turn, part from " +
          format_number(scale * doses.min_part, 4) + "; there is no process window, the plan is for the best threshold");
   }
-  return score::plan_exposure(scale * score::window_middle(doses), printer);
+  return score::plan_exposure(doses, scale, printer);
 }
 
 }  // namespace

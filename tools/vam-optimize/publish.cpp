@@ -34,8 +34,8 @@ void add_exposure(Json& report, const optimize::VolumeOutcome& outcome, const mo
                   const Options& options) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
-  if (!per_radian || !(full_scale > 0)) return;
-  add_to(report, score::plan_exposure(options.demands.window.threshold() / full_scale * *per_radian, printer));
+  if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return;
+  add_to(report, score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer));
 }
 
 }  // namespace

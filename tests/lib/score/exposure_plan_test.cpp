@@ -48,24 +48,47 @@ ExposurePlan rod(const model::Printer& printer) {
       statistics.add(dose[0](x, y), std::hypot(x - 10, y - 10) < 3 ? model::Label::part : model::Label::void_);
     }
   }
-  return plan_exposure(*dose_per_radian_mj_cm3(printer) * window_middle(statistics.metrics(false)), printer);
+  return plan_exposure(statistics.metrics(false), *dose_per_radian_mj_cm3(printer), printer);
+}
+
+model::DoseMetrics window(double low, double high) {
+  model::DoseMetrics doses;
+  doses.max_void = low;
+  doses.min_part = high;
+  doses.iou_threshold = 0.5 * (low + high);
+  return doses;
+}
+
+// Without a window: the critical dose is reached at that dose alone.
+ExposurePlan plan_at(double dose, const model::Printer& printer) {
+  return plan_exposure(window(dose, dose), 1, printer);
 }
 
 }  // namespace
 
+TEST_CASE("full light for fewer turns will do where the critical dose is still in the middle half of the window") {
+  const model::Printer printer = printer_of(0.05, 100);
+  const ExposurePlan two = plan_exposure(window(44, 54), 1, printer);  // 100 is within 2 x (46.5 ... 51.5)
+  CHECK(two.turns == 2);
+  CHECK(two.multiplier == 1);
+  const ExposurePlan three = plan_exposure(window(4.2, 5.2), 10, printer);  // 100 is beyond 2 x (44.5 ... 49.5)
+  CHECK(three.turns == 3);
+  CHECK(three.multiplier == doctest::Approx(100 / (3 * 47.0)));
+}
+
 TEST_CASE("the fewest whole turns, and the intensity that makes them exact") {
   const model::Printer printer = printer_of(0.05, 100);
-  const ExposurePlan plan = plan_exposure(30, printer);
+  const ExposurePlan plan = plan_at(30, printer);
   CHECK(plan.turns == 4);
   CHECK(plan.multiplier * plan.turns * 30 == doctest::Approx(100));
   CHECK(plan.seconds == doctest::Approx(144));
   CHECK(plan.peak_intensity_mw_cm2 == doctest::Approx(3.8 * 100 / 120));
-  CHECK(plan_exposure(25, printer).turns == 4);
-  CHECK(plan_exposure(25, printer).multiplier == 1.0);
-  CHECK(plan_exposure(400, printer).turns == 1);
-  CHECK(plan_exposure(400, printer).multiplier == doctest::Approx(0.25));
-  CHECK(fault_of([&] { static_cast<void>(plan_exposure(0, printer)); }) == Fault::data);
-  CHECK(fault_of([&] { static_cast<void>(plan_exposure(1e-9, printer)); }) == Fault::data);
+  CHECK(plan_at(25, printer).turns == 4);
+  CHECK(plan_at(25, printer).multiplier == 1.0);
+  CHECK(plan_at(400, printer).turns == 1);
+  CHECK(plan_at(400, printer).multiplier == doctest::Approx(0.25));
+  CHECK(fault_of([&] { static_cast<void>(plan_at(0, printer)); }) == Fault::data);
+  CHECK(fault_of([&] { static_cast<void>(plan_at(1e-9, printer)); }) == Fault::data);
 }
 
 TEST_CASE("the middle of the window, or of the best thresholds where there is none") {
