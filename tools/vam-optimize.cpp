@@ -49,7 +49,7 @@ void run(const cli::App& app, Options& options) {
   std::optional<optimize_tool::Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
     checkpoint.emplace(options.checkpoint);
-    task.interruption = checkpoint->interruption(io::printer_toml(printer) + app.job());
+    task.interruption = checkpoint->interruption(job_of(app, printer, options));
   }
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int, const Image& image) { sink.add(image); };

@@ -19,19 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string hash_file(const std::string& path) {
-  io::InputFile file(path);
-  Sha256 hash;
-  for (auto bytes = file.peek(); !bytes.empty(); bytes = file.peek()) {
-    hash.add(bytes.data(), bytes.size());
-    file.skip(bytes.size());
-  }
-  return hash.digest();
-}
-
 // A file as sha256sum prints it; of a folder the hash of what "sha256sum *" prints there.
 std::string hash_of(const std::string& path) {
-  if (!fs::is_directory(path)) return hash_file(path);
+  if (!fs::is_directory(path)) return io::sha256_of(path);
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(path)) {
     if (entry.is_regular_file()) files.push_back(entry.path());
@@ -39,7 +29,7 @@ std::string hash_of(const std::string& path) {
   std::sort(files.begin(), files.end());
   Sha256 hash;
   for (const auto& file : files) {
-    const std::string line = hash_file(file) + "  " + file.filename().string() + "\n";
+    const std::string line = io::sha256_of(file) + "  " + file.filename().string() + "\n";
     hash.add(line.data(), line.size());
   }
   return hash.digest();
@@ -121,7 +111,7 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
       const std::string path = io::record_path(calibration, scan, now_s, product.ending);
       product.write(path);
       facts["files"][product.name] = fs::path(path).filename().string();
-      facts["sha256"][fs::path(path).filename().string()] = hash_file(path);
+      facts["sha256"][fs::path(path).filename().string()] = io::sha256_of(path);
     }
     io::write_record(calibration, scan, facts, now_s);
   }
@@ -151,7 +141,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
       if (why.empty()) why = stranger(record->json, devices);
       const std::string path = (fs::path(record->path).parent_path() / fs::read_symlink(record->path)).string();
       report[scan] = {{"record", path},
-                      {"sha256", hash_file(path)},
+                      {"sha256", io::sha256_of(path)},
                       {"utc", record->json.value("utc", "")},
                       {"valid_until", record->json.value("valid_until", "")},
                       {"status", record->json.value("status", "")},

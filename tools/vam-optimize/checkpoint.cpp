@@ -3,9 +3,20 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "device/os/interrupt.hpp"
+#include "io/settings/printer_file.hpp"
 
 namespace vam::optimize_tool {
+
+std::string job_of(const cli::App& app, const model::Printer& printer, const Options& options) {
+  std::string job = io::printer_toml(printer) + app.job();
+  job += "raising=" + format_number(options.raising.factor) + "\n";
+  for (const std::string& path : {options.init, options.response}) {
+    if (path != "-" && std::filesystem::is_regular_file(path)) job += io::sha256_of(path) + "\n";
+  }
+  return job;
+}
 
 Checkpoint::Checkpoint(const std::string& path)
     : path_(path),

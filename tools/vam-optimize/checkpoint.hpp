@@ -4,10 +4,17 @@
 #include <optional>
 #include <string>
 
+#include "cli/app.hpp"
 #include "io/stream/stream.hpp"
+#include "model/printer.hpp"
 #include "optimize/run/volume.hpp"
+#include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
+
+/// Which job a state is of: the printer, the options, what the files hold that the options name beside the volumes (the
+/// slices have digests of their own), and how the limit is raised.
+[[nodiscard]] std::string job_of(const cli::App& app, const model::Printer& printer, const Options& options);
 
 /// Finished slices and, when a signal comes, the last iterate go to a file without a name; keep() gives it one.
 class Checkpoint {

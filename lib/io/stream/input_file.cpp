@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/sha256.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
 
@@ -109,6 +110,16 @@ void refuse_same_file(const std::string& input, const std::string& output) {
   if (!identify(input, STDIN_FILENO, in) || !identify(output, STDOUT_FILENO, out)) return;
   if (!S_ISREG(in.st_mode) || in.st_dev != out.st_dev || in.st_ino != out.st_ino) return;
   throw Error{Fault::usage, (output == "-" ? "stdout" : output) + ": is also the input; write to another file"};
+}
+
+std::string sha256_of(const std::string& path) {
+  InputFile file(path);
+  Sha256 hash;
+  for (auto bytes = file.peek(); !bytes.empty(); bytes = file.peek()) {
+    hash.add(bytes.data(), bytes.size());
+    file.skip(bytes.size());
+  }
+  return hash.digest();
 }
 
 }  // namespace vam::io

@@ -100,6 +100,9 @@ class OutputFile {
 [[nodiscard]] std::string read_all(const std::string& path, Content content = Content::text,
                                    std::uint64_t limit = std::uint64_t{4} << 30);
 
+/// The SHA-256 of a file's bytes, as sha256sum(1) prints it. Throws what InputFile throws.
+[[nodiscard]] std::string sha256_of(const std::string& path);
+
 /// Writes a whole text; throws as OutputFile does.
 void write_text(const std::string& path, std::string_view text);
 
