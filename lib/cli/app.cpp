@@ -276,12 +276,16 @@ void App::parse(int argc, char** argv) {
   for (const auto& word : words) state_->history += " " + quoted(word);
   require_command(tool, words);
   put_command_first(tool, words);
+  if (find_command(tool, words) < 0) {  // an operand may have the name of a command
+    for (const auto& nested : state_->subcommands) nested->state_->parser->disabled();
+  }
   const std::vector<std::string> reversed(words.rbegin(), words.rend());  // CLI11 takes them last first
   try {
     state_->parser->parse(std::vector<std::string>(reversed));  // it consumes its copy
   } catch (const CLI::ExtrasError&) {
     const auto unknown = state_->parser->remaining(true);
-    throw Error{Fault::usage, unknown_word(tool, words, unknown.empty() ? "" : unknown.front())};
+    const auto first = std::find_if(unknown.begin(), unknown.end(), [](const auto& word) { return word != "--"; });
+    throw Error{Fault::usage, unknown_word(tool, words, first == unknown.end() ? "" : *first)};
   } catch (const CLI::ArgumentMismatch&) {
     fail_on_count(reversed);
   } catch (const CLI::ParseError& error) {

@@ -146,6 +146,23 @@ TEST_CASE("an operand of a command may have the name of another command") {
   CHECK(stage.angle == 3);
 }
 
+TEST_CASE("only the first operand names a command") {
+  Stage stage(true);
+  std::string second;
+  stage.app.positional("SECOND", second, "Another.");
+  CHECK(stage.run({"part.stl", "move", "--quick"}) == 0);
+  CHECK(stage.chosen.empty());
+  CHECK(stage.input == "part.stl");
+  CHECK(second == "move");
+  CHECK(stage.quick);
+}
+
+TEST_CASE("an option behind -- is named in the error") {
+  Tool tool;
+  const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--", "part.vdb", "--half"}) == 64); });
+  CHECK(text.find("--half: ") != std::string::npos);
+}
+
 TEST_CASE("options of a command may stand before or behind it") {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"spin", "--speed", "25", "--device", "move"},
