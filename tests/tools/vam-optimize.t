@@ -118,6 +118,14 @@ is "interrupted, it leaves its state and no result" "$(ls run.state never.exr 2>
 for other in '--angles 90' '--dose-high 0.9' '--weights part.vdb' '--error-feedback --bits 8'; do  # any option counts
   fails 65 'of another job' vam-optimize $other --checkpoint run.state part.vdb -o out.exr
 done
+fails 65 'of another job' vam-optimize --iterations 100000 --patience 0 --until 'ver<=0' --checkpoint run.state part.vdb -o out.exr
+# Files count by what they hold.
+cp whole.exr start.exr
+timeout --preserve-status -s INT 3 vam-optimize --angles 90 --iterations 100000 --patience 0 --init start.exr \
+  --checkpoint init.state part.vdb -o never.exr
+cp goal.exr start.exr
+fails 65 'init.state.*of another job' vam-optimize --angles 90 --iterations 100000 --patience 0 --init start.exr \
+  --checkpoint init.state part.vdb -o out.exr
 python3 - <<'EOF'
 bytes = bytearray(open("run.state", "rb").read())
 bytes[-400:-396] = b"\x00\x00\xc0\x7f"
@@ -166,7 +174,7 @@ fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
 fails 65 '90 angles' vam-optimize --angles 80 --init cal.exr part.vdb -o out.exr
 fails 65 'projector' vam-optimize --geometry parallel --angles 90 --init projector.exr part.vdb -o out.exr
 fails 65 'its lens, 16.64 mm from the axis, is too near' vam-optimize --set projector.throw_ratio=0.25 boat.vdb -o out.exr
-fails 65 'light reaches only' vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
+fails 65 "reaches 7.748 mm from the axis, beyond the resin's edge at 5 mm; scale" vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
 # Nothing to print: a disc and a rod thinner than half a voxel, and rows that pass below the part
 vam-slice --shape cylinder:diameter=6,height=0.18 --stretch-z 1 --voxel 0.2 -o flat.vdb
 fails 65 'flat.vdb: no voxel is at least half covered .*reduce --voxel' vam-optimize --angles 24 flat.vdb -o out.exr

@@ -38,17 +38,23 @@ void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
                                format_number(setup.highest_mm, 4) + " mm; check projector.axis_row"};
 }
 
-/// The radius of the resin to constrain. Where the part reaches beyond the writable radius, that is reported.
+/// The radius of the resin to constrain. Where the part reaches beyond the writable radius, that is reported; beyond
+/// the resin it is refused.
 double constrained_mm(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
   const double writable = optics::writable_radius_mm(printer);
   if (options.geometry != "vial") return writable;
   const double farthest = io::farthest_mm(target, model::coverage_rounding);
   const double radius = optics::judged_radius_mm(printer, farthest);
+  const std::string reaches = (options.input == "-" ? "stdin" : options.input) + ": reaches " +
+                              format_number(farthest, 4) + " mm from the axis, beyond the ";
+  const double edge = model::resin_radius_mm(printer.vial);
+  if (farthest > edge) {
+    throw Error{Fault::data,
+                reaches + "resin's edge at " + format_number(edge, 4) + " mm; scale the part down or use a wider vial"};
+  }
   if (radius > writable) {
-    warn((options.input == "-" ? "stdin" : options.input) + ": reaches " + format_number(farthest, 4) +
-         " mm from the axis, beyond the writable radius of " + format_number(writable, 4) +
-         " mm; there light comes from " + format_number(100 * optics::lit_fraction(printer, farthest), 3) +
-         " % of the angles");
+    warn(reaches + "writable radius of " + format_number(writable, 4) + " mm; there light comes from " +
+         format_number(100 * optics::lit_fraction(printer, farthest), 3) + " % of the angles");
   }
   return radius;
 }

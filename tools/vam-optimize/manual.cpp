@@ -24,8 +24,8 @@ std::vector<std::string> description() {
       "the projector's chief rays, diverging from the lens and refracted by the vial; the output is a projector "
       "sinogram, one image per slice, ready for vam-project. With --geometry parallel the output is a virtual "
       "(parallel-beam) sinogram, which vam-resample converts for a projector: three to four times faster, but "
-      "resampling then costs the print half of its process window.",
-      "No method has a step length to choose."};
+      "resampling then halves the process window.",
+      "Step lengths are determined automatically."};
   const auto compensating =
       optimize::method_names([](const optimize::MethodEntry& entry) { return entry.make({})->keeps_scale(); });
   for (const auto& text : methods()) texts.push_back(text);

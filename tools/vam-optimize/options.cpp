@@ -70,7 +70,9 @@ void declare_stopping(cli::App& app, Options& options) {
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
-  app.default_is(std::string("none; with --method auto ") + optimize::automatic_until).not_in_job();
+  app.default_is(std::string("none; with --method auto, without --iterations or with --shortest, ") +
+                 optimize::automatic_until)
+      .not_in_job();
   app.option("--patience", "N", options.limits.patience, {0, 1000000},
              "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
   app.not_in_job();
@@ -124,7 +126,8 @@ void declare_beam(cli::App& app, Options& options) {
   app.default_is("the time of stage.turns turns");
   app.group("Grey levels of the projector");
   app.option("--bits", "N", options.bits, {1, 16},
-             "Quantise intensities to the grey levels of this bit depth, through projector.response.");
+             "Quantise intensities to the grey levels of this bit depth, through projector.response.")
+      .default_is("none");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.");
   app.default_is("the largest of all projections").was("--peak");
   app.flag("--error-feedback", options.error_feedback, "Carry the quantisation error over to the next angle.");
@@ -138,9 +141,8 @@ void declare(cli::App& app, Options& options) {
   std::vector<std::string> methods = optimize::method_names();
   methods.insert(methods.begin(), "auto");
   app.choice("--method", options.method, methods,
-             std::string("Optimisation method. auto is ") + optimize::automatic_method +
-                 ", the best of tests/bench/printability, for at least " +
-                 std::to_string(optimize::automatic_iterations) + " iterations and until " + optimize::automatic_until +
+             std::string("Optimisation method. auto: ") + optimize::automatic_method + ", at least " +
+                 std::to_string(optimize::automatic_iterations) + " iterations, until " + optimize::automatic_until +
                  ".");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
@@ -162,17 +164,36 @@ void declare(cli::App& app, Options& options) {
 
 namespace {
 
-/// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion.
+/// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion; the
+/// shortest print is always one that meets a goal.
 void settle_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
   options.method = optimize::automatic_method;
-  if (!options.until.empty() || app.given("--iterations")) return;
+  if (!options.until.empty() || (app.given("--iterations") && !options.shortest)) return;
   options.limits.at_least = optimize::automatic_iterations;
   options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
 }
 
-void refuse_contradictions(const Options& options, const optimize::MethodEntry& method) {
+/// An option that only other methods read.
+void refuse_unread(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
+  const auto reads = [](const optimize::MethodEntry& entry, const std::string& flag) {
+    return std::find(entry.options.begin(), entry.options.end(), flag) != entry.options.end();
+  };
+  for (const std::string& other : optimize::method_names()) {
+    for (const std::string& flag : optimize::method_entry(other).options) {
+      if (reads(method, flag) || !app.given(flag)) continue;
+      if (options.demands.grey && (flag == "--band" || flag == "--resin-response" || flag == "--softness")) continue;
+      const auto readers =
+          optimize::method_names([&](const optimize::MethodEntry& entry) { return reads(entry, flag); });
+      throw Error{Fault::usage, flag + ": method " + method.name + " does not use it; omit it, or choose one of " +
+                                    join(readers, ", ") + " by --method"};
+    }
+  }
+}
+
+void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
+  refuse_unread(app, options, method);
   if (options.full_scale && !options.bits) throw Error{Fault::usage, "--full-scale: requires --bits"};
   if (options.error_feedback && !options.bits) throw Error{Fault::usage, "--error-feedback: requires --bits"};
   if (options.geometry == "vial" && options.columns) {
@@ -230,7 +251,7 @@ void settle_limit(Options& options, const optimize::MethodEntry& method) {
 void settle(const cli::App& app, Options& options) {
   settle_auto(app, options);
   const optimize::MethodEntry& method = optimize::method_entry(options.method);
-  refuse_contradictions(options, method);
+  refuse_contradictions(app, options, method);
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);

@@ -77,7 +77,7 @@ class DoseNorm final : public Method {
 MethodEntry dose_norm_method() {
   return {"dose-norm",
           "Filtered back-projection of the target raised to a background in the void, divided once by the dose it "
-          "receives: fast and good.",
+          "receives: fast, with a smaller process window than the iterative methods.",
           "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where "
           "the text bounds the projections from below by the background, but the figures show them non-negative: "
           "--min-intensity 0 is right)",
