@@ -104,7 +104,8 @@ void declare(cli::App& app, Options& o) {
       "--until", "CONDITIONS", o.until,
       "Print a stop event and exit when all conditions hold: missing and overcure in per cent, iou, cured in mm3.");
   app.option("--log", "FILE", o.log, "Append a line of JSON for every volume; - is standard error.");
-  app.option("--page", "FILE.html", o.page, "Page that shows --projections and refreshes itself.");
+  app.option("--page", "FILE.html", o.page, "Page that shows --projections and refreshes itself.")
+      .needs({"--projections"});
   cli::add_printer(app, o.printer);
   app.group("Output and machine");
   cli::add_report(app, o.report);

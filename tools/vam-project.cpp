@@ -19,10 +19,10 @@ using project::Options;
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = settle(options);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  const bool live = device::names_display(options.output);
+  if (!live) project::refuse_live(app, options.output);
   if (!options.pattern.plan.name.empty()) return show_pattern(app, options, printer.projector);
-  if (device::names_display(options.output)) {
-    return device::interruptible([&] { print_live(app, options, printer); });
-  }
+  if (live) return device::interruptible([&] { print_live(app, options, printer); });
   if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);
   if (project::is_folder(options.input)) {
     return write_slices(app, options, printer, project::slice_folder(options.input));

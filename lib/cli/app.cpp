@@ -220,6 +220,11 @@ App& App::not_in_job() {
   return *this;
 }
 
+App& App::needs(const std::vector<std::string>& any_of) {
+  state_->current_group().options.back().needs = any_of;
+  return *this;
+}
+
 App& App::was(const std::string& old_flag, const std::string& value) {
   state_->current_group().options.back().former.push_back({old_flag, value});
   return *this;
@@ -268,6 +273,19 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   throw Error{Fault::usage, last + ": needs a value"};
 }
 
+// Of the tool and of its commands, whose options are given only if the command is.
+void App::require_needed() const {
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (option.needs.empty() || !given(long_flag(option))) continue;
+      const auto is_given = [&](const std::string& flag) { return given(flag); };
+      if (std::any_of(option.needs.begin(), option.needs.end(), is_given)) continue;
+      throw Error{Fault::usage, long_flag(option) + ": requires " + join(option.needs, " or ")};
+    }
+  }
+  for (const auto& nested : state_->subcommands) nested->require_needed();
+}
+
 void App::parse(int argc, char** argv) {
   const Declaration tool = whole();
   std::vector<std::string> words(argv + 1, argv + argc);
@@ -291,6 +309,7 @@ void App::parse(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Error{Fault::usage, std::string(error.what()) + " (" + tool.manual.name + " --help lists all)"};
   }
+  require_needed();
 }
 
 // --help, --version, --man and --completion print and end; they win over every other option. True when one was given.

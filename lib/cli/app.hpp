@@ -78,6 +78,8 @@ class App {
   App& default_is(const std::string& text);
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
+  /// The option declared last is refused where none of these is given.
+  App& needs(const std::vector<std::string>& any_of);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it. A value stands for a former flag that took none: --keep-negative, --negative keep.
   App& was(const std::string& old_flag, const std::string& value = "");
@@ -104,6 +106,7 @@ class App {
                const std::function<std::string()>& value);
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
+  void require_needed() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;
 

@@ -22,6 +22,7 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
+  std::vector<std::string> needs = {};      // one of these options, where this one is given
   std::vector<Former> former = {};          // not shown
   std::function<std::string()> value = {};  // in force
   bool in_job = true;                       // App::job() lists it

@@ -105,7 +105,7 @@ fails 65 'no volume' vam-ost views --angle-step 2 $rig --live
 
 fails 64 'give their distance with --angle-step' vam-ost views -o x.vdb
 fails 64 'need the gelation threshold' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb
-fails 64 'needs --projections' vam-ost views --angle-step 6 --live --page p.html
+fails 64 'requires --projections' vam-ost views --angle-step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: vam-ost threshold is now vam-calibrate resin'

@@ -202,7 +202,9 @@ void declare(cli::App& app, CorrectOptions& options) {
   app.option("--catalogue", "FILE", options.catalogue,
              "CSV name,absorbance_height_um,critical_dose_mj_cm3: print a table that compares these resins for this "
              "part; slices are then written only with -o or --png.");
-  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Speeds of the table.").was("--speeds");
+  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Speeds of the table.")
+      .needs({"--catalogue"})
+      .was("--speeds");
   app.default_is("20, 40, 60 and 80 % of the limit of each resin");
   add_print(app, options.print);
   app.group("Report and performance");

@@ -208,8 +208,12 @@ void declare(cli::App& app, ModelOptions& options) {
   app.option("--section", "FILE", options.section,
              "PNG of an x-z plane: slices, cure map, and intensity and dose along one column.")
       .was("--plane");
-  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.").default_is("the middle");
-  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.").default_is("the middle");
+  app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
+      .default_is("the middle")
+      .needs({"--section"});
+  app.option("--column", "X", options.column, {0, 1e6}, "Pixel column of the curves.")
+      .default_is("the middle")
+      .needs({"--section"});
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);

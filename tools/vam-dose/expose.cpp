@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack_batches.hpp"
@@ -104,6 +105,9 @@ Exposed expose(io::StackReader& in, const Options& options, const model::Printer
                io::SparseVolume& volume) {
   const model::StackInfo& info = in.info();
   const bool projector = info.space == model::Space::projector;
+  if (options.in_plane && !projector) {
+    throw Error{Fault::usage, "--in-plane: applies to a projector sinogram; the beams of a virtual one are level"};
+  }
   const auto climb = options.in_plane ? light::Climb::flat : light::Climb::follow;
   const light::Simulation simulation(printer, options.alignment, info, place.grid, climb);
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);

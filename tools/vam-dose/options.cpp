@@ -26,7 +26,8 @@ void declare(cli::App& app, Options& options) {
   app.default_is("the time of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine whole turns and the fraction of full intensity that put the critical dose in the middle of the "
-           "process window, and write the dose of that exposure. Requires --like with a target.");
+           "process window, and write the dose of that exposure.")
+      .needs({"--like"});
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
@@ -46,9 +47,6 @@ void declare(cli::App& app, Options& options) {
 }
 
 void settle(Options& options, const model::Printer& printer) {
-  if (options.exposure_plan && options.like.empty()) {
-    throw Error{Fault::usage, "--exposure-plan: requires --like with the volume of the part"};
-  }
   if (options.exposure_plan && !score::dose_per_radian_mj_cm3(printer)) {
     throw Error{Fault::usage,
                 "--exposure-plan: requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm; without them doses "

@@ -128,9 +128,11 @@ void declare_beam(cli::App& app, Options& options) {
   app.option("--bits", "N", options.bits, {1, 16},
              "Quantise intensities to the grey levels of this bit depth, through projector.response.")
       .default_is("none");
-  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.");
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
+      .needs({"--bits"});
   app.default_is("the largest of all projections").was("--peak");
-  app.flag("--error-feedback", options.error_feedback, "Carry the quantisation error over to the next angle.");
+  app.flag("--error-feedback", options.error_feedback, "Carry the quantisation error over to the next angle.")
+      .needs({"--bits"});
 }
 
 }  // namespace
@@ -194,8 +196,6 @@ void refuse_unread(const cli::App& app, const Options& options, const optimize::
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
   refuse_unread(app, options, method);
-  if (options.full_scale && !options.bits) throw Error{Fault::usage, "--full-scale: requires --bits"};
-  if (options.error_feedback && !options.bits) throw Error{Fault::usage, "--error-feedback: requires --bits"};
   if (options.geometry == "vial" && options.columns) {
     throw Error{Fault::usage,
                 "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "

@@ -82,8 +82,6 @@ class Turns {
 }  // namespace
 
 void live(const cli::App& app, const Options& options) {
-  if (!options.page.empty() && options.projections.empty())
-    throw Error{Fault::usage, "--page: needs --projections, the image that it shows"};
   Session session(app, options);
   Turns turns(session, options);
   io::ViewSource source(options.views, options.step_deg);

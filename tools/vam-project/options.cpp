@@ -82,6 +82,14 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
+void refuse_live(const cli::App& app, const std::string& output) {
+  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--latency", "--missed", "--log"}) {
+    if (!app.given(flag)) continue;
+    throw Error{Fault::usage, std::string(flag) + ": applies to live output, but -o names no screen: " +
+                                  (output == "-" ? "standard output" : output)};
+  }
+}
+
 model::Printer settle(Options& options) {
   model::Printer printer = tool::load_printer(options.printer);
   printer.projector.fps = options.fps.value_or(printer.projector.fps);

@@ -46,6 +46,9 @@ struct Options {
   PatternOptions pattern;
 };
 
+/// Throws Fault::usage when an option of live output is given.
+void refuse_live(const cli::App& app, const std::string& output);
+
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
 /// The printer as options change it, and what options take from it. Throws Fault::usage for a depth no projector has.

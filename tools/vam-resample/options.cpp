@@ -13,8 +13,9 @@ void declare(cli::App& app, Options& options) {
            "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is "
            "read.");
   app.option("--row", "N", options.row, {0, 65535},
-             "--explain: the exact rays of this row of the projector, from 0 at the top, instead of level ones: "
-             "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.");
+             "The exact rays of this row of the projector, from 0 at the top, instead of level ones: "
+             "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
+      .needs({"--explain"});
   app.group("Weights");
   app.flag("--no-fresnel", options.no_fresnel, "--to projector: do not divide by the transmittance T.");
   app.flag("--no-jacobian", options.no_jacobian, "--to projector: do not multiply by J.");
@@ -50,7 +51,6 @@ void check(const Options& options, const model::Printer& printer) {
   refuse(projector && options.voxel_mm, "--voxel");
   refuse(projector && options.columns, "--columns");
   refuse(!projector && options.row, "--row");
-  if (options.row && !options.explain) throw Error{Fault::usage, "--row: requires --explain"};
   if (options.row && *options.row >= printer.projector.rows) {
     throw Error{Fault::usage, "--row " + std::to_string(*options.row) + ": the projector's rows are 0 ... " +
                                   std::to_string(printer.projector.rows - 1)};

@@ -23,8 +23,11 @@ void declare(cli::App& app, Options& options) {
   app.group("Print");
   app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print");
   app.choice("--ply-as", options.print_as, {"mesh", "points"}, "Its surface, or its voxels coloured by dose.")
+      .needs({"--mesh"})
       .was("--print-as");
-  app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold of the print.").was("--print-at");
+  app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold of the print.")
+      .needs({"--mesh"})
+      .was("--print-at");
   app.default_is("the critical dose, else the best threshold");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

@@ -26,6 +26,7 @@ void declare(cli::App& app, Options& options) {
   app.flag("--printer-absorption", options.printer_absorption, "MU of the printer file (resin.absorption_per_mm).");
   app.was("--resin");
   app.flag("--at-wall", options.at_wall, "Values at the inner wall of the printer's vial instead of at the axis.");
+  app.needs({"--absorption", "--printer-absorption"});
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);

@@ -289,6 +289,19 @@ TEST_CASE("an operand that was an option takes either spelling") {
   }
 }
 
+TEST_CASE("an option that needs another is refused without it") {
+  for (const bool mesh : {false, true}) {
+    Tool tool;
+    std::string file;
+    bool points = false;
+    tool.app.option("--mesh", "FILE", file, "Mesh.").flag("--points", points, "Points.").needs({"--mesh", "--half"});
+    std::vector<std::string> words{"--points"};
+    if (mesh) words.insert(words.end(), {"--mesh", "a.ply"});
+    const std::string text = written_to(stderr, [&] { CHECK(tool.run(words) == (mesh ? 0 : 64)); });
+    CHECK(text == (mesh ? "" : "vam-demo: --points: requires --mesh or --half\n"));
+  }
+}
+
 TEST_CASE("a former spelling is not shown") {
   Tool tool;
   const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
