@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/per_slice.hpp"
-#include "light/private/absorption.hpp"
 #include "model/circle.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::light {
 
@@ -23,12 +23,12 @@ AttenuatedOperator::AttenuatedOperator(const tomo::ParallelGeometry& turn, doubl
     : dose_(with_alpha(turn, -mu_per_px)),
       radius_px_(resin_radius_px),
       correction_(correction),
-      transmitted_(to_the_axis(turn.columns, -mu_per_px, radius_px_)),
-      amplified_(to_the_axis(turn.columns, mu_per_px, radius_px_)),
+      transmitted_(tomo::to_the_axis(turn.columns, -mu_per_px, radius_px_)),
+      amplified_(tomo::to_the_axis(turn.columns, mu_per_px, radius_px_)),
       inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad(), amplified_),
       clear_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad()),
-      exponential_(turn.columns, {.alpha_per_px = mu_per_px}) {
-  require_translucent(mu_per_px, resin_radius_px);
+      exact_({.geometry = with_alpha(turn, mu_per_px), .filter = {}, .wall_radius_mm = radius_px_}) {
+  tomo::require_translucent(mu_per_px, resin_radius_px);
 }
 
 void AttenuatedOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
@@ -46,9 +46,11 @@ void AttenuatedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab
 /// way in.
 void AttenuatedOperator::invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   if (correction_ == Correction::exact) {
-    tomo::forward(with_alpha(dose_, -dose_.alpha_per_px), objects, sinograms);
-    for (Slab& slab : sinograms) exponential_.apply(slab);
-    scale_columns(sinograms, amplified_, static_cast<float>(0.5 * row_angle_rad()));
+    exact_.work_out(objects, sinograms);
+    const auto dose = static_cast<float>(row_angle_rad());
+    for_values(sinograms, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) sinograms[s].values[i] *= dose;
+    });
     return;
   }
   std::vector<Slab> corrected(objects.begin(), objects.end());

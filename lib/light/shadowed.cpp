@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
-#include "light/private/absorption.hpp"
 #include "model/circle.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::light {
 
@@ -31,8 +31,8 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
     : turn_(turn),
       mu_(mu_per_px),
       inverse_(turn.columns, turn.angle_step_rad, 0.5 * row_angle_rad(),
-               to_the_axis(turn.columns, mu_per_px, resin_radius_px)) {
-  require_translucent(mu_per_px, resin_radius_px);
+               tomo::to_the_axis(turn.columns, mu_per_px, resin_radius_px)) {
+  tomo::require_translucent(mu_per_px, resin_radius_px);
   const auto offset = [&](int column) { return column - 0.5 * (turn_.columns - 1); };
   for (int c = 0; c < turn.columns; ++c) depth_.push_back(model::half_chord(resin_radius_px, offset(c)));
   std::vector<double> angles;

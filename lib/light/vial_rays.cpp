@@ -9,9 +9,9 @@
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
-#include "light/private/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::light {
 
@@ -56,7 +56,7 @@ RayTable::Setup VialRays::table_setup() const {
 
 VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_setup()) {
   const double resin_mm = optics::resin_radius_mm(setup_.view);
-  require_translucent(setup_.absorption_per_mm, resin_mm);
+  tomo::require_translucent(setup_.absorption_per_mm, resin_mm);
   for (int c = 0; c < setup_.projector.columns; ++c) {
     const optics::ChiefRay ray = optics::chief_ray(setup_.view, setup_.projector.x_mm(c));
     if (!ray.hits || std::abs(ray.x_v_mm) > setup_.radius_mm + setup_.grid.voxel_mm) continue;

@@ -28,7 +28,7 @@ std::size_t factor_at(std::size_t block, int pixel, int pixels) {
 
 /// Eight angles as one tile sees them.
 struct Stretch {
-  Rows from{};
+  GatherRows from{};
   std::array<int, rows> origin{};  // the bin in element 0
   std::array<int, rows> skip{};    // elements before the detector begins
 };

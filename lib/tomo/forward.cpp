@@ -123,10 +123,10 @@ class Forward {
     const int np = major_size(block);
     const int nq = minor_size(block);
     float* pixels = scratch(0, rows * row_elements * group_lanes);
-    Rows next = find(group, block, 0, 0);
+    GatherRows next = find(group, block, 0, 0);
     for (int q = 0; q < nq; q += gather_rows) {
       for (int p = 0; p < np; p += band) {
-        const Rows now = next;
+        const GatherRows now = next;
         next = p + band < np ? find(group, block, p + band, q) : find(group, block, 0, q + gather_rows);
         if (!copy(now, pixels, group.pitch())) continue;
         Ahead ahead(next, band / segment * static_cast<int>(views.size()));
@@ -191,10 +191,10 @@ class Forward {
   }
 
   /// Where eight rows of pixels lie; rows beyond the image have no pixels.
-  [[nodiscard]] Rows find(const SlabGroup& group, const Block& block, int p0, int q0) const {
+  [[nodiscard]] GatherRows find(const SlabGroup& group, const Block& block, int p0, int q0) const {
     const int np = std::min(band, major_size(block) - p0);
     const int nq = std::min(gather_rows, minor_size(block) - q0);
-    Rows found{};
+    GatherRows found{};
     for (int r = 0; r < gather_rows; ++r) {
       Interleave& job = found[r];
       job.slabs = static_cast<int>(group.slabs);
@@ -209,7 +209,7 @@ class Forward {
   }
 
   /// Copies them side by side, zeros around them; false when all of them are zero.
-  [[nodiscard]] bool copy(const Rows& found, float* pixels, std::ptrdiff_t pitch) const {
+  [[nodiscard]] bool copy(const GatherRows& found, float* pixels, std::ptrdiff_t pitch) const {
     bool any = false;
     for (Interleave job : found) {
       std::fill_n(pixels, pad * pitch, 0.0F);

@@ -1,10 +1,9 @@
 #include "tomo/projections.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.hpp"
-#include "model/circle.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::tomo {
 
@@ -19,16 +18,12 @@ FilterSpec matched(FilterSpec filter, const ParallelGeometry& geometry) {
 /// physics §5]; columns beyond the wall get the factor of the axis plane, 1.
 std::vector<float> column_weights(const ProjectionSpec& spec) {
   const double unit = spec.filter.window == FilterWindow::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
-  std::vector<float> weights;
-  for (int c = 0; c < spec.geometry.columns; ++c) {
-    double weight = unit;
-    if (spec.wall_radius_mm) {
-      const double t = c - 0.5 * (spec.geometry.columns - 1);
-      const double radius = *spec.wall_radius_mm / spec.voxel_mm;
-      weight *= std::exp(spec.geometry.alpha_per_px * model::half_chord(radius, t));
-    }
-    weights.push_back(static_cast<float>(weight));
+  std::vector<float> weights(static_cast<std::size_t>(spec.geometry.columns), 1.0F);
+  if (spec.wall_radius_mm) {
+    const double radius_px = *spec.wall_radius_mm / spec.voxel_mm;
+    weights = to_the_axis(spec.geometry.columns, spec.geometry.alpha_per_px, radius_px);
   }
+  for (float& weight : weights) weight *= static_cast<float>(unit);
   return weights;
 }
 

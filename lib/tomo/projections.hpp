@@ -24,7 +24,7 @@ struct ProjectionSpec {
 /// Values without a filter: integrals of coverage along lines, in mm. With one: light per radian of turn, such that the
 /// dose sum over all angles, angle_step_rad * A* g (with weight e^{-alpha u}), is the part again
 /// [physics §4, physics §5].
-/// No light::Operator: its rows are a whole turn, its windows any; half a turn mirrored would change the last bits.
+/// vam-sinogram writes them, and absorbing light (light::AttenuatedOperator) is inverted by them.
 class Projections {
  public:
   explicit Projections(const ProjectionSpec& spec);

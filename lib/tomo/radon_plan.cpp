@@ -79,7 +79,7 @@ std::vector<SlabGroup> make_groups(std::size_t slabs) {
   return groups;
 }
 
-Ahead::Ahead(const Rows& rows, int calls) : rows_(rows) {
+Ahead::Ahead(const GatherRows& rows, int calls) : rows_(rows) {
   for (const Interleave& row : rows) share_ += static_cast<std::ptrdiff_t>(row.count) * row.slabs;
   share_ = share_ / calls + 1;
 }

@@ -7,7 +7,7 @@
 #include "light/beam.hpp"
 #include "light/operator.hpp"
 #include "light/private/inverse.hpp"
-#include "tomo/filter.hpp"
+#include "tomo/projections.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -40,8 +40,8 @@ class AttenuatedOperator final : public Operator {
   std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
   std::vector<float> amplified_;    // 1 / transmitted
   InverseLight inverse_;
-  InverseLight clear_;  // of resin that does not absorb
-  tomo::Filter exponential_;
+  InverseLight clear_;       // of resin that does not absorb
+  tomo::Projections exact_;  // with weight e^{mu u}, and the light at the wall
 };
 
 }  // namespace vam::light

@@ -55,17 +55,17 @@ struct SlabGroup {
 std::vector<SlabGroup> make_groups(std::size_t slabs);
 
 /// Where the kernel's eight input rows come from.
-using Rows = std::array<Interleave, gather_rows>;
+using GatherRows = std::array<Interleave, gather_rows>;
 
 /// Brings the next rows into L2 while others are worked on: some cache lines after each of `calls` calls.
 class Ahead {
  public:
-  Ahead(const Rows& rows, int calls);
+  Ahead(const GatherRows& rows, int calls);
   void fetch_share();
 
  private:
   bool next_stream();
-  const Rows& rows_;
+  const GatherRows& rows_;
   std::ptrdiff_t share_ = 1;
   int stream_ = -1;  // row * slabs + slab
   std::ptrdiff_t left_ = 0;
