@@ -48,10 +48,10 @@ std::vector<double> ticks(const Axis& axis, int wanted) {
 
 std::string tick_label(double value) { return format_number(value, 6); }
 
-double Frame::spot_x(double value) const { return left + (right - left) * position(x, value); }
-double Frame::spot_y(double value) const { return bottom - (bottom - top) * position(y, value); }
+double PlotFrame::spot_x(double value) const { return left + (right - left) * position(x, value); }
+double PlotFrame::spot_y(double value) const { return bottom - (bottom - top) * position(y, value); }
 
-void draw_axes(Canvas& canvas, const Frame& frame, bool grid) {
+void draw_axes(Canvas& canvas, const PlotFrame& frame, bool grid) {
   const int across = std::max(2, static_cast<int>((frame.right - frame.left) / 90));
   const int up = std::max(2, static_cast<int>((frame.bottom - frame.top) / 60));
   double widest = 0;

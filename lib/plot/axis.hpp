@@ -28,7 +28,7 @@ struct Axis {
 [[nodiscard]] double round_step(double value);
 
 /// A rectangle of the canvas with axes at its left and lower edge; maps values to spots.
-struct Frame {
+struct PlotFrame {
   double left = 0;
   double top = 0;
   double right = 0;
@@ -45,6 +45,6 @@ inline constexpr double label_size = 15;
 inline constexpr double title_size = 18;
 
 /// Border, ticks, tick labels and axis labels; with grid, faint lines at the ticks across the frame.
-void draw_axes(Canvas& canvas, const Frame& frame, bool grid);
+void draw_axes(Canvas& canvas, const PlotFrame& frame, bool grid);
 
 }  // namespace vam::plot

@@ -69,7 +69,7 @@ void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, dou
   }
   canvas.outline({left, top}, {left + bar_width, bottom}, paint::black);
   const Axis axis{"", figure.low, figure.high, false};
-  const Frame frame{left, top, left + bar_width, bottom, {}, axis};
+  const PlotFrame frame{left, top, left + bar_width, bottom, {}, axis};
   double widest = 0;
   for (const double value : ticks(axis, std::clamp(static_cast<int>((bottom - top) / 60), 2, bar_ticks))) {
     const double y = frame.spot_y(value);
@@ -107,7 +107,7 @@ RgbImage draw_single(const ImageFigure& figure) {
   const double total = std::max(left + width + colour_bar_room(figure), title);
   Canvas canvas(static_cast<int>(total), static_cast<int>(top + height + foot));
   draw_panel(canvas, figure, panel, {left, top}, scale);
-  const Frame frame{left - 0.5, top - 0.5, left + width - 0.5, top + height - 0.5, figure.x, figure.y};
+  const PlotFrame frame{left - 0.5, top - 0.5, left + width - 0.5, top + height - 0.5, figure.x, figure.y};
   draw_axes(canvas, frame, false);
   if (figure.pixel_mm > 0) draw_scale_bar(canvas, figure.pixel_mm, scale, {left, top}, width, height);
   const double bar_height = std::max(height, 120.0);

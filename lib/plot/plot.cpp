@@ -39,7 +39,7 @@ Axis fitted(Axis axis, const std::vector<Series>& series, std::vector<double> Se
 }
 
 // Draws nothing outside the frame: the curve is cut where it leaves it.
-void draw_line(Canvas& canvas, const Frame& frame, const Series& series) {
+void draw_line(Canvas& canvas, const PlotFrame& frame, const Series& series) {
   std::vector<Spot> spots;
   const auto flush = [&] {
     if (spots.size() > 1) canvas.polyline(spots, series.colour, 2);
@@ -58,7 +58,7 @@ void draw_line(Canvas& canvas, const Frame& frame, const Series& series) {
   flush();
 }
 
-void draw_points(Canvas& canvas, const Frame& frame, const Series& series) {
+void draw_points(Canvas& canvas, const PlotFrame& frame, const Series& series) {
   for (std::size_t i = 0; i < series.x.size(); ++i) {
     if (!shown(frame.x, series.x[i]) || !shown(frame.y, series.y[i])) continue;
     const Spot spot = frame.spot(series.x[i], series.y[i]);
@@ -68,7 +68,7 @@ void draw_points(Canvas& canvas, const Frame& frame, const Series& series) {
 }
 
 // The bars' filling, or the line along their tops: all fillings come before all lines.
-void draw_bars(Canvas& canvas, const Frame& frame, const Series& series, bool filling) {
+void draw_bars(Canvas& canvas, const PlotFrame& frame, const Series& series, bool filling) {
   std::vector<Spot> top;
   for (std::size_t i = 0; i < series.y.size(); ++i) {
     const bool visible = shown(frame.y, series.y[i]);
@@ -83,7 +83,7 @@ void draw_bars(Canvas& canvas, const Frame& frame, const Series& series, bool fi
 }
 
 // Spots of data and markers in the upper part of one half of the frame: where the legend would be in their way.
-int crowd(const Frame& frame, const Plot& plot, bool right_half) {
+int crowd(const PlotFrame& frame, const Plot& plot, bool right_half) {
   const auto in_the_way = [&](double x, double y) {
     const bool half = right_half ? x > 0.5 * (frame.left + frame.right) : x < 0.5 * (frame.left + frame.right);
     return half && y < frame.top + 0.3 * (frame.bottom - frame.top);
@@ -99,7 +99,7 @@ int crowd(const Frame& frame, const Plot& plot, bool right_half) {
   return spots;
 }
 
-void draw_legend(Canvas& canvas, const Frame& frame, const Plot& plot) {
+void draw_legend(Canvas& canvas, const PlotFrame& frame, const Plot& plot) {
   const auto& series = plot.series;
   double widest = 0;
   for (const auto& one : series) widest = std::max(widest, Canvas::text_width(one.name, label_size));
@@ -126,7 +126,7 @@ void draw_legend(Canvas& canvas, const Frame& frame, const Plot& plot) {
 }
 
 // All lines come before all words, so that no line runs through a word.
-void draw_markers(Canvas& canvas, const Frame& frame, const std::vector<Marker>& markers) {
+void draw_markers(Canvas& canvas, const PlotFrame& frame, const std::vector<Marker>& markers) {
   for (const auto& marker : markers) {
     const double x = frame.spot_x(marker.x);
     if (x < frame.left || x > frame.right) continue;
@@ -149,12 +149,12 @@ void draw_markers(Canvas& canvas, const Frame& frame, const std::vector<Marker>&
 
 RgbImage draw(const Plot& plot) {
   Canvas canvas(plot.width, plot.height);
-  Frame frame{86,
-              plot.title.empty() ? 24.0 : 52.0,
-              plot.width - 28.0,
-              plot.height - 62.0,
-              fitted(plot.x, plot.series, &Series::x),
-              fitted(plot.y, plot.series, &Series::y)};
+  PlotFrame frame{86,
+                  plot.title.empty() ? 24.0 : 52.0,
+                  plot.width - 28.0,
+                  plot.height - 62.0,
+                  fitted(plot.x, plot.series, &Series::x),
+                  fitted(plot.y, plot.series, &Series::y)};
   draw_axes(canvas, frame, true);
   for (const auto& series : plot.series) {
     if (series.style == SeriesStyle::bars) draw_bars(canvas, frame, series, true);

@@ -55,7 +55,7 @@ RgbImage enlarged(const RgbImage& from, int width, int height) {
   return to;
 }
 
-void draw_image(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& image, const std::string& title) {
+void draw_image(plot::Canvas& canvas, const plot::PlotFrame& frame, const RgbImage& image, const std::string& title) {
   const int left = static_cast<int>(frame.left);
   const int top = static_cast<int>(frame.top);
   canvas.paste(enlarged(image, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left, top);
@@ -64,7 +64,7 @@ void draw_image(plot::Canvas& canvas, const plot::Frame& frame, const RgbImage& 
 }
 
 // Grey and dose along the column over a shade where the part is, slice number down.
-void draw_column(plot::Canvas& canvas, plot::Frame frame, const PlaneFigure& plane, const Print& print) {
+void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure& plane, const Print& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
   frame.x = {"dose / critical dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
@@ -103,7 +103,7 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& 
   const plot::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
   const auto frame = [&](int number, int across, const plot::Axis& up) {
     const double start = left + number * (width + left);
-    return plot::Frame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
+    return plot::PlotFrame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
   };
   draw_image(canvas, frame(0, width, y), slices_image(plane, print.response),
              "slices, row " + std::to_string(plane.row));

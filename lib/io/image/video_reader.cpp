@@ -67,7 +67,7 @@ struct VideoReader::State {
   AVFormatContext* container = nullptr;
   int stream = -1;
   av::Codec codec;
-  av::Frame frame{av_frame_alloc()};
+  av::AvFrame frame{av_frame_alloc()};
   av::Packet packet{av_packet_alloc()};
 
   ~State() { avformat_close_input(&container); }

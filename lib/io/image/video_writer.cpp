@@ -20,12 +20,12 @@ AVPixelFormat pixel_format(bool lossless, int bits) {
 
 // Bytes on their way from libavformat to an OutputFile, which alone knows temporary names. libavformat is C, so an
 // exception waits here until control is back.
-struct Sink {
+struct EncoderSink {
   OutputFile file;
   std::uint64_t position = 0;
   std::exception_ptr failure;
 
-  explicit Sink(const std::string& path) : file(path) {}
+  explicit EncoderSink(const std::string& path) : file(path) {}
 
   void put(const std::uint8_t* bytes, std::size_t size) {
     const std::uint64_t end = file.position();
@@ -37,7 +37,7 @@ struct Sink {
   }
 
   static int on_write(void* self, std::uint8_t* bytes, int size) {
-    auto& sink = *static_cast<Sink*>(self);
+    auto& sink = *static_cast<EncoderSink*>(self);
     try {
       sink.put(bytes, static_cast<std::size_t>(size));
       return size;
@@ -48,7 +48,7 @@ struct Sink {
   }
 
   static std::int64_t on_seek(void* self, std::int64_t offset, int whence) {
-    auto& sink = *static_cast<Sink*>(self);
+    auto& sink = *static_cast<EncoderSink*>(self);
     const auto end = static_cast<std::int64_t>(sink.file.position());
     if (whence == AVSEEK_SIZE) return end;
     const std::int64_t base = whence == SEEK_SET   ? 0
@@ -72,12 +72,12 @@ std::uint16_t stored_level(int level, const GreyImage& image, bool lossless) {
 struct VideoWriter::State {
   VideoFormat format;
   bool lossless;
-  Sink sink;
+  EncoderSink sink;
   AVIOContext* io = nullptr;
   AVFormatContext* container = nullptr;
   AVStream* stream = nullptr;
   av::Codec codec;
-  av::Frame frame{av_frame_alloc()};
+  av::AvFrame frame{av_frame_alloc()};
   av::Packet packet{av_packet_alloc()};
   std::int64_t written = 0;
 
@@ -100,7 +100,7 @@ struct VideoWriter::State {
     check(avformat_alloc_output_context2(&container, nullptr, lossless ? "matroska" : "mp4", nullptr),
           "video container");
     io = avio_alloc_context(static_cast<unsigned char*>(av_malloc(buffer_bytes)), buffer_bytes, 1, &sink, nullptr,
-                            Sink::on_write, sink.file.is_stream() ? nullptr : Sink::on_seek);
+                            EncoderSink::on_write, sink.file.is_stream() ? nullptr : EncoderSink::on_seek);
     container->pb = io;
     container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
     av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);

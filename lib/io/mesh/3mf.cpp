@@ -97,10 +97,10 @@ class Package {
     return count;
   }
 
-  void place(const std::string& from, const Instance& instance, const Placement& outer) {
+  void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer) {
     const std::string name = part_name(from, instance);
     const Object3mf& made_of = object(name, instance.object);
-    const Placement placement = instance.placement.then(outer);
+    const ComponentPlacement placement = instance.placement.then(outer);
     const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
     const int first = static_cast<int>(soup_.points.size());
     const int last = static_cast<int>(made_of.points.size());
@@ -126,7 +126,7 @@ class Package {
 
 }  // namespace
 
-std::array<double, 3> Placement::operator()(const std::array<double, 3>& p) const {
+std::array<double, 3> ComponentPlacement::operator()(const std::array<double, 3>& p) const {
   std::array<double, 3> moved = rows[3];
   for (std::size_t from = 0; from < 3; ++from) {
     for (std::size_t to = 0; to < 3; ++to) moved[to] += p[from] * rows[from][to];
@@ -134,8 +134,8 @@ std::array<double, 3> Placement::operator()(const std::array<double, 3>& p) cons
   return moved;
 }
 
-Placement Placement::then(const Placement& outer) const {
-  Placement both;
+ComponentPlacement ComponentPlacement::then(const ComponentPlacement& outer) const {
+  ComponentPlacement both;
   for (std::size_t row = 0; row < 4; ++row) {
     std::array<double, 3> sum = row < 3 ? std::array<double, 3>{} : outer.rows[3];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -146,7 +146,7 @@ Placement Placement::then(const Placement& outer) const {
   return both;
 }
 
-bool Placement::mirrors() const {
+bool ComponentPlacement::mirrors() const {
   const auto& [a, b, c, shift] = rows;
   return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]) <
          0;

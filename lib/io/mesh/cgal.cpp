@@ -15,10 +15,10 @@ namespace vam::io {
 
 namespace {
 
-using Point = CGAL::Simple_cartesian<double>::Point_3;
+using CgalPoint = CGAL::Simple_cartesian<double>::Point_3;
 
 struct CgalSoup {
-  std::vector<Point> points;
+  std::vector<CgalPoint> points;
   std::vector<std::vector<int>> faces;
 };
 

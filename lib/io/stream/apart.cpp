@@ -77,7 +77,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
   if (write_fully(socket, head.data(), sizeof head)) (void)write_fully(socket, line.data(), size);
 }
 
-[[noreturn]] void run_child(Slots slots, const Bounds& bounds, const Foreign& source,
+[[noreturn]] void run_child(Slots slots, const ResourceBounds& bounds, const Foreign& source,
                             const std::function<void(Sender&)>& parse, int parent) {
   int fault = 0;
   std::string line;
@@ -100,7 +100,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
   _exit(0);  // nothing is destroyed, nobody else's buffers are flushed
 }
 
-std::string cause_of(int ended, const Bounds& bounds) {
+std::string cause_of(int ended, const ResourceBounds& bounds) {
   if (!WIFSIGNALED(ended)) return "its reader ended early";
   const int number = WTERMSIG(ended);
   if (number == SIGXCPU) return "its reader took more than " + std::to_string(bounds.cpu_s) + " s of processor time";
@@ -126,7 +126,7 @@ void take_verdict(Child& child) {
 
 void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
                 const std::function<void(Receiver&)>& take) {
-  const Bounds bounds = bounds_of(source.bytes);
+  const ResourceBounds bounds = bounds_of(source.bytes);
   Child child;
   const int parent = getpid();
   child.start();

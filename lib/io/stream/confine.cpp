@@ -95,12 +95,12 @@ void filter_calls() {
 
 }  // namespace
 
-Bounds bounds_of(std::uint64_t file_bytes) {
+ResourceBounds bounds_of(std::uint64_t file_bytes) {
   if (file_bytes == 0) return {free_memory(), 600};
   return {std::min(256 * mib + 64 * file_bytes, free_memory()), 10 + file_bytes / mib};
 }
 
-void confine(const Bounds& bounds, int parent, std::initializer_list<int> kept) {
+void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(0);
   reset_signals();

@@ -112,7 +112,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
   return widths;
 }
 
-Beam measure_beam(const BeamWidths& widths) {
+MeasuredBeam measure_beam(const BeamWidths& widths) {
   const auto narrowest =
       std::min_element(widths.fwhm_mm.begin(), widths.fwhm_mm.end(),
                        [](const stats::Measured& a, const stats::Measured& b) { return a.value < b.value; });
@@ -142,7 +142,7 @@ Beam measure_beam(const BeamWidths& widths) {
   const auto fit =
       stats::fit_curve(residuals, {scale, focus_mm, std::max(growth_start, 1e-4)}, {1e-4 * scale, 1e-3, 1e-6},
                        "beam: widths of " + std::to_string(widths.plane_mm.size()) + " planes");
-  Beam beam{fit.measured(waist), fit.measured(focus), {}, fit.measured(growth)};
+  MeasuredBeam beam{fit.measured(waist), fit.measured(focus), {}, fit.measured(growth)};
   beam.waist_mm.value = std::abs(beam.waist_mm.value);
   const double slope = std::abs(beam.divergence_deg.value);
   beam.divergence_deg.value = std::atan(slope) * deg_per_rad;

@@ -32,7 +32,7 @@ struct SideView {
 [[nodiscard]] BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer,
                                      int planes);
 
-struct Beam {
+struct MeasuredBeam {
   stats::Measured waist_mm;        // smallest width
   stats::Measured focus_mm;        // where it is
   stats::Measured axis_fwhm_mm;    // width at the axis
@@ -41,6 +41,6 @@ struct Beam {
 
 /// Fits w^2 = waist^2 + (divergence (y - focus))^2. Throws Fault::data: fewer than 4 planes, or widths that do not grow
 /// to either side.
-[[nodiscard]] Beam measure_beam(const BeamWidths& widths);
+[[nodiscard]] MeasuredBeam measure_beam(const BeamWidths& widths);
 
 }  // namespace vam::metrology

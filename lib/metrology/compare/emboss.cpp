@@ -22,7 +22,7 @@ using outline::distance_to;
 using outline::fit;
 using outline::middle_of;
 using outline::Outline;
-using outline::Point;
+using outline::OutlinePoint;
 using outline::Similar;
 
 // Heights above the base; where there is no material, base.
@@ -30,7 +30,7 @@ struct Design {
   Image above_base_mm;
   double pixel_mm = 0;
   double height_mm = 0;
-  std::vector<Point> outline;  // mm about the middle, at half height
+  std::vector<OutlinePoint> outline;  // mm about the middle, at half height
 };
 
 Design design_of(const solid::HeightMap& map) {
@@ -43,7 +43,7 @@ Design design_of(const solid::HeightMap& map) {
   for (float& h : design.above_base_mm.values) h = std::isnan(h) ? 0.0F : h - static_cast<float>(found->base_mm);
   const Image& image = design.above_base_mm;
   const auto half = static_cast<float>(0.5 * design.height_mm);
-  const Point middle = middle_of(image);
+  const OutlinePoint middle = middle_of(image);
   const auto add = [&](int i, int j, int di, int dj) {
     const float from = image(i, j);
     const float to = image(i + di, j + dj);
@@ -60,9 +60,9 @@ Design design_of(const solid::HeightMap& map) {
   return design;
 }
 
-Point centroid_above(const Image& image, double pixel_mm, float level) {
-  const Point middle = middle_of(image);
-  Point sum;
+OutlinePoint centroid_above(const Image& image, double pixel_mm, float level) {
+  const OutlinePoint middle = middle_of(image);
+  OutlinePoint sum;
   double count = 0;
   for (int j = 0; j < image.height; ++j) {
     for (int i = 0; i < image.width; ++i) {
@@ -77,9 +77,10 @@ Point centroid_above(const Image& image, double pixel_mm, float level) {
 
 Similar place(const Design& design, const Relief& print, const Outline& outline, EmbossAlign align) {
   if (align == EmbossAlign::none) return {};
-  const Point from = centroid_above(design.above_base_mm, design.pixel_mm, static_cast<float>(0.5 * design.height_mm));
-  const Point to = centroid_above(print.heights_mm, print.pixel_mm, static_cast<float>(0.5 * print.plateau_mm));
-  std::vector<Point> few;
+  const OutlinePoint from =
+      centroid_above(design.above_base_mm, design.pixel_mm, static_cast<float>(0.5 * design.height_mm));
+  const OutlinePoint to = centroid_above(print.heights_mm, print.pixel_mm, static_cast<float>(0.5 * print.plateau_mm));
+  std::vector<OutlinePoint> few;
   const std::size_t stride = 1 + design.outline.size() / 500;
   for (std::size_t i = 0; i < design.outline.size(); i += stride) few.push_back(design.outline[i]);
   constexpr int turns = 24;
@@ -88,7 +89,7 @@ Similar place(const Design& design, const Relief& print, const Outline& outline,
   for (int turn = 0; turn < (align == EmbossAlign::any_turn ? turns : 1); ++turn) {
     const double angle = 2 * std::numbers::pi * turn / turns;
     Similar start{std::cos(angle), std::sin(angle), 0, 0};
-    const Point there = start(from);
+    const OutlinePoint there = start(from);
     start.x = to.x - there.x;
     start.y = to.y - there.y;
     const Similar found = fit(few, outline, start, 30);
@@ -103,11 +104,11 @@ Similar place(const Design& design, const Relief& print, const Outline& outline,
 
 Image placed(const Design& design, const Similar& pose, const Relief& print) {
   Image image(print.heights_mm.width, print.heights_mm.height);
-  const Point middle = middle_of(image);
-  const Point design_middle = middle_of(design.above_base_mm);
+  const OutlinePoint middle = middle_of(image);
+  const OutlinePoint design_middle = middle_of(design.above_base_mm);
   for (int j = 0; j < image.height; ++j) {
     for (int i = 0; i < image.width; ++i) {
-      const Point p = pose.inverse({(i - middle.x) * print.pixel_mm, (middle.y - j) * print.pixel_mm});
+      const OutlinePoint p = pose.inverse({(i - middle.x) * print.pixel_mm, (middle.y - j) * print.pixel_mm});
       image(i, j) = bilinear(design.above_base_mm, design_middle.x + p.x / design.pixel_mm,
                              design_middle.y - p.y / design.pixel_mm);
     }
@@ -152,7 +153,7 @@ Emboss compare_emboss(const Relief& print, const solid::HeightMap& map, EmbossAl
   emboss.placing = {std::hypot(pose.a, pose.b), std::atan2(pose.b, pose.a) * deg_per_rad, pose.x, pose.y};
   emboss.design_height_mm = design.height_mm;
   double count = 0;
-  for (const Point& p : design.outline) {
+  for (const OutlinePoint& p : design.outline) {
     if (!outline.judges(pose(p))) continue;
     const double d = outline.distance(pose(p));
     count += 1;

@@ -6,7 +6,7 @@
 
 namespace vam::metrology::outline {
 
-Point middle_of(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
+OutlinePoint middle_of(const Image& image) { return {0.5 * (image.width - 1), 0.5 * (image.height - 1)}; }
 
 float bilinear(const Image& image, double column, double row) {
   const double x = std::clamp(column, 0.0, image.width - 1.001);
@@ -62,24 +62,24 @@ Outline::Outline(const Relief& print)
       pixel_mm_(print.pixel_mm),
       middle_(middle_of(distance_)) {}
 
-double Outline::distance(const Point& p) const {
+double Outline::distance(const OutlinePoint& p) const {
   return pixel_mm_ * static_cast<double>(bilinear(distance_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_));
 }
 
-bool Outline::judges(const Point& p) const {
+bool Outline::judges(const OutlinePoint& p) const {
   return bilinear(judged_, middle_.x + p.x / pixel_mm_, middle_.y - p.y / pixel_mm_) > 0.999F;
 }
 
-Point Outline::gradient(const Point& p) const {
+OutlinePoint Outline::gradient(const OutlinePoint& p) const {
   const double h = pixel_mm_;
   return {(distance({p.x + h, p.y}) - distance({p.x - h, p.y})) / (2 * h),
           (distance({p.x, p.y + h}) - distance({p.x, p.y - h})) / (2 * h)};
 }
 
-double Outline::rms(const std::vector<Point>& points, const Similar& pose) const {
+double Outline::rms(const std::vector<OutlinePoint>& points, const Similar& pose) const {
   double sum = 0;
   double count = 0;
-  for (const Point& p : points) {
+  for (const OutlinePoint& p : points) {
     if (!judges(pose(p))) continue;
     sum += std::pow(distance(pose(p)), 2);
     count += 1;
@@ -87,18 +87,18 @@ double Outline::rms(const std::vector<Point>& points, const Similar& pose) const
   return count > 0 ? std::sqrt(sum / count) : 1e300;
 }
 
-Similar fit(const std::vector<Point>& points, const Outline& outline, Similar pose, int steps) {
+Similar fit(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose, int steps) {
   double reach = 1e-9;
-  for (const Point& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
+  for (const OutlinePoint& p : points) reach = std::max(reach, std::hypot(p.x, p.y));
   for (int step = 0; step < steps; ++step) {
     const double bound = 2.5 * outline.rms(points, pose) + 1e-9;
     cv::Matx44d normal = cv::Matx44d::zeros();
     cv::Vec4d right = cv::Vec4d::zeros();
-    for (const Point& p : points) {
-      const Point at = pose(p);
+    for (const OutlinePoint& p : points) {
+      const OutlinePoint at = pose(p);
       if (!outline.judges(at)) continue;
       const double r = outline.distance(at);
-      const Point g = outline.gradient(at);
+      const OutlinePoint g = outline.gradient(at);
       const cv::Vec4d row((g.x * p.x + g.y * p.y) / reach, (g.y * p.x - g.x * p.y) / reach, g.x, g.y);
       const double weight = std::min(1.0, bound / (std::abs(r) + 1e-300));
       normal += weight * row * row.t();

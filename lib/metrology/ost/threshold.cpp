@@ -40,12 +40,12 @@ cv::Mat eight_bits(const Image& image) {
   return grey;
 }
 
-struct Point {
+struct RimPoint {
   double x, y;
 };
 
 // The steepest place of the profile along a radius, by a parabola through the largest difference.
-bool edge_on_radius(const Image& image, const FittedCircle& c, double angle, double reach, Point& edge) {
+bool edge_on_radius(const Image& image, const FittedCircle& c, double angle, double reach, RimPoint& edge) {
   constexpr double h = 0.5;
   std::vector<double> slope;
   const double begin = c.radius - reach;
@@ -67,17 +67,17 @@ bool edge_on_radius(const Image& image, const FittedCircle& c, double angle, dou
 }
 
 // Kasa's linear least-squares circle: x^2 + y^2 = 2 a x + 2 b y + c.
-FittedCircle fit(const std::vector<Point>& points) {
+FittedCircle fit(const std::vector<RimPoint>& points) {
   cv::Matx33d normal = cv::Matx33d::zeros();
   cv::Vec3d right(0, 0, 0);
-  for (const Point& p : points) {
+  for (const RimPoint& p : points) {
     const cv::Vec3d row(2 * p.x, 2 * p.y, 1);
     normal += row * row.t();
     right += (p.x * p.x + p.y * p.y) * row;
   }
   const cv::Vec3d s = normal.solve(right, cv::DECOMP_CHOLESKY);
   FittedCircle circle{s[0], s[1], std::sqrt(std::max(0.0, s[2] + s[0] * s[0] + s[1] * s[1])), 0};
-  for (const Point& p : points) {
+  for (const RimPoint& p : points) {
     const double d = std::hypot(p.x - circle.x, p.y - circle.y) - circle.radius;
     circle.sigma += d * d / static_cast<double>(points.size());
   }
@@ -102,11 +102,11 @@ FittedCircle find_circle(const Image& image) {
   FittedCircle circle{static_cast<double>(found[0][0]), static_cast<double>(found[0][1]),
                       static_cast<double>(found[0][2]), 0};
   for (int round = 0; round < 3; ++round) {
-    std::vector<Point> edges;
+    std::vector<RimPoint> edges;
     const double reach = std::max(3.0, (round == 0 ? 0.3 : 0.15) * circle.radius);
     constexpr int radii = 360;
     for (int i = 0; i < radii; ++i) {
-      Point edge{};
+      RimPoint edge{};
       if (edge_on_radius(image, circle, 2 * std::numbers::pi * i / radii, reach, edge)) edges.push_back(edge);
     }
     if (edges.size() < radii / 4)

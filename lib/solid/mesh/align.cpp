@@ -112,7 +112,7 @@ double step(const Pairs& pairs, bool with_scale, Pose& pose) {
   return angle * reach + x.segment<3>(3).norm() + std::abs(x[6]) * reach;
 }
 
-Alignment iterate(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
+Alignment run_icp(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
                   int max_iterations, double size, Pose& pose) {
   Alignment result;
   constexpr int patience = 3;  // pairs at edges change sides for ever: where the error rests, so may we
@@ -151,7 +151,7 @@ std::array<std::array<double, 4>, 4> Similarity::matrix() const {
 
 Alignment refine(const model::TriangleSoup& print, const Surface& reference, const AlignOptions& options) {
   Pose pose;
-  return iterate(points_of(print, options.samples), reference, options, options.max_iterations,
+  return run_icp(points_of(print, options.samples), reference, options, options.max_iterations,
                  bounding_box(print).largest_side(), pose);
 }
 
@@ -181,12 +181,12 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
     starts.resize(std::min(starts.size(), count));
   };
   keep(96, [&](Pose& pose) { return pair_up(few, pose, reference).rms; });
-  keep(12, [&](Pose& pose) { return iterate(few, reference, rigid, 6, size, pose).rms_mm; });
-  keep(3, [&](Pose& pose) { return iterate(few, reference, rigid, 20, size, pose).rms_mm; });
+  keep(12, [&](Pose& pose) { return run_icp(few, reference, rigid, 6, size, pose).rms_mm; });
+  keep(3, [&](Pose& pose) { return run_icp(few, reference, rigid, 20, size, pose).rms_mm; });
   // The best at a tenth of the points, then all points from there.
   const std::vector<Vector3d> some = points_of(print, std::max(400, options.samples / 10));
-  keep(1, [&](Pose& pose) { return iterate(some, reference, options, options.max_iterations, size, pose).rms_mm; });
-  return iterate(all, reference, options, options.max_iterations, size, starts.front().pose);
+  keep(1, [&](Pose& pose) { return run_icp(some, reference, options, options.max_iterations, size, pose).rms_mm; });
+  return run_icp(all, reference, options, options.max_iterations, size, starts.front().pose);
 }
 
 }  // namespace vam::solid

@@ -11,14 +11,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-struct Frame {
+struct PrincipalAxes {
   Vector3d centre;
   Matrix3d axes;    // columns, ascending spread, right-handed
   Vector3d spread;  // standard deviations
 };
 
-Frame principal_frame(const std::vector<Vector3d>& points) {
-  Frame frame;
+PrincipalAxes principal_frame(const std::vector<Vector3d>& points) {
+  PrincipalAxes frame;
   frame.centre = mean_of(points);
   Matrix3d covariance = Matrix3d::Zero();
   for (const auto& p : points) covariance += (p - frame.centre) * (p - frame.centre).transpose();
@@ -89,8 +89,8 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
 
 std::vector<Pose> starting_poses(const std::vector<Vector3d>& print, const std::vector<Vector3d>& reference,
                                  bool with_scale) {
-  const Frame from = principal_frame(print);
-  const Frame to = principal_frame(reference);
+  const PrincipalAxes from = principal_frame(print);
+  const PrincipalAxes to = principal_frame(reference);
   std::vector<Pose> poses;
   for (const Matrix3d& turn : undetermined_turns(to.spread)) {
     for (const Matrix3d& cube : cube_rotations()) {

@@ -97,13 +97,13 @@ Moment moment(const Polygon& piece, std::size_t axis) {
   return result;
 }
 
-void Rows::reset(int rows, int voxels) {
+void VoxelRows::reset(int rows, int voxels) {
   length_ = voxels + 1;
   values_.resize(rows * static_cast<std::size_t>(length_));
   touched_.assign(rows, 0);
 }
 
-double* Rows::operator[](int row) {
+double* VoxelRows::operator[](int row) {
   double* begin = values_.data() + static_cast<std::ptrdiff_t>(row) * length_;
   if (!touched(row)) {
     touched_[row] = 1;
@@ -112,7 +112,7 @@ double* Rows::operator[](int row) {
   return begin;
 }
 
-double Rows::accumulate(int row) {
+double VoxelRows::accumulate(int row) {
   double* entry = (*this)[row];
   double sum = 0;
   for (int i = 0; i < length_; ++i) entry[i] = sum += entry[i];

@@ -14,8 +14,8 @@ constexpr float undecided = std::numeric_limits<float>::quiet_NaN();
 
 // What the pieces of one slice add up to along each axis.
 struct SliceSums {
-  Rows x;                        // ny rows
-  Rows y;                        // nx rows
+  VoxelRows x;                   // ny rows
+  VoxelRows y;                   // nx rows
   std::vector<double> z_own;     // by column (i, j): the winding number of this slice's voxel
   std::vector<double> z_behind;  // what all pieces of this slice add to the slices above
 };
@@ -50,8 +50,8 @@ void enter_slice(const std::vector<Corners>& triangles, std::span<const int> mem
     if (slice.count < 3) continue;
     for_each_layer(slice, 1, grid.ny, [&](int j, const Polygon& strip) {
       for_each_layer(strip, 0, grid.nx, [&](int i, const Polygon& piece) {
-        Rows::enter(sums.x[j], i, moment(piece, 0));
-        Rows::enter(sums.y[i], j, moment(piece, 1));
+        VoxelRows::enter(sums.x[j], i, moment(piece, 0));
+        VoxelRows::enter(sums.y[i], j, moment(piece, 1));
         const Moment along_z = moment(piece, 2);
         sums.z_own[column(grid, i, j)] -= own_share(along_z, k);
         sums.z_behind[column(grid, i, j)] -= along_z.area;

@@ -12,14 +12,15 @@ namespace vam::solid {
 namespace {
 
 void slice_exact(const std::vector<Corners>& triangles, std::span<const int> members, const model::Grid& grid, int k,
-                 Rows& rows, float* out) {
+                 VoxelRows& rows, float* out) {
   rows.reset(grid.ny, grid.nx);
   for (const int t : members) {
     const Polygon slice = layer(polygon(triangles[t]), 2, k, grid.nz);
     if (slice.count < 3) continue;
     for_each_layer(slice, 1, grid.ny, [&](int j, const Polygon& strip) {
       double* row = rows[j];
-      for_each_layer(strip, 0, grid.nx, [&](int i, const Polygon& piece) { Rows::enter(row, i, moment(piece, 0)); });
+      for_each_layer(strip, 0, grid.nx,
+                     [&](int i, const Polygon& piece) { VoxelRows::enter(row, i, moment(piece, 0)); });
     });
   }
   for (int j = 0; j < grid.ny; ++j) {
@@ -40,7 +41,7 @@ Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fil
   const std::vector<Corners> triangles = in_voxels(mesh, grid);
   if (fill == Fill::vote) return vote(triangles, grid, sink);
   const Bins bins(triangles, 2, grid.nz);
-  std::vector<Rows> rows(slab);
+  std::vector<VoxelRows> rows(slab);
   std::vector<float> slices(grid.slice_size() * slab);
   for (int k0 = 0; k0 < grid.nz; k0 += slab) {
     const int count = std::min(slab, grid.nz - k0);

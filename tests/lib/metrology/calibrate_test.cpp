@@ -147,7 +147,7 @@ TEST_CASE("Beam: width of each plane and divergence, 200 scans") {
       widths.plane_mm.push_back(y_mm);
       widths.fwhm_mm.push_back({px.value * pixel_mm, px.sigma * pixel_mm, px.n});
     }
-    const Beam beam = measure_beam(widths);
+    const MeasuredBeam beam = measure_beam(widths);
     divergence.add(beam.divergence_deg, std::atan(slope) * 180 / std::numbers::pi);
     at_axis.add(beam.axis_fwhm_mm, fwhm_mm(0));
   }

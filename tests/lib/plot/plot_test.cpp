@@ -43,7 +43,7 @@ TEST_CASE("ticks are round numbers, inside the axis, about as many as requested"
 }
 
 TEST_CASE("a frame maps values to positions, y upwards, also on logarithmic axes") {
-  const Frame frame{100, 50, 300, 250, {"", 0, 10, false}, {"", 1, 100, true}};
+  const PlotFrame frame{100, 50, 300, 250, {"", 0, 10, false}, {"", 1, 100, true}};
   CHECK(frame.spot_x(5) == 200);
   CHECK(frame.spot_y(1) == 250);
   CHECK(frame.spot_y(10) == doctest::Approx(150));

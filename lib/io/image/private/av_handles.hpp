@@ -21,7 +21,7 @@ struct Free {
   void operator()(AVPacket* packet) const { av_packet_free(&packet); }
 };
 using Codec = std::unique_ptr<AVCodecContext, Free>;
-using Frame = std::unique_ptr<AVFrame, Free>;
+using AvFrame = std::unique_ptr<AVFrame, Free>;
 using Packet = std::unique_ptr<AVPacket, Free>;
 
 /// The status itself, unless it is negative: then an Error "<name>: <what> failed: <libav's words>".

@@ -11,12 +11,12 @@
 namespace vam::io {
 
 /// Rows of the matrix of the 3MF core specification, 3.3: row vectors, (x y z 1) M; translations in mm.
-struct Placement {
+struct ComponentPlacement {
   std::array<std::array<double, 3>, 4> rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 0}}};
 
   [[nodiscard]] std::array<double, 3> operator()(const std::array<double, 3>& p) const;
   /// First this one, then `outer`.
-  [[nodiscard]] Placement then(const Placement& outer) const;
+  [[nodiscard]] ComponentPlacement then(const ComponentPlacement& outer) const;
   /// Turns the inside out.
   [[nodiscard]] bool mirrors() const;
 };
@@ -25,7 +25,7 @@ struct Placement {
 struct Instance {
   std::string part;  // of another part of the package (production extension); empty: the same one
   unsigned object = 0;
-  Placement placement;
+  ComponentPlacement placement;
 };
 
 struct Object3mf {

@@ -6,17 +6,17 @@
 
 namespace vam::io {
 
-struct Bounds {
+struct ResourceBounds {
   std::uint64_t memory_bytes = 0;  // in addition to what the process has
   std::uint64_t cpu_s = 0;
 };
 
 /// For a file of that size; 0: not known.
-[[nodiscard]] Bounds bounds_of(std::uint64_t file_bytes);
+[[nodiscard]] ResourceBounds bounds_of(std::uint64_t file_bytes);
 
 /// Makes the calling process, a fresh child, end with its parent, gives it the bounds and takes away every descriptor
 /// but `kept`, every signal handler and, where the kernel has seccomp, every system call that is not needed to compute,
 /// to allocate, and to read and write these descriptors; they fail with EPERM then.
-void confine(const Bounds& bounds, int parent, std::initializer_list<int> kept);
+void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept);
 
 }  // namespace vam::io

@@ -9,7 +9,7 @@
 
 namespace vam::metrology::outline {
 
-struct Point {
+struct OutlinePoint {
   double x = 0;
   double y = 0;
 };
@@ -20,15 +20,15 @@ struct Similar {
   double b = 0;
   double x = 0;
   double y = 0;
-  Point operator()(const Point& p) const { return {a * p.x - b * p.y + x, b * p.x + a * p.y + y}; }
-  [[nodiscard]] Point inverse(const Point& p) const {
+  OutlinePoint operator()(const OutlinePoint& p) const { return {a * p.x - b * p.y + x, b * p.x + a * p.y + y}; }
+  [[nodiscard]] OutlinePoint inverse(const OutlinePoint& p) const {
     const double s = a * a + b * b;
     return {(a * (p.x - x) + b * (p.y - y)) / s, (-b * (p.x - x) + a * (p.y - y)) / s};
   }
 };
 
 /// In pixels.
-[[nodiscard]] Point middle_of(const Image& image);
+[[nodiscard]] OutlinePoint middle_of(const Image& image);
 /// The value between pixel middles; outside that of the nearest.
 [[nodiscard]] float bilinear(const Image& image, double column, double row);
 
@@ -40,21 +40,21 @@ struct Similar {
 class Outline {
  public:
   explicit Outline(const Relief& print);
-  [[nodiscard]] double distance(const Point& p) const;
+  [[nodiscard]] double distance(const OutlinePoint& p) const;
   /// Not in gaps of five pixels and more, nor near them, where the print's outline is the end of the readings.
-  [[nodiscard]] bool judges(const Point& p) const;
-  [[nodiscard]] Point gradient(const Point& p) const;
+  [[nodiscard]] bool judges(const OutlinePoint& p) const;
+  [[nodiscard]] OutlinePoint gradient(const OutlinePoint& p) const;
   /// Of the distances of the placed points that are judged; 1e300 when none is.
-  [[nodiscard]] double rms(const std::vector<Point>& points, const Similar& pose) const;
+  [[nodiscard]] double rms(const std::vector<OutlinePoint>& points, const Similar& pose) const;
 
  private:
   Image distance_;
   Image judged_;
   double pixel_mm_;
-  Point middle_;
+  OutlinePoint middle_;
 };
 
 /// Gauss-Newton on the distances of the placed points; far ones pull with constant force (Huber).
-[[nodiscard]] Similar fit(const std::vector<Point>& points, const Outline& outline, Similar pose, int steps);
+[[nodiscard]] Similar fit(const std::vector<OutlinePoint>& points, const Outline& outline, Similar pose, int steps);
 
 }  // namespace vam::metrology::outline

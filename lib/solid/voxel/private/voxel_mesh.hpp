@@ -42,7 +42,7 @@ struct Moment {
 [[nodiscard]] inline double own_share(const Moment& m, int index) { return (index + 1) * m.area - m.first; }
 
 /// Rows of a slice, each with one entry more than it has voxels. Only touched rows are cleared.
-class Rows {
+class VoxelRows {
  public:
   void reset(int rows, int voxels);
   [[nodiscard]] bool touched(int row) const { return touched_[row] != 0; }
