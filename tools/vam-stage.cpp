@@ -45,8 +45,8 @@ cli::Manual manual() {
       "turn the rotation stage and report its angle",
       {"Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
        "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
-       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma\": ...}: the time on CLOCK_MONOTONIC, which all processes "
-       "of the machine share, the angle at that time, and its standard deviation in degrees. vam-project --follow "
+       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all processes "
+       "of the machine share, the angle at that time, and its standard deviation. vam-project --follow "
        "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
        "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
        "The stage is that of --device or stage.device in the printer file; without either the command fails. "

@@ -40,7 +40,7 @@ def angles(table):
     lines = []
     while table[0] < now:
         table[0] += 0.01
-        lines.append('{"t_monotonic_s":%.6f,"angle_deg":%.5f,"sigma":0.001}\n' % (table[0], 30 * (table[0] - table[1])))
+        lines.append('{"t_monotonic_s":%.6f,"angle_deg":%.5f,"sigma_deg":0.001}\n' % (table[0], 30 * (table[0] - table[1])))
     return "".join(lines).encode()
 
 

@@ -21,7 +21,7 @@ AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s) {
 
 std::string to_line(const AngleSample& sample) {
   std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma":%.5f})", sample.t_s,
+  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f})", sample.t_s,
                 sample.angle_deg, sample.sigma_deg);
   return text.data();
 }
@@ -41,7 +41,8 @@ AngleSample parse_angle_line(const std::string& line, long number) {
   };
   read("t_monotonic_s", sample.t_s);
   read("angle_deg", sample.angle_deg);
-  read("sigma", sample.sigma_deg);
+  // Recordings of 0.1.0 say sigma.
+  read(parsed.contains("sigma") && !parsed.contains("sigma_deg") ? "sigma" : "sigma_deg", sample.sigma_deg);
   return sample;
 }
 

@@ -20,7 +20,7 @@ struct AngleSample {
 /// times the speed, and of the encoder's last digit.
 [[nodiscard]] AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s);
 
-/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma":0.00123}
+/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}
 [[nodiscard]] std::string to_line(const AngleSample& sample);
 /// Throws Fault::data for anything else: "follow: line 7: ...".
 [[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);

@@ -53,8 +53,9 @@ TEST_CASE("Lines go out and come back") {
   CHECK(back.t_s == sample.t_s);
   CHECK(back.angle_deg == sample.angle_deg);
   CHECK(back.sigma_deg == sample.sigma_deg);
-  for (const char* bad : {"", "7", "{}", R"({"t_monotonic_s":1,"angle_deg":"x","sigma":1})",
-                          R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma":1})", "{\"t_mono"}) {
+  CHECK(parse_angle_line(R"({"t_monotonic_s":1,"angle_deg":2,"sigma":0.5})", 1).sigma_deg == 0.5);  // of 0.1.0
+  for (const char* bad : {"", "7", "{}", R"({"t_monotonic_s":1,"angle_deg":"x","sigma_deg":1})",
+                          R"({"t_monotonic_s":1e999,"angle_deg":1,"sigma_deg":1})", "{\"t_mono"}) {
     CAPTURE(bad);
     CHECK(fault_of([&] { (void)parse_angle_line(bad, 7); }) == Fault::data);
     CHECK(message_of([&] { (void)parse_angle_line(bad, 7); }).find("line 7") != std::string::npos);
