@@ -24,7 +24,7 @@ inline int follow_moved(int argc, char** argv, const std::vector<std::string>& c
   std::string command = space == std::string::npos ? argv[1] : now.substr(space + 1);
   const char* slash = std::strrchr(argv[0], '/');
   const std::string self = slash != nullptr ? slash + 1 : argv[0];
-  std::cerr << self << ": " << self << ' ' << argv[1] << " is now " << program << ' ' << command << '\n';
+  std::cerr << self << ": warning: " << self << ' ' << argv[1] << " is now " << program << ' ' << command << '\n';
   argv[0] = program.data();
   argv[1] = command.data();
   execvp(program.c_str(), argv);

@@ -77,7 +77,7 @@ void make_operand(const std::string& tool, const Positional& positional, std::ve
   } else {
     word->erase(0, positional.former.size() + 1);
   }
-  std::fprintf(stderr, "%s: %s FILE is now the operand %s\n", tool.c_str(), positional.former.c_str(),
+  std::fprintf(stderr, "%s: warning: %s FILE is now the operand %s\n", tool.c_str(), positional.former.c_str(),
                positional.value_name.c_str());
 }
 
@@ -142,7 +142,7 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
     const std::string present = long_flag(*option);
     word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
     if (!reported.insert(flag).second) continue;
-    std::fprintf(stderr, "%s: %s is now %s%s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str(),
+    std::fprintf(stderr, "%s: warning: %s is now %s%s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str(),
                  value.c_str());
   }
 }

@@ -40,7 +40,7 @@ near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAM
 fails 64 'no --screen' vam-calibrate-all
 fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
 vam-calibrate --scans edge 2>moved.err
-is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: vam-calibrate --scans is now vam-calibrate-all --scans'
+is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: warning: vam-calibrate --scans is now vam-calibrate-all --scans'
 fails 64 'names no scan' vam-calibrate-all --screen null: --scans ' '
 
 # A bench out of adjustment. The projector's log tells the camera's simulator which pattern is on.

@@ -167,7 +167,7 @@ fails 64 '0.9 is not below --dose-high 0.8' vam-optimize --dose-low 0.9 --dose-h
 fails 64 "no figure is called 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
 fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
 fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o out.exr
-is "a former spelling is reported" "$(vam-optimize --peak 1 part.vdb -o out.exr 2>&1 | head -n 1)" 'vam-optimize: --peak is now --full-scale'
+is "a former spelling is reported" "$(vam-optimize --peak 1 part.vdb -o out.exr 2>&1 | head -n 1)" 'vam-optimize: warning: --peak is now --full-scale'
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr

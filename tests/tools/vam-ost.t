@@ -108,7 +108,7 @@ fails 64 'need the gelation threshold' vam-ost views --angle-step 6 --mesh p.ply
 fails 64 'requires --projections' vam-ost views --angle-step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
-is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: vam-ost threshold is now vam-calibrate resin'
+is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: warning: vam-ost threshold is now vam-calibrate resin'
 same 'with the same record' resin.json former.json
 fails 65 'no print at this threshold' vam-ost views --angle-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
 fails 65 'the turn is incomplete' vam-ost views --angle-step 2 $rig -o x.vdb

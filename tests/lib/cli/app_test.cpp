@@ -253,7 +253,7 @@ TEST_CASE("a former spelling works as the option does, with one warning") {
        std::vector<std::vector<std::string>>{{"--taper", "cosine"}, {"--taper=cosine"}}) {
     Tool tool;
     int status = -1;
-    CHECK(written_to(stderr, [&] { status = tool.run(words); }) == "vam-demo: --taper is now --window\n");
+    CHECK(written_to(stderr, [&] { status = tool.run(words); }) == "vam-demo: warning: --taper is now --window\n");
     CHECK(status == 0);
     CHECK(tool.window == "cosine");
     CHECK(tool.app.given("--window"));
@@ -270,7 +270,7 @@ TEST_CASE("a former flag stands for an option and its value") {
   int status = -1;
   CHECK(written_to(stderr, [&] {
           status = tool.run({"part.vdb", "--keep-negative"});
-        }) == "vam-demo: --keep-negative is now --negative keep\n");
+        }) == "vam-demo: warning: --keep-negative is now --negative keep\n");
   CHECK(status == 0);
   CHECK(negative == "keep");
 }
@@ -283,7 +283,7 @@ TEST_CASE("an operand that was an option takes either spelling") {
     App app(Manual{"vam-demo", "shows", {}, {}, {}, {}});
     app.positional("FRAMES", frames, "Frames.", "--from").option("--bands", "N", bands, any, "Bands.");
     CHECK(written_to(stderr, [&] { CHECK(run_app(app, words) == 0); }) ==
-          "vam-demo: --from FILE is now the operand FRAMES\n");
+          "vam-demo: warning: --from FILE is now the operand FRAMES\n");
     CHECK(frames == "turn.exr");
     CHECK(bands == 3);
   }
@@ -324,7 +324,7 @@ TEST_CASE("a command's option has former spellings, too") {
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{"spin", "--pace", "25"}, {"--pace", "25", "spin"}}) {
     Stage stage;
-    CHECK(written_to(stderr, [&] { CHECK(stage.run(words) == 0); }) == "vam-demo: --pace is now --speed\n");
+    CHECK(written_to(stderr, [&] { CHECK(stage.run(words) == 0); }) == "vam-demo: warning: --pace is now --speed\n");
     CHECK(stage.speed == 25);
   }
 }
