@@ -40,6 +40,16 @@ fails 66 'cannot be opened' vam-print frames.exr --screen null:
 fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
 ok 'help' vam-print --help
 ok 'help' vam-calibrate-all --help
+for script in vam-print vam-calibrate-all; do
+  is "$script: its version is that of the tools" "$($script --version)" "$(vam-project --version | sed "s/^vam-project/$script/")"
+  is "$script: its manual page" "$($script --man)" "$(cat "$VAM_SOURCE/man/$script.1")"
+  fails 64 '^[^ ]*: --home: takes no value' $script --home=1
+  fails 64 '^[^ ]*: --screen: needs a value' $script --screen
+done
+fails 64 "'HDMI-A-1' is not one of drm:" vam-print frames.exr --screen HDMI-A-1
+fails 64 "'HDMI-A-1' is not one of drm:" vam-calibrate-all --screen HDMI-A-1
+fails 66 'cannot be opened' vam-print frames.exr --screen=null: --set=stage.turns=1
+fails 64 'not one of lag, latency' vam-calibrate-all --screen=null: --scans=edge
 
 # Mesh to frames.
 cat >box.stl <<'STL'
@@ -61,8 +71,10 @@ vam-slice box.stl --voxel 0.26 $plain | vam-sinogram --angles 180 --filter ram-l
 is 'frames of a mesh' $? 0
 vam-project frames.exr --speed 25 --fps 250 $plain -o frames.mkv  # the 3600 of a turn
 is 'a print needs its calibration' "$(vam-print frames.exr --screen null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
-is 'also in the summary' "$(json no/summary.json status)" 65
-rm -r no
+[ ! -e no ]; report $? 'and leaves no folder when it is refused before a device is opened'
+for print in 1 2 3; do vam-print frames.exr --screen null: --light sim: --uncalibrated --set stage.device=grbl:/nowhere 2>>errors & done; wait
+is 'prints that begin in one second have a folder each' "$(cat print-*/summary.json | grep -c '"outcome": "stage failed"')" 3
+rm -r print-*
 
 screen_up 64 48
 turntable() { stage_up --acceleration 1000 --max-speed 360 --at -130 "$@"; }
@@ -106,6 +118,7 @@ holds 'and many were seen' "$(cut -d' ' -f2 compared) > 100"
 is 'a view every 10 degrees' "$(ls run/views | grep -c png)" 36
 is 'the run folder: outcome' "$(json run/summary.json outcome)" done
 is 'the run folder: every event in both times' "$(grep -Evc '^\{"utc":"[^"]*Z","t_monotonic_s":[0-9.]+,"event"' run/events.jsonl)" 0
+is 'the run folder: what ended and how' "$(grep -c '"event":"ended","tool":"[a-z]*","status":0}' run/events.jsonl) $(tail -n 1 run/events.jsonl | grep -c '"event":"end","outcome":"done","status":0}')" '4 1'
 is 'the run folder: which devices were simulated' "$(json run/summary.json simulated)" "['stage', 'camera', 'light']"
 is 'the run folder: hash of what was printed' "$(json run/summary.json sinogram_sha256)" "$(sha256sum <frames.exr | cut -d' ' -f1)"
 ok 'the run folder: every file is as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
