@@ -34,7 +34,8 @@ struct Options {
   double rate_hz = 100;
   double move_speed_deg_s = 10;
   std::optional<double> speed_deg_s;
-  std::optional<int> turns, direction;  // of a spin; absent: of the printer file
+  std::optional<int> turns;  // of a spin; absent: of the printer file
+  std::string direction;     // likewise when empty
   device::SpinPlan plan;
   cli::PrinterOptions printer;
 };
@@ -45,7 +46,8 @@ cli::Manual manual() {
       "turn the rotation stage and report its angle",
       {"Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
        "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
-       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all processes "
+       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all "
+       "processes "
        "of the machine share, the angle at that time, and its standard deviation. vam-project --follow "
        "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
        "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
@@ -101,14 +103,14 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   app.subcommand("ports", "print the serial ports of this machine as JSON", chosen);
   auto& home = app.subcommand("home", "find the reference; it becomes 0 degrees", chosen);
   add_common(home, options);
-  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Time-out.");
+  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Maximum duration of the search.");
   auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
   add_common(move, options);
   move.option("--to", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; several turns are several times 360.");
   move.flag("--relative", options.relative, "The angle is relative to the present one.");
   move.flag("--home", options.home_first, "Find the reference first.");
   move.option("--speed", "DEG/S", options.move_speed_deg_s, {0.001, 1000}, "Speed of the stage.");
-  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Time-out.");
+  move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Maximum duration of the motion.");
   auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample", chosen);
   add_common(spin, options);
   spin.option("--turns", "N", options.turns, {1, 100000}, "Turns of the print, after the run-up.")
@@ -116,8 +118,8 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   spin.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Speed of the stage.")
       .default_is("stage.speed_deg_s");
   spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
-  spin.option("--direction", "SIGN", options.direction, {-1, 1},
-              "1, or -1 to reverse; the reported angle increases either way.")
+  spin.choice("--direction", options.direction, {"1", "-1"},
+              "1: clockwise seen from above; -1: the other way. The reported angle increases either way.")
       .default_is("stage.direction");
   spin.option("--speed-tolerance", "FRACTION", options.plan.speed_tolerance, {1e-6, 1},
               "Largest relative speed error before angle 0.");
@@ -134,13 +136,12 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
 
 // What is not given is the printer file's; calibration records have nothing to say about the stage.
 void settle(Options& options) {
-  if (options.direction == 0) throw Error{Fault::usage, "--direction: give 1 or -1"};
   const model::PrinterStage stage =
       io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
   if (options.device.empty()) options.device = stage.device;
   options.plan.turns = options.turns.value_or(stage.turns);
   options.plan.speed_deg_s = options.speed_deg_s.value_or(stage.speed_deg_s);
-  options.plan.direction = options.direction.value_or(stage.direction);
+  options.plan.direction = options.direction.empty() ? stage.direction : options.direction == "1" ? 1 : -1;
   options.plan.period_s = 1 / options.rate_hz;
 }
 

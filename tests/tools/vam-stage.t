@@ -10,7 +10,8 @@ fails 64 'no command' vam-stage
 fails 64 'unknown scheme' vam-stage identify --device usb:1 --log events
 fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
 fails 64 'out of range' vam-stage spin --turns 0
-fails 64 'give 1 or -1' vam-stage spin --direction 0 --log events
+fails 64 "'0' is not one of 1, -1" vam-stage spin --direction 0 --log events
+fails 65 "200 deg/s exceeds the stage's maximum of 90; give a lower --speed" vam-stage move --device sim: --home --to 9 --speed 200
 fails 64 'not a number' vam-stage spin --device 'sim:?jitter_ms=much'
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
@@ -118,7 +119,7 @@ stage_down
 
 # A GRBL board that its port resets has lost its position.
 stage_up --protocol grbl --reset-at-open
-fails 76 'not referenced: its zero may be anywhere; run `vam-stage home` or give --home' \
+fails 76 'not referenced: its zero may be anywhere; give --home, or run `vam-stage home`' \
   env LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 60
 stage_down
 

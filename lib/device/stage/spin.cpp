@@ -78,10 +78,7 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
 
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report) {
   const StageCaps caps = stage.caps();
-  if (caps.max_speed_deg_s > 0 && plan.speed_deg_s > caps.max_speed_deg_s) {
-    throw Error{Fault::data, format_number(plan.speed_deg_s) + " deg/s exceeds the stage's maximum of " +
-                                 format_number(caps.max_speed_deg_s)};
-  }
+  require_speed_in_range(stage, plan.speed_deg_s);
   require_referenced(stage);
   StopOnExit stopper(stage);
   stage.enable();

@@ -47,6 +47,9 @@ void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> s
 /// Throws Fault::protocol when the stage is not referenced.
 void require_referenced(Stage& stage);
 
+/// Throws Fault::data when the stage reports a lower largest speed.
+void require_speed_in_range(Stage& stage, double speed_deg_s);
+
 /// identify() and caps() in one.
 [[nodiscard]] Json describe(Stage& stage);
 

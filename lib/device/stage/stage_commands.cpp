@@ -26,7 +26,16 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
 
 void require_referenced(Stage& stage) {
   if (stage.referenced()) return;
-  throw Error{Fault::protocol, "stage: not referenced: its zero may be anywhere; run `vam-stage home` or give --home"};
+  throw Error{Fault::protocol,
+              "stage: not referenced: its zero may be anywhere; give --home, or run `vam-stage home` if the controller "
+              "keeps it"};
+}
+
+void require_speed_in_range(Stage& stage, double speed_deg_s) {
+  const double most_deg_s = stage.caps().max_speed_deg_s;
+  if (most_deg_s <= 0 || speed_deg_s <= most_deg_s) return;
+  throw Error{Fault::data, format_number(speed_deg_s) + " deg/s exceeds the stage's maximum of " +
+                               format_number(most_deg_s) + "; give a lower --speed"};
 }
 
 void home(Stage& stage, Clock& clock, double timeout_s) {
@@ -44,6 +53,7 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
 }
 
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s) {
+  require_speed_in_range(stage, speed_deg_s);
   if (!relative) require_referenced(stage);
   StopOnExit stopper(stage);
   stage.enable();

@@ -61,7 +61,8 @@ TEST_CASE("The unit of an axis is degrees, however it is written; a stage withou
   CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
   lab.stage->enable();
   CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::protocol)
-            .find("not referenced: run `vam-stage home` or give --home") != std::string::npos);
+            .find("not referenced: give --home, or run `vam-stage home` if the controller keeps it") !=
+        std::string::npos);
 }
 
 TEST_CASE("An axis that the controller does not have is named, with those it has") {
@@ -96,7 +97,9 @@ TEST_CASE("The controller's refusals are errors with their meaning") {
   CHECK(message_of([&] { move(*lab.stage, lab.clock, 5, false, 10, 10); }).find("not referenced") != std::string::npos);
   home(*lab.stage, lab.clock, 60);
   CHECK(message_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }).find("limits") != std::string::npos);
-  CHECK(message_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }).find("faster than") != std::string::npos);
+  CHECK(message_of([&] { lab.stage->set_speed(1000); }).find("faster than") != std::string::npos);
+  CHECK(error_of([&] { move(*lab.stage, lab.clock, 50, false, 1000, 10); }, Fault::data).find("maximum of") !=
+        std::string::npos);
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 101, false, 10, 10); }) == Fault::protocol);
   CHECK_FALSE(lab.truly_moves());
   // A refusal is cleared by being read: the next order is judged for itself.

@@ -56,7 +56,7 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   SpinPlan plan;
   plan.speed_deg_s = 60;
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; run `vam-stage home`") !=
+  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; give --home") !=
         std::string::npos);
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
   CHECK(lab.log.empty());
