@@ -25,13 +25,13 @@ cli::Manual manual() {
        "their stacks one after the other in one file) give both, the wobble as the radius and the stage angle of "
        "greatest column. beam: either a bare sensor is moved along the beam, "
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
-       "each image column is another plane. latency takes the times of the frames as true: lag determines the "
-       "delay of the camera's time stamps before, from a bead that turns with the stage at known angles, one way and "
-       "the other, captured with --latency 0 and the exposure in use. Its record is the --latency of vam-capture from "
+       "each image column is another plane. latency relies on the times of the frames. lag, which therefore comes "
+       "first, determines the latency of the camera, the delay of its time stamps, "
+       "from a bead that turns with the stage at known angles, in both directions, captured with --latency 0 and the "
+       "exposure in use. Its record is the --latency of vam-capture from "
        "then on.",
-       "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused with that "
-       "share: "
-       "what they would have shown is lost. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
+       "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused as "
+       "over-exposed, with that fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder (vam-ost): "
        "the threshold at which its cross-section has the known diameter, from a mean over the height of the standard. "
        "Its record is the --resin of vam-ost and vam-sdf.",
@@ -42,7 +42,7 @@ cli::Manual manual() {
        "record, file. A stale or foreign record is refused (status 65). A result that does not meet its requirements "
        "is recorded but not put in force (status 1). Without a folder the record is written to standard output."},
       {{"The rotation axis in frames of a bead (here a printed piece) over one turn:",
-        "vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
+        "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
         "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis turn.exr --bands 3"},
        {"The records in force:", "vam-calibrate check --set calibration.folder=cal"}},
       {},

@@ -25,19 +25,20 @@ cli::Manual manual() {
        "before its line in the manifest is. Repeating the command captures only the missing frames.",
        "Default: every frame is kept; in a folder, a lost frame leaves its number free. With --every DEG the frame "
        "nearest to each multiple of that angle is kept, over --turns turns from angle 0.",
-       "The camera is that of --device or camera.device in the printer file; without either the command fails. What a "
-       "simulated camera takes is marked: \"simulated\" in log, report and manifest, a line in the history of a stack.",
+       "The camera is that of --device or camera.device in the printer file; without either the command fails. Frames "
+       "of a simulated camera are marked: \"simulated\" in log, report and manifest, a line in the history of a stack.",
        "A device is a scheme, a place and options. aravis:IP-or-ID is a GenICam camera on USB3 Vision or GigE Vision "
        "(?packet_size=8000, ?buffers=20); aravis: is the only camera present. v4l2:/dev/video0 is a Video4Linux "
        "camera. replay:PLACE is a folder of vam-capture, a folder of numbered images or an EXR frame stack, read as "
        "fast as possible, or with ?pace=real in real time. sim: is a vial with a growing print, simulated in the tool; "
-       "its options are those of vam-sim-camera(1), with underscores, and pace=virtual.",
+       "its options are those of vam-sim-camera(1) on scene, misalignment, sensor and faults, with underscores "
+       "(?lit=0.1&wobble_phase=30, card=1 for a flag), and pace=virtual; the projector's image is that of --flips.",
        "Lost frames are always reported: the numbers of dropped and of incomplete frames appear on standard error, in "
        "--report and in --log; an incomplete frame is marked in the manifest and in the stack (vam:incomplete), where "
        "it keeps the received parts, and vam-ost ignores it. A gap in vam:number means dropped frames."},
       {{"Identify the camera, here a simulated one:", "vam-capture identify --device sim:"},
        {"Twenty frames of a simulated print, 18 degrees apart, as fast as they can be rendered:",
-        "vam-capture --device 'sim:?pace=virtual&speed_deg_s=180&lit_s=0.1' --binning 8 --fps 10 --frames 20 -o "
+        "vam-capture --device 'sim:?pace=virtual&speed=180&lit=0.1' --binning 8 --fps 10 --frames 20 -o "
         "views.exr"},
        {"Half a turn into a folder; the second call finds nothing missing and captures nothing:",
         "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/\nvam-capture "
@@ -85,6 +86,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--frames", "N", o.frames, {1, 1e6}, "Number of frames.")
       .default_is("until a signal or the end of a recording");
   app.option("--every", "DEG", o.every_deg, cli::positive, "Keep the frames nearest to the multiples of this angle.");
+  app.default_is("every frame");
   app.option("--turns", "N", o.turns, cli::positive, "With --every: number of turns.").default_is("1");
   app.option("--follow", "FILE", o.follow, "Read the stage angle from this output of vam-stage, a FIFO or -.");
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
@@ -95,6 +97,7 @@ void declare(cli::App& app, Options& o) {
       .default_is("camera.latency_ms");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "End with status 75 when more frames are dropped or incomplete.");
+  app.default_is("no limit");
   app.group("Output and machine");
   app.flag("--live", o.live, "Send every frame at once as a stack of its own.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch at the axis, after binning.")

@@ -2,6 +2,7 @@
 # vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 take="vam-capture --device $sim --binning 12 --fps 10"
 
 fails 64 'number of images' $take --log why -o views.exr
@@ -11,6 +12,10 @@ fails 64 'needs --every' $take --frames 3 --turns 2 -o views.exr
 fails 64 'conflicts with --turns' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
 fails 64 'conflicts with --follow' $take --frames 3 --follow - --speed 90 -o views.exr
 fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
+$take --frames 2 -o former.exr
+vam-capture --device 'sim:?pace=virtual&lit=0.1&speed=90&noise=0.004' --binning 12 --fps 10 --frames 2 -o present.exr
+is "sim: has the options of vam-sim-camera, and former names" "$($exr sum present.exr)" "$($exr sum former.exr)"
+rm former.exr present.exr
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
 fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr

@@ -122,7 +122,9 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
 }
 
 void check_records(const ScanOptions& options, const model::Calibration& calibration) {
-  if (calibration.folder.empty()) throw Error{Fault::usage, "no calibration.folder in the printer settings"};
+  if (calibration.folder.empty())
+    throw Error{Fault::usage,
+                "no calibration.folder in the printer settings; name one, e.g. --set calibration.folder=DIR"};
   const auto& scans = io::calibration_scans();
   for (const auto& name : options.needed) {
     if (std::find(scans.begin(), scans.end(), name) == scans.end()) {

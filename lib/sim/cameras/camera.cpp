@@ -17,13 +17,37 @@ namespace vam::sim {
 
 namespace {
 
+// As vam-sim-camera(1) has them, with underscores.
 const std::vector<std::string>& option_names() {
-  static const std::vector<std::string> names{
-      "columns",        "rows",     "axis_column", "tilt_deg",    "centre_px", "wobble_mm", "wobble_deg", "beam_mm",
-      "gamma",          "glow",     "vignetting",  "background",  "noise",     "part",      "lit_s",      "seed",
-      "divergence_deg", "focus_mm", "card",        "speed_deg_s", "angles",    "shown",     "bits",       "lag_ms",
-      "lose",           "cut",      "vanish",      "shrink",      "pace",      "log"};
+  static const std::vector<std::string> names{"columns",      "rows",  "axis_column", "tilt",       "centre", "wobble",
+                                              "wobble_phase", "beam",  "divergence",  "focus",      "gamma",  "glow",
+                                              "card",         "noise", "vignetting",  "background", "part",   "lit",
+                                              "flips",        "seed",  "angles",      "speed",      "bits",   "lag",
+                                              "lose",         "cut",   "vanish",      "pace",       "shrink", "log"};
   return names;
+}
+
+// The former names, most with their unit, stand for the same options.
+device::Address with_present_names(const device::Address& address) {
+  device::Address renamed = address;
+  const auto rename = [&renamed](const char* former, const char* present) {
+    auto option = renamed.options.extract(former);
+    if (option.empty()) return;
+    option.key() = present;
+    renamed.options.insert(std::move(option));
+  };
+  rename("tilt_deg", "tilt");
+  rename("centre_px", "centre");
+  rename("wobble_mm", "wobble");
+  rename("wobble_deg", "wobble_phase");
+  rename("beam_mm", "beam");
+  rename("focus_mm", "focus");
+  rename("divergence_deg", "divergence");
+  rename("speed_deg_s", "speed");
+  rename("lit_s", "lit");
+  rename("lag_ms", "lag");
+  rename("shown", "flips");
+  return renamed;
 }
 
 SimCameraSettings settings_of(const device::Address& address, const device::CameraSettings& asked,
@@ -34,30 +58,30 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   bench.columns = address.integer("columns", 8, 8192).value_or(bench.columns);
   bench.rows = address.integer("rows", 8, 8192).value_or(bench.rows);
   bench.axis_column = address.number("axis_column", bench.axis_column, -4096, 4096);
-  bench.tilt_deg = address.number("tilt_deg", bench.tilt_deg, -30, 30);
-  bench.centre_px = address.number("centre_px", bench.centre_px, -4096, 4096);
-  bench.wobble_mm = address.number("wobble_mm", bench.wobble_mm, 0, 100);
-  bench.wobble_deg = address.number("wobble_deg", bench.wobble_deg, -360, 360);
-  bench.beam_mm = address.number("beam_mm", bench.beam_mm, 0, 10);
-  bench.divergence_deg = address.number("divergence_deg", bench.divergence_deg, 0, 45);
-  bench.focus_mm = address.number("focus_mm", bench.focus_mm, -1000, 1000);
+  bench.tilt_deg = address.number("tilt", bench.tilt_deg, -30, 30);
+  bench.centre_px = address.number("centre", bench.centre_px, -4096, 4096);
+  bench.wobble_mm = address.number("wobble", bench.wobble_mm, 0, 100);
+  bench.wobble_deg = address.number("wobble_phase", bench.wobble_deg, -360, 360);
+  bench.beam_mm = address.number("beam", bench.beam_mm, 0, 10);
+  bench.divergence_deg = address.number("divergence", bench.divergence_deg, 0, 45);
+  bench.focus_mm = address.number("focus", bench.focus_mm, -1000, 1000);
   bench.card = address.integer("card", 0, 1).value_or(0) == 1;
   bench.glow = address.number("glow", bench.glow, 0, 1e4);
   bench.gamma = address.number("gamma", bench.gamma, 0.1, 10);
   bench.vignetting = address.number("vignetting", bench.vignetting, 0, 1);
   bench.background = address.number("background", bench.background, 0, 1);
   bench.noise = address.number("noise", bench.noise, 0, 1);
-  bench.lit_s = address.number("lit_s", bench.lit_s, 0, 1e6);
+  bench.lit_s = address.number("lit", bench.lit_s, 0, 1e6);
   bench.seed = address.integer("seed", 0, 1000000000).value_or(bench.seed);
   if (address.options.contains("part")) bench.bodies = parse_bodies(address.word("part", ""));
-  sim.sources.speed_deg_s = address.number("speed_deg_s", 0, -1000, 1000);
+  sim.sources.speed_deg_s = address.number("speed", 0, -1000, 1000);
   sim.sources.angles = address.word("angles", "");
-  sim.sources.shown = address.word("shown", "");
+  sim.sources.shown = address.word("flips", "");
   sim.sources.images = room.images;
   sim.fps = asked.fps.value_or(sim.fps);
   sim.exposure_us = asked.exposure_us.value_or(sim.exposure_us);
   sim.bits = address.integer("bits", 8, 16).value_or(sim.bits);
-  sim.lag_s = 1e-3 * address.number("lag_ms", 0, -1000, 1000);
+  sim.lag_s = 1e-3 * address.number("lag", 0, -1000, 1000);
   sim.lose = parse_frames(address.word("lose", ""));
   sim.cut = parse_frames(address.word("cut", ""));
   sim.vanish = address.integer("vanish", 0, 1000000000).value_or(-1);
@@ -178,8 +202,9 @@ std::string fingerprint(const GreyImage& levels) {
   return text.data();
 }
 
-std::unique_ptr<device::Camera> open_sim_camera(const device::Address& address, const device::CameraSettings& settings,
+std::unique_ptr<device::Camera> open_sim_camera(const device::Address& asked, const device::CameraSettings& settings,
                                                 const device::CameraBench& bench, device::Clock& clock) {
+  const device::Address address = with_present_names(asked);
   address.allow(option_names());
   if (!address.place.empty()) throw Error{Fault::usage, "device '" + address.text + "': sim: takes no place"};
   if (settings.trigger != "free" && settings.trigger != "software") {
