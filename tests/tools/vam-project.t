@@ -12,7 +12,8 @@ is "one frame per time step" "$(ls frames | grep -c png)" 36
 is "the first names" "$(ls frames | head -n 2 | tr '\n' ' ')" "00000.png 00001.png "
 is "size and depth" "$($png size frames/00000.png)" "64 8 8 1"
 is "the index" "$(sed -n '1p;3p' frames/frames.csv | tr '\n' ' ')" "file,time_s,angle_deg 00001.png,1,10 "
-is "history in the image" "$($png text frames/00000.png Comment | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
+is "its time and rate in the image" "$($png text frames/00001.png vam:time_s) $($png text frames/00001.png vam:fps)" "1 1"
+is "history in the image" "$($png text frames/00000.png vam:history | tail -n 1 | cut -d' ' -f1,3-)" "vam-project part.exr -o frames/"
 ok "an EXR stack" vam-project part.exr -o frames.exr --compression none
 is "frames of the projector" "$($exr attr frames.exr vam:kind) $($exr attr frames.exr vam:space)" "frames projector"
 is "row 0 is at the top: z = 5 rows of 0.26 mm" "$($exr attr frames.exr vam:z_mm) $($exr attr frames.exr vam:row_mm)" "1.3 -0.26"

@@ -25,18 +25,23 @@ model::ImageInfo about(const ProjectorFrame& frame) {
 class FolderSink : public FrameSink {
  public:
   FolderSink(const std::string& path, const FrameSinkOptions& options)
-      : folder_(path), text_{{"Comment", join(options.info.history, "\n")}} {}
+      : folder_(path), fps_(format_number(options.fps, 9)), history_(join(options.info.history, "\n")) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
     const int first = static_cast<int>(shown_.size());
-    parallel_for(static_cast<int>(frames.size()), [&](int i) { folder_.write(first + i, frames[i].levels, text_); });
+    parallel_for(static_cast<int>(frames.size()),
+                 [&](int i) { folder_.write(first + i, frames[i].levels, text(frames[i])); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
   void commit() override { folder_.commit(shown_); }
 
  private:
+  [[nodiscard]] ImageText text(const ProjectorFrame& frame) const {
+    return {{"vam:time_s", format_number(frame.time_s, 9)}, {"vam:fps", fps_}, {"vam:history", history_}};
+  }
+
   FrameFolder folder_;
-  ImageText text_;
+  std::string fps_, history_;
   std::vector<model::ImageInfo> shown_;
 };
 
