@@ -70,10 +70,14 @@ cli::Manual manual() {
        "reaches the dose given the levels below it; the dose is therefore never too low, and too high by at most the "
        "contribution of one level in a single slice.",
        "Timing: slice n is shown from time n / fps, fps = speed / slice height. The stack has the attributes vam:fps, "
-       "vam:speed_mm_h and a time for each slice, the folder an index frames.csv in the format of vam-project.",
+       "vam:exposure (--exposure-mode), vam:speed_mm_h (--print-speed) and a time for each slice, the folder an index "
+       "frames.csv in the format of vam-project.",
        "Accuracy: the recursion agrees with the integral of Beer's law over time to 1e-6, and the correction with the "
        "optimum of a linear program. Voxels are inside or outside the part by --threshold. Flow, diffusion and "
-       "inhibition are neglected; the paper found the best critical dose to be five times the gelation dose.",
+       "inhibition are neglected.",
+       "Critical dose: D_c is the dose to which features are exposed, and the paper found five times the gelation dose "
+       "D_gel of working-curve to be best. In the other tools resin.critical_dose_mj_cm3 is the gelation threshold "
+       "itself. Where both use one printer file, keep the gelation threshold in it and give --critical-dose here.",
        "With --exposure-mode layered, the depth cured beyond a feature's top edge by the minimum intensity alone is "
        "not "
        "corrected: "

@@ -57,7 +57,7 @@ cli::Manual manual() {
            "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
           {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
           {},
-          cli::device_statuses};
+          {{75, "The address has a camera already, or cannot serve one."}}};
 }
 
 void declare(cli::App& app, Options& o) {
@@ -80,7 +80,8 @@ void declare(cli::App& app, Options& o) {
   app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the pattern ramp.");
   app.group("Misalignment of the bench");
   app.option("--axis-column", "PX", bench.axis_column, {-4096, 4096},
-             "Column of the rotation axis, from the centre of the sensor.");
+             "Column of the rotation axis, counted from the centre of the sensor (camera.axis_column counts from its "
+             "left edge).");
   app.option("--tilt", "DEG", bench.tilt_deg, {-30, 30}, "Tilt of the axis, its lower end towards higher columns.");
   app.option("--centre", "PX", bench.centre_px, {-4096, 4096},
              "Centre of the vial in projector columns, from projector.axis_column.");

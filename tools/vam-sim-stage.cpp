@@ -51,7 +51,7 @@ cli::Manual manual() {
        "the stage coasts to a stop) and block (the stage is blocked while the controller keeps answering)."},
       {"vam-stage", "vam-sim-camera"},
       {},
-      cli::device_statuses};
+      {{69, "No pseudo-terminal is available."}, {129, "SIGHUP."}, {130, "SIGINT."}, {143, "SIGTERM."}}};
 }
 
 void declare(cli::App& app, Options& options) {

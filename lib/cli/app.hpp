@@ -29,8 +29,12 @@ struct Manual {
 };
 
 /// For the manuals of tools that drive devices.
-inline const std::vector<ExitStatus> device_statuses{
-    {69, "A device is absent."}, {75, "A device is busy or timed out; try again."}, {76, "Device protocol error."}};
+inline const std::vector<ExitStatus> device_statuses{{69, "A device is absent."},
+                                                     {75, "A device is busy or timed out; try again."},
+                                                     {76, "Device protocol error."},
+                                                     {129, "SIGHUP, after the safe state."},
+                                                     {130, "SIGINT, after the safe state."},
+                                                     {143, "SIGTERM, after the safe state."}};
 
 struct Range {
   double low;

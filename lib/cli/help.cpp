@@ -22,7 +22,8 @@ std::string operands(const Declaration& form) {
 
 std::string usage(const Declaration& tool) {
   const std::string name = tool.manual.name;
-  if (tool.subcommands.empty()) return "Usage: " + name + " [OPTIONS]" + operands(tool) + "\n";
+  const std::string options = tool.groups.empty() ? "" : " [OPTIONS]";
+  if (tool.subcommands.empty()) return "Usage: " + name + options + operands(tool) + "\n";
   const std::string with_command = name + " COMMAND [OPTIONS]; " + name + " COMMAND --help\n";
   if (!has_plain_form(tool)) return "Usage: " + with_command;
   return "Usage: " + name + " [OPTIONS]" + operands(tool) + "\n       " + with_command;

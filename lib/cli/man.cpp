@@ -198,11 +198,23 @@ std::string environment(const Declaration& tool) {
   if (find_option(tool, "--threads") != nullptr)
     out += ".It Ev VAM_SIMD\nHighest instruction set to use: baseline, avx2 or avx512.\n";
   const auto& statuses = tool.manual.statuses;
-  if (std::any_of(statuses.begin(), statuses.end(), [](const auto& status) { return status.code == 75; }))  // busy
+  if (std::any_of(statuses.begin(), statuses.end(),
+                  [](const auto& status) { return status.code == 76; }))  // drives a device
     out +=
         ".It Ev VAM_LOCK_DIR\nFolder of the locks that reserve a device for one program.\nDefault:\n"
         ".Pa /run/lock ,\nelse\n.Pa /tmp .\n";
   return out.empty() ? "" : ".Sh ENVIRONMENT\n.Bl -tag -width Ds\n" + out + ".El\n";
+}
+
+std::string files_section(const Manual& manual) {
+  std::string out =
+      ".Sh FILES\n"
+      "The formats of volumes, stacks, records and the printer file are described in\n"
+      ".Xr vam-formats 7 .\n"
+      "A dash means standard input or standard output; outputs appear under their\n"
+      "final name only when complete.\n";
+  for (const auto& file : manual.files) out += ".Pp\n" + paragraph(file);
+  return out;
 }
 
 std::string examples(const Manual& manual) {
@@ -246,13 +258,10 @@ std::string manual_page(const Declaration& tool) {
     out += paragraph(note);
   }
   out += environment(tool);
-  out +=
-      ".Sh FILES\n"
-      "The formats of volumes, stacks, records and the printer file are described in\n"
-      ".Xr vam-formats 7 .\n"
-      "A dash means standard input or standard output; outputs appear under their\n"
-      "final name only when complete.\n";
-  for (const auto& file : manual.files) out += ".Pp\n" + paragraph(file);
+  if (find_option(tool, "--printer") != nullptr || find_option(tool, "--output") != nullptr ||
+      !tool.positionals.empty()) {
+    out += files_section(manual);
+  }
   out += ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
   for (const auto& status : exit_statuses(tool))
     out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";

@@ -65,7 +65,7 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
   const auto factor = stretch == facts_.metadata.end() ? std::nullopt : parse_number(stretch->second);
   if (factor && std::fabs(*factor - 1) > 1e-6) {
     warn(name_ + ": stretched along z by " + format_number(*factor) +
-         " for a vial, which this printer does not have; slice with --stretch-z 1");
+         " for a vial, which vam-curethrough does not use; slice with --stretch-z 1");
   }
 }
 

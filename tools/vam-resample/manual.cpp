@@ -10,16 +10,16 @@ cli::Manual manual() {
        "like a strong lens: the ray of column x_p passes through the resin along another line, at offset x_v and "
        "rotated by delta. vam-resample converts a virtual (parallel-beam) sinogram S_v to a projector sinogram, "
        "S_p(x_p, theta) = S_v(x_v, theta + delta) J/T, where J = dx_v/dx_p conserves energy per width and T is the "
-       "Fresnel transmittance. The map is exact for level rays through any number of concentric shells (vial.wall_mm), "
+       "Fresnel transmittance. The map is exact for horizontal rays through any number of concentric shells "
+       "(vial.wall_mm), "
        "from a telecentric or diverging lens, and through a bath behind a flat window.",
        "Rays that also diverge from row to row climb, and leave their slice. No map from slice to row is exact for "
        "them; "
        "this one treats them as horizontal. It is exact for projector.telecentric and projector.telecentric_rows. It "
-       "is good "
-       "enough where the light of the outermost row deviates by less than half a voxel within the writable radius, "
+       "suffices where the light of the outermost row deviates by less than half a voxel within the writable radius, "
        "z R_w / (D n M_vp), that is for parts up to 0.5 D n M_vp / R_w voxels above and below the axis of the lens (10 "
        "voxels for the default printer), and where the part's cross-section changes little over the voxels by which it "
-       "deviates. Otherwise one line on standard error says by how many, and vam-optimize --geometry vial (the "
+       "deviates. Otherwise a warning states by how many, and vam-optimize --geometry vial (the "
        "default) "
        "computes projections that include the slope.",
        "With --to virtual it performs the inverse for a camera that views the vial: camera sinograms become "
@@ -29,7 +29,7 @@ cli::Manual manual() {
        "The output of --to projector has the projector's columns, with the axis at projector.axis_column."},
       {{"Correct the projections of a part for the default printer:",
         "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-resample -o "
-        "frames.exr"},
+        "projector.exr"},
        {"Show the map of a telecentric projector as CSV:",
         "vam-resample --explain --set projector.telecentric=true -o map.csv"},
        {"Show the exact rays of the projector's top row:", "vam-resample --explain --row 0 -o top.csv"},

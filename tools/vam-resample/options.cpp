@@ -13,7 +13,7 @@ void declare(cli::App& app, Options& options) {
            "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is "
            "read.");
   app.option("--row", "N", options.row, {0, 65535},
-             "The exact rays of this row of the projector, from 0 at the top, instead of level ones: "
+             "The exact rays of this row of the projector, from 0 at the top, instead of horizontal ones: "
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
       .needs({"--explain"});
   app.group("Weights");

@@ -22,7 +22,7 @@ cli::Manual manual() {
       {{"The Radon transform of a disc grid:",
         "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o radon.exr"},
        {"Projections to print, through a pipe:",
-        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample -o frames.exr"},
+        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample -o projector.exr"},
        {"A smoother filter, 500 angles:", "vam-sinogram --filter hann --cutoff 0.5 --angles 500 part.vdb -o soft.exr"},
        {"For a resin with an absorption coefficient of 0.1 per mm:",
         "vam-sinogram --filter ram-lak --negative clip --absorption 0.1 --at-wall part.vdb -o absorbing.exr"}},

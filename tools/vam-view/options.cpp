@@ -15,15 +15,18 @@ void declare(cli::App& app, Options& options) {
   app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
   app.option("--at", "PLACE", options.view.at, cli::any,
              "Show the section or sinogram slice nearest to PLACE in mm, or the frame nearest to PLACE in degrees.");
+  app.default_is("the middle one; of frames the first");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
              "Number of sections, slices or frames on one sheet, evenly spaced.");
   app.option("--target", "FILE", options.target, "Volume with the grid 'target', for the outline or for --histogram.");
-  app.flag("--histogram", options.histogram,
-           "Show dose distributions inside and outside the part. Default target: the grid in FILE.");
+  app.default_is("for --histogram the grid in FILE, else no outline");
+  app.flag("--histogram", options.histogram, "Show dose distributions inside and outside the part.");
   app.group("Appearance");
   app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.");
   app.option("--low", "VALUE", options.view.low, cli::any, "Lower end of the colour map or the histogram.");
+  app.default_is("the lowest value, at most 0");
   app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.");
+  app.default_is("the highest value; 1 for fractions");
   app.option("--size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without its frame.");
   app.flag("--plain", options.plain, "Write the colour-mapped pixels only, one for each value.");

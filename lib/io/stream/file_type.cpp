@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -48,7 +50,7 @@ std::string stdin_head() {
 
 std::string file_head(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error{Fault::no_input, path + ": cannot open the file"};
+  if (!stream) throw Error{Fault::no_input, path + ": cannot open the file (" + std::strerror(errno) + ")"};
   std::string head(look, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(look));
   head.resize(stream.gcount());
