@@ -23,7 +23,7 @@
 #include "device/os/address.hpp"
 #include "device/safety/guardian_actions.hpp"
 #include "sim/controllers/dlp.hpp"
-#include "sim/controllers/private/tic.hpp"
+#include "sim/controllers/tic.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "sim/controllers/private/tic.hpp"
+#include "sim/controllers/tic.hpp"
 
 #include <cmath>
 #include <cstdint>
