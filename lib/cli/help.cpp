@@ -10,7 +10,7 @@ namespace {
 constexpr int width = 80;
 constexpr int indent = 6;
 
-// "SLICES" or "[SLICES]" for each operand.
+// "SLICES" for each operand, in brackets where it may be left out.
 std::string operands(const Declaration& form) {
   std::string text;
   for (const auto& positional : form.positionals) {

@@ -5,8 +5,8 @@
 
 namespace vam::light {
 
-/// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4;
-/// light::VolumeBlur], across the slices and from one to the next: the slices of a pass lie one above the other. What
+/// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4],
+/// light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other. What
 /// is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
 class BlurredOperator final : public Operator {
  public:

@@ -1,4 +1,4 @@
-// What prints, with which method, and how fast: prints a table. Arguments: parts [SIZE], target [METHOD], stack or
+// What prints, with which method, and how fast: prints a table. Arguments: parts SIZE, target METHOD, stack or
 // osmo; all without.
 #include <algorithm>
 #include <chrono>

@@ -1,9 +1,10 @@
 """Holds what the source cites against the manual pages of section 7. usage: citations.py ROOT; prints what is cited
 but not defined, one a line, and fails if there is any.
 
-[physics §n] and [devices §n] are numbered sections, cited in no other form, [formats: heading] is a heading,
-[RAY21 eq 8] is a paper under REFERENCES of vam-physics.7 and an equation that stands in that page, vam:name is an
-attribute of vam-formats.7. Keys of the printer file, schemas of reports and every literal key of the JSON that the tools
+[physics §n] and [devices §n] are numbered sections, [devices guarantee n] a guarantee, [formats: heading] a heading,
+[RAY21 eq 8] a paper under REFERENCES of vam-physics.7 and an equation that stands in that page; figures, sections and
+the like stand in the paper's entry. Whatever is in brackets and begins like one of these must be one, and nothing of
+the kind is cited in another form. vam:name is an attribute of vam-formats.7. Keys of the printer file, schemas of reports and every literal key of the JSON that the tools
 write are defined in vam-formats.7. Every equation that the pages take from a paper is cited somewhere in lib, every
 paper of the references is cited, and comments cite papers in no other form. Source paths in these pages and in
 CONTRIBUTING.md exist, the changes that its recipes show apply, and its diagram has every folder of lib/layers.txt."""
@@ -30,14 +31,52 @@ def joined(text):
 
 
 def brackets(text):
-    """The contents of brackets around a paper's key."""
-    return [b for b in re.findall(r'\[([^\[\]\n]*)\]', joined(text)) if re.search(rf'(?<![\w.]){KEY}\b', b)]
+    """The contents of brackets that begin as a citation does; in comments of C++ any capitals are a paper's key."""
+    begin = rf'(?<!\w)\[((?:physics|devices|formats|{KEY})\b[^\[\]]*)\]'
+    capitals = r'(?<![\w\]])\[([A-Z]{2,}\d*(?:[ ,;][^\[\]]*)?)\]'
+    comments = re.findall(r'(?:^[ \t]*//.*\n)+|//.*', text, re.M)
+    found = [b for c in comments for b in re.findall(capitals, joined(c))]
+    return [' '.join(b.split()) for b in found + re.findall(begin, joined(text))]
+
+
+NUMBER = r'S?\d+(?:\.\d+)*'
+PART = rf'{NUMBER}(?:[a-zA-Z](?:-[a-z])?)?(?:(?:, | )[a-z]\b)*'  # of a figure: 2b-d
+PLACE = (rf'(?:below )?eq {NUMBER}(?:-{NUMBER})?|'
+         rf'(?P<kind>figs?|sections?|appendix|chapter|formula) (?P<numbers>{PART}(?:(?:, | and ){PART})*)')
+PAPER = rf'(?P<key>[A-Z]+\d*)(?: (?:{PLACE}|Methods|"[^"]*"))?(?:[,:] (?P<words>[a-zA-Z"].*))?'
+FORMS = [r'(?P<page>physics|devices) (?P<sections>§\d+(?:\.\d+)?(?:, §\d+(?:\.\d+)?)*)',
+         r'devices (?P<guarantees>guarantee \d+|guarantees \d+(?:, \d+)* and \d+)', r'formats: (?P<heading>.+)', PAPER]
+
+
+def mistakes(bracket):
+    """What is wrong with a citation: parts that are of none of the forms, or name what the pages do not define."""
+    for part in re.split(rf'; |, (?={KEY}|physics|devices|formats)', bracket):
+        form = next(filter(None, (re.fullmatch(f, part) for f in FORMS)), None)
+        of = form.groupdict() if form else {}
+        words = of.get('words') or ''
+        if not form or re.search(r'\b(eqs?|figs?|sections?|appendix) \S*\d', words):
+            yield f'[{bracket}] is no form of citation'
+        for number in re.findall(r'[\d.]+', of.get('sections') or ''):
+            if number not in sections[of['page']]:
+                yield f'vam-{of["page"]}(7) has no section {number}'
+        for number in re.findall(r'\d+', of.get('guarantees') or ''):
+            if not 1 <= int(number) <= guarantees:
+                yield f'vam-devices(7) has no guarantee {number}'
+        if (heading := of.get('heading')) and heading.lower() not in headings(formats):
+            yield f'vam-formats(7) has no heading "{heading}"'
+        if (key := of.get('key')) and key not in papers:
+            yield f'[{key}] is not among the references of vam-physics(7)'
+        elif key and of['kind']:
+            places = set(re.findall(NUMBER, ' '.join(re.findall(rf'{of["kind"][:3]}\w* ([S\d., and]+)', papers[key]))))
+            yield from (f'[{key} {of["kind"]} {n}] does not stand in the references of vam-physics(7)'
+                        for n in re.findall(NUMBER, of['numbers']) if n not in places)
+    yield from (f'[{e}] does not stand in vam-physics(7)' for e in sorted(equations(bracket) - defined))
 
 
 def equations(bracket):
     """{'RAY21 eq 4', ...}: the equations that it names, ranges counted out."""
     found = set()
-    for key, numbers in re.findall(rf'({KEY}) eq ([S\d]+(?:-[S\d]+)?)', bracket):
+    for key, numbers in re.findall(rf'({KEY}) (?:below )?eq ([S\d]+(?:-[S\d]+)?)', bracket):
         letter = 'S' if numbers.startswith('S') else ''
         ends = [int(n.strip('S')) for n in numbers.split('-')]
         found |= {f'{key} eq {letter}{n}' for n in range(ends[0], ends[-1] + 1)}
@@ -65,7 +104,8 @@ def json_keys(text):
     the guardian is ordered to do is no file."""
     text = re.sub(r'//[^\n]*', '', text)
     text = re.sub(r'(?:->add|\bgive)\(\{\{"do".*?\);', '', text, flags=re.S)
-    found = set(re.findall(r'\["(\w+)"\](?=(?:\["\w+"\])*\s*=[^=])|\bfinding\.value\("(\w+)"', text))
+    found = set(re.findall(r'\["(\w+)"\](?=(?:\["\w+"\])*\s*=[^=])'
+                           r'|\b(?:finding\.value|(?<!_\.)emplace(?:_back)?)\("(\w+)"|\bpush_back\(\{"(\w+)",', text))
     found = {key for pair in found for key in pair if key}
     for object_ in re.finditer(r'\{\s*\{"\w+",', text):
         pairs = [within(e, 0) for e in within(text, object_.start()) if e.startswith('{')]
@@ -78,7 +118,7 @@ physics, formats, devices = page('physics'), page('formats'), page('devices')
 sections = {name: set(re.findall(r'^\.S[hs] "?(\d+(?:\.\d+)?)[. ]', text, re.M))
             for name, text in (('physics', physics), ('devices', devices))}
 guarantees = len(re.findall(r'^\.It$', ''.join(re.findall(r'^\.Sh 9\. GUARANTEES$.*?^\.Sh ', devices, re.M | re.S)), re.M))
-papers = set(re.findall(rf'^\.It ({KEY})$', physics, re.M))
+papers = dict(re.findall(rf'^\.It ({KEY})$\n(.*?)(?=^\.It |^\.El)', physics, re.M | re.S))
 defined = set().union(*(equations(b) for b in brackets(physics)), set())
 keys = {word for line in re.findall(r'^\..*?\bVa (.*)', formats, re.M)
         for word in re.split(r' (?:Pq|No|Ns)\b', line)[0].replace(',', ' ').split()}
@@ -88,28 +128,17 @@ faults = []
 
 
 def check(where, text):
-    for words in re.findall(r'(?i)\b(?:physics|devices|formats|vam-(?:physics|devices|formats)\(7\)),? section \d*', joined(text)):
+    cited = brackets(text)
+    faults.extend(f'{where}: {mistake}' for bracket in dict.fromkeys(cited) for mistake in mistakes(bracket))
+    plain = re.sub(r'\[[^\[\]]*\]', '', joined(text))
+    for words in re.findall(r'(?i)\b(?:physics|devices|formats|vam-(?:physics|devices|formats)\(7\)),? (?:sec[a-z]*[. ]+|§ ?)\d*|§', plain):
         faults.append(f'{where}: "{words}" is to be written [physics §n]')
-    for kind, numbers in re.findall(r'\b(physics|devices) (§\d+(?:\.\d+)?(?:, §\d+(?:\.\d+)?)*)', text):
-        for number in numbers.replace('§', '').split(', '):
-            if number not in sections[kind]:
-                faults.append(f'{where}: vam-{kind}(7) has no section {number}')
-    for number in re.findall(r'\b[Gg]uarantees? (\d\b)', text):
-        if int(number) > guarantees:
-            faults.append(f'{where}: vam-devices(7) has no guarantee {number}')
-    for heading in re.findall(r'\[formats: ([^\]]+)\]', text):
-        if heading.lower() not in headings(formats):
-            faults.append(f'{where}: vam-formats(7) has no heading "{heading}"')
-    for bracket in brackets(text):
-        for key in re.findall(rf'(?<![\w.]){KEY}\b', bracket):
-            if key not in papers:
-                faults.append(f'{where}: [{key}] is not among the references of vam-physics(7)')
-        for equation in sorted(equations(bracket) - defined):
-            faults.append(f'{where}: [{equation}] does not stand in vam-physics(7)')
+    for words in re.findall(r'(?i)\b(?:guarantee|promise|slip)s? \d\d?\b', plain):
+        faults.append(f'{where}: "{words}" is to be written [devices guarantee n] or [physics §n]')
     for comment in re.findall(r'(?:^[ \t]*//.*\n)+|//.*', text, re.M):
         for words in re.findall(r"\w+ et al|[A-Z][\w']+,? \(?(?:18|19|20)\d\d\b(?!-)", joined(comment)):
             faults.append(f'{where}: "{words}" is to be cited by its key, [RAY21]')
-    for name in sorted(set(re.findall(r'\bvam:[a-z_]+\w', text)) - attributes):
+    for name in sorted(set(re.findall(r'\bvam:\w+', text)) - attributes):
         faults.append(f'{where}: the attribute {name} is not defined in vam-formats(7)')
 
 

@@ -6,7 +6,7 @@ namespace vam::stats {
 
 namespace {
 
-// Continued fraction of the incomplete beta function, by Lentz's method [AS64 26.5.8; physics §14.5].
+// Continued fraction of the incomplete beta function, by Lentz's method [AS64 formula 26.5.8; physics §14.5].
 double beta_fraction(double x, double a, double b) {
   constexpr double tiny = 1e-300;
   const auto kept = [](double value) { return std::fabs(value) < tiny ? tiny : value; };

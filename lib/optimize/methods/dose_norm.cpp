@@ -1,4 +1,4 @@
-// Background and dose normalisation [OST22 Methods, fig S6].
+// Background and dose normalisation [OST22 Methods, OST22 fig S6].
 #include <algorithm>
 
 #include "optimize/methods/method.hpp"

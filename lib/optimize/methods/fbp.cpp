@@ -11,7 +11,7 @@ class Fbp final : public Method {
  public:
   using Method::Method;
 
-  /// g = filter(A f), then negative values set to 0 or raised by the minimum [CAL17, the two ways below eq 3].
+  /// g = filter(A f), then negative values set to 0 or raised by the minimum [CAL17 below eq 3, the two ways].
   void start(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
     filtered_projections(light, problem.target, iterate.g);
     if (options_.offset) {

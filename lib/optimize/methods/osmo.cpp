@@ -31,7 +31,7 @@ class Osmo final : public Method {
   }
 
   /// m_V -= w max(0, x - d_l), then m_G += w max(0, d_h - x), each followed by g = max(0, A m / max), x = A* g / max
-  /// [OSMO21, the two steps of the algorithm; weights w 1 there]. Doses are relative to the largest.
+  /// [OSMO21, the two steps of the algorithm, weights w 1 there]. Doses are relative to the largest.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
     for (const Label half : {Label::void_, Label::part}) {
       for_values(model_, [&](std::size_t s, std::size_t first, std::size_t last) {

@@ -26,8 +26,8 @@ struct SimDlpSettings {
 
 /// Its log has a line for every change of what shines: {"event": "leds", "bits": 4, "linear": true, "current_percent":
 /// [16, 16, 16]}, the true current by which its LEDs would shine, and {"event": "asleep"}. A DLPC350 is that of a
-/// LightCrafter 4500, whose LED drivers invert what it puts out [TI forum, thread 451589: at normal polarity FF is
-/// off].
+/// LightCrafter 4500, whose LED drivers invert what it puts out (TI forum, thread 451589: at normal polarity FF is
+/// off).
 [[nodiscard]] std::unique_ptr<device::UsbLink> make_sim_dlp(const SimDlpSettings& settings, SimLog log);
 
 }  // namespace vam::sim

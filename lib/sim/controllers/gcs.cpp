@@ -63,7 +63,7 @@ class SimGcs final : public SimController {
     for (const char c : bytes) {
       if (silent()) return;
       if (c == 5 || c == 7 || c == 24) {
-        // An address may precede single bytes, too; they need no LF [PI MS249E, 8.2 and 8.3].
+        // An address may precede single bytes, too; they need no LF (PI MS249E, 8.2 and 8.3).
         const bool for_someone = line_.find_first_not_of("0123456789 ") == std::string::npos;
         handle((for_someone ? std::exchange(line_, "") : "") + "#" + std::to_string(static_cast<int>(c)));
       } else if (c == '\n') {
@@ -81,7 +81,7 @@ class SimGcs final : public SimController {
   }
 
   // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us. Without an address a command, single
-  // bytes included, is for controller 1 [PI MS249E, 8.3 "Target and sender address"].
+  // bytes included, is for controller 1 (PI MS249E, 8.3 "Target and sender address").
   void handle(const std::string& line) {
     auto words = split(line, ' ');
     std::erase(words, "");

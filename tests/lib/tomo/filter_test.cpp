@@ -33,7 +33,7 @@ double gain(const Filter& filter, double fraction) {
 
 }  // namespace
 
-TEST_CASE("the ramp is the direct convolution with the band-limited kernel of [KS88 ch 3]") {
+TEST_CASE("the ramp is the direct convolution with the band-limited kernel of [KS88 chapter 3]") {
   const int columns = 57;
   const Slab before = random_slab(columns, 5);
   Slab after = before;

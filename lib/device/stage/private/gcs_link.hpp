@@ -63,7 +63,7 @@ class GcsLink {
 };
 
 /// The command as the controller of that address takes it: in a daisy chain the address precedes single bytes, too
-/// [PI MS249E, 8.3 "Target and sender address"].
+/// (PI MS249E, 8.3 "Target and sender address").
 [[nodiscard]] std::string addressed(const std::string& bytes, const GcsSettings& settings);
 
 /// "7 (beyond the limits of travel)"
