@@ -123,7 +123,7 @@ struct Bounds {
 void find_taps(const RayNode* nodes, const RaySource* sources, int count, const RayFrame& frame, RayTaps& taps) {
   alignas(64) Node at[ray_block];
   Shadows shadows[most_blocks];
-  Bounds bounds;
+  Bounds bounds{};
   for (int e = 0; e < count; e += ray_block) {
     Shadows& block = shadows[e / ray_block];
     for (int i = 0; i < ray_block; ++i) find_node(nodes, sources[e + i], frame, at[i]);
