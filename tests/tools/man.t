@@ -7,6 +7,7 @@ examples() {  # the commands of the EXAMPLES section of a page
     sed -e 's/^\\&//' -e 's/\\e/\\/g'
 }
 
+fails 64 "update-man: unexpected argument 'vam-slice'" "$VAM_SOURCE/scripts/update-man" vam-slice
 for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   tool=$(basename "$source" .cpp)
   page=$VAM_SOURCE/man/$tool.1
