@@ -4,6 +4,7 @@
 #include <bit>
 #include <vector>
 
+#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/stream/stream.hpp"
 
@@ -17,7 +18,7 @@ std::string number(double value) { return format_number(value, 12); }
 
 std::string head(const std::vector<std::string>& history) {
   std::string text = "NRRD0004\n# http://teem.sourceforge.net/nrrd/format.html\n";
-  for (const auto& line : history) text += "# " + line + "\n";
+  for (const auto& line : history) text += "# " + printable(line) + "\n";
   return text + "type: float\ndimension: 3\nencoding: raw\nendian: little\n";
 }
 
@@ -50,7 +51,8 @@ void write_nrrd(const std::string& path, const SparseVolume& volume) {
   const std::string v = number(grid.voxel_mm);
   OutputFile file(path);
   file.write(head(volume.history));
-  file.write(sizes(grid.nx, grid.ny, grid.nz) + "content: " + volume.name() + " (" + volume.units + ")\n");
+  file.write(sizes(grid.nx, grid.ny, grid.nz) + "content: " + printable(volume.name()) + " (" +
+             printable(volume.units) + ")\n");
   file.write("space: 3D-right-handed\nspace units: \"mm\" \"mm\" \"mm\"\nspace directions: (" + v + ",0,0) (0," + v +
              ",0) (0,0," + v + ")\nspace origin: (" + number(grid.origin_mm[0]) + "," + number(grid.origin_mm[1]) +
              "," + number(grid.origin_mm[2]) + ")\nkinds: domain domain domain\n\n");
@@ -69,8 +71,8 @@ void write_nrrd(const std::string& path, StackReader& stack) {
   OutputFile file(path);
   file.write(head(info.history));
   file.write(sizes(info.width, info.height, info.count) +
-             "content: " + (info.kind == model::Kind::sinogram ? "sinogram (" : "frames (") + info.units + ")\n" +
-             stack_axes(info) + "\n");
+             "content: " + (info.kind == model::Kind::sinogram ? "sinogram (" : "frames (") + printable(info.units) +
+             ")\n" + stack_axes(info) + "\n");
   Image image;
   for (model::ImageInfo about; stack.next(image, about);) write_floats(file, image.values);
   file.commit();

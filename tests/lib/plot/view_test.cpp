@@ -219,6 +219,17 @@ TEST_CASE("NRRD has the dense box behind a header that gives its position") {
   CHECK(value == label(3, 2, 17));
 }
 
+TEST_CASE("NRRD keeps a line break in a name, unit or history out of its header") {
+  const scratch::Folder folder;
+  SparseVolume volume("dose\nsizes: 9 9 9", vam::model::centred_grid(5, 4, 3, 0.5, 0));
+  volume.units = "mJ\n\nspace: left";
+  volume.history = {"vam-test 1\nendian: big"};
+  write_nrrd(folder / "a.nrrd", volume);
+  const std::string bytes = slurp(folder / "a.nrrd");
+  CHECK(has(bytes, "\n# vam-test 1\\nendian: big\n"));
+  CHECK(has(bytes, "\ncontent: dose\\nsizes: 9 9 9 (mJ\\n\\nspace: left)\nspace: 3D-right-handed\n"));
+}
+
 TEST_CASE("file types are determined by content") {
   const scratch::Folder folder;
   const auto written = [&](const std::string& bytes) {
