@@ -25,7 +25,7 @@ constexpr double allowed_radius_change = 0.005;
 void compare_edges(const ScanOptions& options, const model::Calibration& calibration, const metrology::VialEdges& edges,
                    Finding& finding) {
   const auto before = io::current_record(calibration, "edges");
-  if (!before || before->json.value("vial", "") != calibration.vial) return;
+  if (!before || before->json->value("vial", "") != calibration.vial) return;
   const double shift_px = edges.axis_column.value - before->value("axis_column");
   const double change = edges.radius_mm.value / before->value("radius") - 1;
   const double sigma_px = std::hypot(edges.axis_column.sigma, before->sigma("axis_column"));

@@ -60,7 +60,8 @@ bool is_simulated(const std::string& frames, const Json& facts) {
     if (device.contains("simulated")) return true;
   }
   if (io::is_capture_folder(frames)) {
-    return io::read_manifest(frames).head.value("camera", Json::object()).contains("simulated");
+    const Json head = Json::parse(io::read_manifest(frames).head);
+    return head.value("camera", Json::object()).contains("simulated");
   }
   const auto history = io::ViewSource(frames, 1).history();
   return std::find(history.begin(), history.end(), "frames of a simulated camera") != history.end();
@@ -140,13 +141,13 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     std::string why;
     if (record) {
       why = io::objection(*record, calibration, io::utc_seconds());
-      if (why.empty()) why = stranger(record->json, devices);
+      if (why.empty()) why = stranger(*record->json, devices);
       const std::string path = (fs::path(record->path).parent_path() / fs::read_symlink(record->path)).string();
       report[scan] = {{"record", path},
                       {"sha256", io::sha256_of(path)},
-                      {"utc", record->json.value("utc", "")},
-                      {"valid_until", record->json.value("valid_until", "")},
-                      {"status", record->json.value("status", "")},
+                      {"utc", record->json->value("utc", "")},
+                      {"valid_until", record->json->value("valid_until", "")},
+                      {"status", record->json->value("status", "")},
                       {"usable", why.empty()}};
       if (!why.empty()) why = record->path + ": " + why;
     } else if (needed) {

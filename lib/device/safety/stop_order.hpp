@@ -4,9 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "device/safety/guardian.hpp"
-#include "device/safety/guardian_actions.hpp"
 
 namespace vam::device {
 
@@ -17,17 +16,9 @@ class StopOrder {
 
   /// Before the command that sets the stage moving: bytes that stop it, to be written to its port. A simulated port
   /// has no handle (-1) and ends with the tool; then the order is only remembered.
-  void give(const std::string& bytes, int handle) {
-    if (handle < 0)
-      standing_ = true;
-    else
-      give({{"do", "write"}, {"order", 1}, {"name", "stage"}, {"hex", to_hex(bytes)}}, handle);
-  }
+  void give(const std::string& bytes, int handle);
   /// The same by any action of guardian_actions.hpp.
-  void give(const Json& action, int handle = -1) {
-    standing_ = true;
-    if (guardian_ != nullptr && !action_) action_ = guardian_->add(action, handle);
-  }
+  void give(const Json& action, int handle = -1);
   /// The stage stands.
   void withdraw() {
     standing_ = false;

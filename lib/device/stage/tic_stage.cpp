@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "device/safety/guardian_actions.hpp"
 #include "device/safety/stop_order.hpp"
 
 namespace vam::device {

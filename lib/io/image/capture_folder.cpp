@@ -86,9 +86,9 @@ std::string difference(const Json& there, const Json& wanted) {
 void add_line(CaptureManifest& manifest, const std::string& text, const std::string& where) {
   const Json line = Json::parse(text, nullptr, false);
   try {
-    if (manifest.head.is_null()) {
-      manifest.head = line;
-      if (line.at("schema") != "vam-capture/1") throw Error{Fault::data, where + ": is no manifest of vam-capture"};
+    if (manifest.head.empty()) {
+      manifest.head = text;
+      if (line.at("schema") != "vam-capture/1") throw Error{Fault::data, where + ": is not a manifest of vam-capture"};
     } else if (line.contains("dropped")) {
       manifest.dropped += line.at("dropped").at(1).get<long>() - line.at("dropped").at(0).get<long>() + 1;
     } else {
@@ -97,7 +97,7 @@ void add_line(CaptureManifest& manifest, const std::string& text, const std::str
       if (!fresh && (record.complete || !there->second.complete)) there->second = record;
     }
   } catch (const Json::exception& problem) {
-    throw Error{Fault::data, where + ": is no line of a manifest (" + problem.what() + ")"};
+    throw Error{Fault::data, where + ": is not a line of a manifest (" + problem.what() + ")"};
   }
 }
 
@@ -119,7 +119,7 @@ CaptureManifest read_manifest(const std::string& folder) {
   for (std::size_t begin = 0, end = 0; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     add_line(manifest, text.substr(begin, end - begin), path + ": line " + std::to_string(++number));
   }
-  if (manifest.head.is_null()) throw Error{Fault::data, path + ": is empty; remove the folder and begin again"};
+  if (manifest.head.empty()) throw Error{Fault::data, path + ": is empty; remove the folder and begin again"};
   return manifest;
 }
 
@@ -136,7 +136,7 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
   }
   if (again) {
     manifest_ = read_manifest(folder);
-    const std::string other = difference(manifest_.head, head);
+    const std::string other = difference(Json::parse(manifest_.head), head);
     if (!other.empty()) {
       throw Error{Fault::no_output, folder + ": was taken with " + other + "; name another folder"};
     }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "base/pixels.hpp"
 
 namespace vam::io {
@@ -24,7 +24,7 @@ struct CaptureRecord {
 [[nodiscard]] std::string capture_file_name(long place);  // "000012.png"
 
 struct CaptureManifest {
-  Json head;
+  std::string head;                      // the first line
   std::map<long, CaptureRecord> frames;  // the last line of each place counts, unless it is worse than one before
   long dropped = 0;
 };

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/error.hpp"
+#include "base/json.hpp"
 #include "base/log.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/capture_folder.hpp"
@@ -126,7 +127,7 @@ bool ViewSource::next(CameraFrame& frame) {
 }
 
 double ViewSource::pixel_mm() const {
-  if (state_->capture) return state_->capture->head.value("pixel_mm", 0.0);
+  if (state_->capture) return Json::parse(state_->capture->head).value("pixel_mm", 0.0);
   return state_->stack ? state_->stack->info().pixel_mm : 0;
 }
 

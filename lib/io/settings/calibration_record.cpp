@@ -53,11 +53,11 @@ void make_current(const model::Calibration& calibration, const std::string& scan
 std::string hours(double seconds) { return format_number(seconds / 3600, 3) + " h"; }
 
 std::string beside(const CalibrationRecord& record, const char* file) {
-  return (fs::path(record.path).parent_path() / record.json.at("files").at(file).get<std::string>()).string();
+  return (fs::path(record.path).parent_path() / record.json->at("files").at(file).get<std::string>()).string();
 }
 
 void take_over(model::Printer& printer, const CalibrationRecord& record) {
-  const std::string scan = record.json.at("scan");
+  const std::string scan = record.json->at("scan");
   if (scan == "edges") {
     printer.projector.axis_column = record.value("axis_column");
     printer.vial.radius_mm = record.value("radius");
@@ -67,7 +67,7 @@ void take_over(model::Printer& printer, const CalibrationRecord& record) {
     printer.camera.flat = beside(record, "flat");
   } else if (scan == "axis") {
     printer.camera.axis_column = record.value("axis_column");
-    if (record.json.at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
+    if (record.json->at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
   } else if (scan == "lag") {
     printer.camera.latency_ms = record.value("camera_latency");
   } else if (scan == "latency") {
@@ -86,7 +86,7 @@ void require_possible(model::Printer& printer, const CalibrationRecord& record) 
     }
   }
   const double column = printer.projector.axis_column;
-  if (record.json.at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {
+  if (record.json->at("scan") == "edges" && !(column >= 0 && column <= printer.projector.columns - 1)) {
     refuse("projector.axis_column: " + format_number(column) + " is not in the image of " +
            std::to_string(printer.projector.columns) + " columns");
   }
@@ -169,24 +169,25 @@ std::string write_record(const model::Calibration& calibration, const std::strin
   return path;
 }
 
-double CalibrationRecord::value(const std::string& name) const { return json.at("values").at(name).at("value"); }
-double CalibrationRecord::sigma(const std::string& name) const { return json.at("values").at(name).at("sigma"); }
+double CalibrationRecord::value(const std::string& name) const { return json->at("values").at(name).at("value"); }
+double CalibrationRecord::sigma(const std::string& name) const { return json->at("values").at(name).at("sigma"); }
 
 std::optional<CalibrationRecord> current_record(const model::Calibration& calibration, const std::string& scan) {
   const std::string path = current_path(calibration, scan);
   std::error_code ignored;
   if (calibration.folder.empty() || !fs::exists(path, ignored)) return std::nullopt;
   constexpr std::uint64_t limit = 1U << 20U;
-  CalibrationRecord record{path, Json::parse(read_all(path, Content::text, limit), nullptr, false)};
-  if (!record.json.is_object() || record.json.value("schema", "") != schema || record.json.value("scan", "") != scan ||
-      !record.json.contains("values")) {
-    throw Error{Fault::data, path + ": is no " + schema + " record of " + scan + "; run vam-calibrate"};
+  CalibrationRecord record{
+      path, std::make_shared<const Json>(Json::parse(read_all(path, Content::text, limit), nullptr, false))};
+  if (!record.json->is_object() || record.json->value("schema", "") != schema ||
+      record.json->value("scan", "") != scan || !record.json->contains("values")) {
+    throw Error{Fault::data, path + ": is not a " + schema + " record of " + scan + "; run vam-calibrate"};
   }
   return record;
 }
 
 std::string objection(const CalibrationRecord& record, const model::Calibration& calibration, double utc_s) {
-  const Json& json = record.json;
+  const Json& json = *record.json;
   const std::string instrument = json.value("instrument", "");
   if (instrument != calibration.instrument) {
     return "is of instrument '" + instrument + "', this is '" + calibration.instrument + "'; run vam-calibrate";

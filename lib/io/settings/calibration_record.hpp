@@ -5,11 +5,12 @@
 // {name: {value, unit, sigma, n, method}}, and what else the scan has to say (settings, devices, files, sha256).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "base/json.hpp"
+#include "base/json_fwd.hpp"
 #include "model/printer.hpp"
 
 namespace vam::io {
@@ -36,7 +37,7 @@ std::string write_record(const model::Calibration& calibration, const std::strin
 
 struct CalibrationRecord {
   std::string path;
-  Json json;
+  std::shared_ptr<const Json> json;  // never null
   [[nodiscard]] double value(const std::string& name) const;
   [[nodiscard]] double sigma(const std::string& name) const;
 };
