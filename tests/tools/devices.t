@@ -11,15 +11,28 @@ shim=$(vam-sim-stage --shim)
 on() { device=$1; log=$2; shift 2; exec umockdev-wrapper "$VAM_BUILD/usb_host" "$device" "$log" sh -c 'exec "$@"' sh "$@"; }
 
 Xvfb -displayfd 4 -screen 0 64x48x24 -nolisten tcp -noreset 4>number >/dev/null 2>&1 & server=$!
-vam-sim-stage --link gcs --die-with-parent >path1 & stage1=$!
-vam-sim-stage --link grbl --protocol grbl --die-with-parent >path2 & stage2=$!
-await test -s number; await test -s path1; await test -s path2
+# Stages as the tool lists them, "gcs:PATH": behind a serial port, else on USB.
+stages=$(vam-stage identify --help | tr -s ' \n' ' ' | sed -n 's/.*Rotation stage: \(.*\) or sim:.*/\1/p' | tr -d ',')
+serial= others= servers=
+for stage in $stages; do
+  scheme=${stage%%:*}
+  case $stage in
+    *:PATH)
+      serial="$serial $scheme"
+      vam-sim-stage --link "$scheme" --protocol "$scheme" --die-with-parent >"path.$scheme" & servers="$servers $!"
+      await test -s "path.$scheme" ;;
+    *) others="$others $scheme" ;;
+  esac
+done
+ok 'the tool lists stages' test -n "$serial" -a -n "$others"
+await test -s number
+options() { case $1 in tic) echo '?steps_per_deg=100' ;; esac; }  # what it does not open without
 
 # One long use of each device, whose log records its begin.
 use() {  # use DEVICE LOG
+  case " $serial " in *" $1 "*) exec env LD_PRELOAD="$shim" vam-stage follow --device "$1:$PWD/$1$(options "$1")" --log "$2" ;; esac
+  case " $others " in *" $1 "*) on "$1:" truth vam-stage follow --device "$1:$(options "$1")" --log "$2" ;; esac
   case $1 in
-    gcs | grbl) exec env LD_PRELOAD="$shim" vam-stage follow --device "$1:$PWD/$1" --log "$2" ;;
-    tic) on tic: truth vam-stage follow --device 'tic:?steps_per_deg=100' --log "$2" ;;
     drm) exec env LD_PRELOAD="$VAM_BUILD/lib/vam-test/drm_card.so" vam-project --pattern grey -o drm:HDMI-A-1 --hold 60 --log "$2" ;;
     sdl) exec env DISPLAY=":$(cat number)" SDL_VIDEODRIVER=x11 SDL_RENDER_DRIVER=software vam-project --pattern grey -o sdl:0 --hold 60 --log "$2" ;;
     dlpc350) on dlpc350: truth vam-project --pattern grey -o null: --light dlpc350: --hold 60 --log "$2" ;;
@@ -27,7 +40,7 @@ use() {  # use DEVICE LOG
 }
 begun() { grep -Eq '"event":"(begin|flip)"' "$1" 2>/dev/null; }
 
-for device in gcs grbl tic drm sdl dlpc350; do
+for device in $serial $others drm sdl dlpc350; do
   rm -f "$VAM_LOCK_DIR"/*
   (use $device first.log) >out 2>err & first=$!
   await begun first.log
@@ -90,5 +103,5 @@ wanted = {"begin", "display", "end", "flip", "interrupted", "light"}
 print(len(lines) > 20, len(lines) - len(good), wanted - {line["event"] for line in good} or "all")
 PY
 is 'every event is a JSON line with both times' "$(cat judged)" 'True 0 all'
-kill $server $stage1 $stage2
+kill $server $servers
 done_testing

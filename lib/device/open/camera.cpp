@@ -28,20 +28,17 @@ std::unique_ptr<Camera> open_aravis(const Address& address, const CameraSettings
 
 struct CameraBackend {
   const char* scheme;
-  const char* place;  // for people
   std::unique_ptr<Camera> (*open)(const Address& address, const CameraSettings& settings, const CameraBench& bench,
                                   Clock& clock);
 };
 
-constexpr CameraBackend backends[] = {{"aravis", "ID-or-IP", open_aravis},
-                                      {"v4l2", "PATH", open_v4l2},
-                                      {"replay", "PLACE", open_replay_camera},
-                                      {"sim", "", sim::open_sim_camera}};
+constexpr CameraBackend backends[] = {
+    {"aravis", open_aravis}, {"v4l2", open_v4l2}, {"replay", open_replay_camera}, {"sim", sim::open_sim_camera}};
 static_assert(model::has_schemes(backends, model::camera_schemes));
 
 }  // namespace
 
-std::string camera_devices() { return forms_of(backends); }
+std::string camera_devices() { return model::forms_of(model::camera_schemes); }
 
 std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings, const CameraBench& bench,
                                     Clock& clock) {

@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"
+#include "model/device_schemes.hpp"
 #include "sim/controllers/dlp.hpp"
 
 namespace vam::device {
@@ -49,7 +50,7 @@ void refuse_steps(const Address& address) {
 
 }  // namespace
 
-std::string light_devices() { return forms_of(backends); }
+std::string light_devices() { return model::forms_of(backends); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
   const Address address = parse_address(device, schemes_of(backends));

@@ -72,17 +72,15 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
 
 struct StageBackend {
   const char* scheme;
-  const char* place;  // for people
   std::unique_ptr<Stage> (*open)(const Address& address, Clock& clock, Guardian* guardian);
 };
 
-constexpr StageBackend backends[] = {
-    {"gcs", "PATH", open_gcs}, {"tic", "SERIAL", open_tic}, {"grbl", "PATH", open_grbl}, {"sim", "", open_sim}};
+constexpr StageBackend backends[] = {{"gcs", open_gcs}, {"tic", open_tic}, {"grbl", open_grbl}, {"sim", open_sim}};
 static_assert(model::has_schemes(backends, model::stage_schemes));
 
 }  // namespace
 
-std::string stage_devices() { return forms_of(backends); }
+std::string stage_devices() { return model::forms_of(model::stage_schemes); }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
   require_named(device, "stage", "gcs:/dev/ttyUSB0");

@@ -10,7 +10,7 @@ namespace vam::device {
 
 struct Address {
   std::string text;    // as given, for messages
-  std::string scheme;  // gcs, tic, grbl, sim, ...
+  std::string scheme;  // what is before the first colon
   std::string place;   // path, serial number, connector; may be empty
   std::map<std::string, std::string> options;
 

@@ -18,7 +18,13 @@ Slot at(Printer& printer) {
 
 constexpr double huge = 1e300;
 
-std::vector<std::string> words(const auto& schemes) { return {schemes.begin(), schemes.end()}; }
+std::vector<std::string> schemes_of(const auto& table) {
+  std::vector<std::string> schemes;
+  for (const auto& row : table) schemes.emplace_back(row.scheme);
+  return schemes;
+}
+
+std::string comment_on(const auto& table) { return model::forms_of(table) + ", a simulated one; empty: none"; }
 
 // clang-format off
 const std::vector<PrinterField> fields{
@@ -51,11 +57,11 @@ const std::vector<PrinterField> fields{
     {"resin", "critical_dose_mj_cm3", at<&Printer::resin, &Resin::critical_dose_mj_cm3>, "absorbed dose at the gelation threshold", 0, huge, true},
     {"resin", "psf_mm", at<&Printer::resin, &Resin::psf_mm>, "Gaussian sigma of the beam, across it and along z", 0, 1e6},
     {"resin", "diffusion_mm2_s", at<&Printer::resin, &Resin::diffusion_mm2_s>, "of the dose (radicals and inhibitor)", 0, 1e6},
-    {"stage", "device", at<&Printer::stage, &PrinterStage::device>, "gcs:PORT, tic:SERIAL, grbl:PORT, or sim:, a simulated one; empty: none", 0, 0, false, {}, words(model::stage_schemes)},
+    {"stage", "device", at<&Printer::stage, &PrinterStage::device>, comment_on(model::stage_schemes), 0, 0, false, {}, schemes_of(model::stage_schemes)},
     {"stage", "speed_deg_s", at<&Printer::stage, &PrinterStage::speed_deg_s>, "rotation speed", 0, 1e6, true},
     {"stage", "turns", at<&Printer::stage, &PrinterStage::turns>, "turns of one print", 1, 1e6},
     {"stage", "direction", at<&Printer::stage, &PrinterStage::direction>, "1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
-    {"camera", "device", at<&Printer::camera, &PrinterCamera::device>, "aravis:ID, v4l2:FILE, replay:FOLDER, or sim:, a simulated one; empty: none", 0, 0, false, {}, words(model::camera_schemes)},
+    {"camera", "device", at<&Printer::camera, &PrinterCamera::device>, comment_on(model::camera_schemes), 0, 0, false, {}, schemes_of(model::camera_schemes)},
     {"camera", "distance_mm", at<&Printer::camera, &PrinterCamera::distance_mm>, "entrance pupil to rotation axis", 0, 1e9, true},
     {"camera", "pixel_mm", at<&Printer::camera, &PrinterCamera::pixel_mm>, "pitch at the rotation axis", 0, 100, true},
     {"camera", "azimuth_deg", at<&Printer::camera, &PrinterCamera::azimuth_deg>, "from the projector", -360, 360},

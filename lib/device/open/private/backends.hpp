@@ -1,5 +1,4 @@
-// A table of backends, one row per scheme: {"gcs", "PATH", open_gcs}. A scheme that is not in the table cannot be
-// opened, and the row is also its line in --help.
+// A table of backends, one row per scheme: {"gcs", open_gcs}. A scheme that is not in the table cannot be opened.
 #pragma once
 
 #include <cstddef>
@@ -23,17 +22,6 @@ inline void require_named(const std::string& device, const std::string& kind, co
   if (!device.empty()) return;
   throw Error{Fault::usage, kind + ": none is named; give --device or " + kind +
                                 ".device of the printer file, such as " + example + "; sim: is a simulated one"};
-}
-
-/// "gcs:PATH, tic:SERIAL or sim:"
-template <class Backend, std::size_t count>
-[[nodiscard]] std::string forms_of(const Backend (&backends)[count]) {
-  std::string forms;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) forms += i + 1 < count ? ", " : " or ";
-    forms += std::string(backends[i].scheme) + ":" + backends[i].place;
-  }
-  return forms;
 }
 
 /// The address was parsed with schemes_of(backends), so one of them has its scheme.

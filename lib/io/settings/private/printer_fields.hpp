@@ -19,7 +19,7 @@ struct PrinterField {
   const char* section;
   const char* key;
   Slot (*slot)(model::Printer&);
-  const char* comment;  // meaning and unit
+  std::string comment;  // meaning and unit
   double low = -1e300;  // allowed numbers, low itself included unless open_low
   double high = 1e300;
   bool open_low = false;
