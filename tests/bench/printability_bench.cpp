@@ -31,8 +31,17 @@ struct Budget {
 };
 
 const std::vector<Budget>& budgets() {
-  static const std::vector<Budget> all{{"fbp", 0, 2},   {"dose-norm", 1, 4}, {"cal", 59, 120}, {"osmo", 29, 119},
-                                       {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 51, 120}};
+  static const std::vector<Budget> all = [] {
+    const std::vector<Budget> known{{"fbp", 0, 2},   {"dose-norm", 1, 4}, {"cal", 59, 120}, {"osmo", 29, 119},
+                                    {"pm", 58, 120}, {"bclp", 58, 120},   {"apg", 51, 120}};
+    std::vector<Budget> budgets;
+    for (const auto& entry : optimize::method_table()) {
+      const auto there =
+          std::find_if(known.begin(), known.end(), [&](const Budget& b) { return b.method == entry.name; });
+      budgets.push_back(there != known.end() ? *there : Budget{entry.name, 59, 120});  // two a step, as most
+    }
+    return budgets;
+  }();
   return all;
 }
 
