@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optics/private/fresnel.hpp"
+
 namespace vam::optics {
 
 namespace {
-
-/// 1 - (r_s^2 + r_p^2) / 2 with the cosines of the angles before and after the interface.
-double fresnel(double n1, double cos1, double n2, double cos2) {
-  const double r_s = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
-  const double r_p = (n1 * cos2 - n2 * cos1) / (n1 * cos2 + n2 * cos1);
-  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
-}
 
 double square(double x) { return x * x; }
 

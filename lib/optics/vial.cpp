@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optics/private/fresnel.hpp"
 
 namespace vam::optics {
 
@@ -19,13 +20,6 @@ struct Approach {
   double phi_rate = 0;       // dphi / dx_p, rad/mm
   double transmittance = 1;  // of the window
 };
-
-// 1 - (r_s^2 + r_p^2) / 2 with the cosines of the angles before and after the interface.
-double fresnel(double n1, double cos1, double n2, double cos2) {
-  const double r_s = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
-  const double r_p = (n1 * cos2 - n2 * cos1) / (n1 * cos2 + n2 * cos1);
-  return 1.0 - 0.5 * (r_s * r_s + r_p * r_p);
-}
 
 Approach approach(const View& view, double x_p) {
   if (!view.lens_mm) {  // telecentric: square on the window
