@@ -3,6 +3,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "cli/declaration.hpp"
+#include "cli/private/words.hpp"
 
 namespace vam::cli {
 
@@ -19,12 +20,6 @@ std::vector<const Option*> options_of(const Declaration& tool) {
     for (const Option* option : options_of(nested)) options.push_back(option);
   }
   return options;
-}
-
-std::vector<std::string> command_names(const Declaration& tool) {
-  std::vector<std::string> names;
-  for (const auto& nested : tool.subcommands) names.push_back(nested.manual.name);
-  return names;
 }
 
 // Single-quoted for any shell.

@@ -43,12 +43,6 @@ const Declaration& form_of(const Declaration& tool, const std::vector<std::strin
                        [&](const Declaration& nested) { return nested.manual.name == name; });
 }
 
-std::vector<std::string> command_names(const Declaration& tool) {
-  std::vector<std::string> names;
-  for (const auto& nested : tool.subcommands) names.push_back(nested.manual.name);
-  return names;
-}
-
 std::vector<std::string> flags_of(const Declaration& form) {
   std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
   for (const auto& group : form.groups) {
@@ -103,6 +97,12 @@ const Option* find_option(const Declaration& tool, const std::string& flag) {
 }
 
 std::string flag_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+std::vector<std::string> command_names(const Declaration& tool) {
+  std::vector<std::string> names;
+  for (const auto& nested : tool.subcommands) names.push_back(nested.manual.name);
+  return names;
+}
 
 int find_command(const Declaration& tool, const std::vector<std::string>& words) {
   const int place = first_operand(tool, words);

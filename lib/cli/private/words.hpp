@@ -11,6 +11,8 @@ namespace vam::cli {
 /// The flag of "--flag=value".
 [[nodiscard]] std::string flag_of(const std::string& word);
 
+[[nodiscard]] std::vector<std::string> command_names(const Declaration& tool);
+
 /// Where the command stands: the first word that is neither an option nor its value, when that is one. Else -1.
 [[nodiscard]] int find_command(const Declaration& tool, const std::vector<std::string>& words);
 
