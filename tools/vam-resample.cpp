@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/climb.hpp"
 #include "optics/resample_stack.hpp"
@@ -38,8 +39,7 @@ void warn_of_climb(const Options& options, const model::Printer& printer, const 
   constexpr double noticed = 0.5;
   const double strayed = optics::strayed_slices(printer, info);
   if (strayed < noticed) return;
-  warn((options.input == "-" ? "stdin" : options.input) + ": the projector's rays climb, by up to " +
-       format_number(strayed, 3) +
+  warn(io::input_name(options.input) + ": the projector's rays climb, by up to " + format_number(strayed, 3) +
        " voxels out of their slice; resampling treats them as horizontal, vam-optimize --geometry vial does not");
 }
 
@@ -60,7 +60,7 @@ void run(const cli::App& app, Options& options) {
   io::refuse_same_file(options.input, options.output);
   io::StackReader in(options.input);
   if (projector && in.info().kind == model::Kind::sinogram && in.info().space == model::Space::projector) {
-    throw Error{Fault::data, (options.input == "-" ? "stdin" : options.input) +
+    throw Error{Fault::data, io::input_name(options.input) +
                                  ": already has projector columns (from vam-optimize --geometry vial, or already "
                                  "resampled); omit vam-resample"};
   }

@@ -5,6 +5,7 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 
 namespace vam::curethrough {
@@ -46,9 +47,7 @@ void add_part(cli::App& app, PartOptions& options) {
 }
 
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
-    : options_(options),
-      name_(options.path == "-" ? "stdin" : options.path),
-      least_(static_cast<float>(options.threshold)) {
+    : options_(options), name_(io::input_name(options.path)), least_(static_cast<float>(options.threshold)) {
   io::read_blocks(options.path, "target", [&](const io::VolumeFacts& facts) {
     io::require_usable(options.path, facts);
     facts_ = facts;

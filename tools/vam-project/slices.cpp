@@ -11,6 +11,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/image/any_frames.hpp"
+#include "io/stream/input_name.hpp"
 #include "optics/slice_place.hpp"
 
 namespace vam::project {
@@ -74,7 +75,7 @@ Frames frames_of(const SliceStack& stack, double fps, const Options& options, co
 
 SliceStack slices_of(const std::string& path, io::StackReader& reader) {
   io::require(path, reader.info(), model::Kind::frames, model::Space::projector);
-  return {path == "-" ? "stdin" : path, reader.info(), reader.about(), [&reader](Image& slice) {
+  return {io::input_name(path), reader.info(), reader.about(), [&reader](Image& slice) {
             model::ImageInfo about;
             return reader.next(slice, about);
           }};

@@ -2,6 +2,7 @@
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/vdb.hpp"
 #include "solid/voxel/isosurface.hpp"
 #include "vam-sdf/options.hpp"
@@ -10,7 +11,7 @@ namespace vam::sdf_tool {
 
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
   if (!io::is_volume(path)) return io::read_mesh(path);
-  const std::string name = path == "-" ? "stdin" : path;
+  const std::string name = io::input_name(path);
   if (!isovalue)
     throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
   const io::SparseVolume volume = io::read_volume(path, "");

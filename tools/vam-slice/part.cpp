@@ -6,6 +6,7 @@
 
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
+#include "io/stream/input_name.hpp"
 
 namespace vam::slice_tool {
 
@@ -36,7 +37,7 @@ solid::Part part_of(const Options& options, const solid::Writable& room) {
   if (!options.shape.empty()) return solid::shape_part(options.shape, options.placement, room);
   if (is_folder(options.input)) return image_part(options);
   model::TriangleSoup mesh = io::read_mesh(options.input);
-  const std::string subject = options.input == "-" ? "stdin" : options.input;
+  const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
 }

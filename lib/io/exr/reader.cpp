@@ -18,6 +18,7 @@
 #include "io/exr/private/format.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -300,13 +301,13 @@ bool StackReader::next_stack() {
 
 void require(const std::string& path, const StackInfo& info, model::Kind kind) {
   if (info.kind == kind) return;
-  throw Error{Fault::data, (path == "-" ? "stdin" : path) + ": holds " + exr::kind_name(info.kind) + " (" +
+  throw Error{Fault::data, input_name(path) + ": holds " + exr::kind_name(info.kind) + " (" +
                                exr::space_name(info.space) + "), but " + exr::kind_name(kind) + " is needed"};
 }
 
 void require(const std::string& path, const StackInfo& info, model::Kind kind, model::Space space) {
   if (info.kind == kind && info.space == space) return;
-  throw Error{Fault::data, (path == "-" ? "stdin" : path) + ": holds " + exr::kind_name(info.kind) + " (" +
+  throw Error{Fault::data, input_name(path) + ": holds " + exr::kind_name(info.kind) + " (" +
                                exr::space_name(info.space) + "), but " + exr::kind_name(kind) + " (" +
                                exr::space_name(space) + ") is needed"};
 }

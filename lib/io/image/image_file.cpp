@@ -6,6 +6,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "base/error.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -65,7 +66,7 @@ cv::Mat decode(const std::string& bytes, const std::string& name) {
 
 GreyImage read_image(const std::string& path) {
   const std::string bytes = read_all(path, Content::binary, std::uint64_t{1} << 30);
-  const std::string name = path == "-" ? "stdin" : path;
+  const std::string name = input_name(path);
   check_magic(bytes, name);
   const cv::Mat pixels = decode(bytes, name);
   GreyImage image(pixels.cols, pixels.rows, pixels.depth() == CV_8U ? 8 : 16);

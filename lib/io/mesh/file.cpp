@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/apart.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -133,7 +134,7 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
 
 model::TriangleSoup read_mesh(const std::string& path) {
   const std::string bytes = read_all(path, Content::binary, most_bytes);
-  const std::string name = path == "-" ? "stdin" : path;
+  const std::string name = input_name(path);
   // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
   if (has_binary_stl_size(bytes)) return parsed(bytes, name);
   model::TriangleSoup mesh;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -51,7 +52,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
 }
 
 CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns) {
-  CsvTable table{path == "-" ? "stdin" : path, columns, {}, {}};
+  CsvTable table{input_name(path), columns, {}, {}};
   std::vector<std::size_t> places;
   int number = 0;
   for (const std::string& raw : split(read_all(path, Content::text, size_limit), '\n')) {

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "io/stream/input_name.hpp"
 
 namespace vam::io {
 
@@ -73,7 +74,7 @@ FileType file_type(const std::string& path) {
   if (begins_a_volume(head)) return FileType::volume;
   if (head.starts_with("\x76\x2f\x31\x01")) return FileType::stack;
   if (head.starts_with("\x1a\x45\xdf\xa3") || (head.size() >= 8 && head.substr(4, 4) == "ftyp")) return FileType::video;
-  const std::string name = path == "-" ? "stdin" : path;
+  const std::string name = input_name(path);
   if (head.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   throw Error{Fault::data, name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of images"};
 }

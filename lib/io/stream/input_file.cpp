@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -25,7 +26,7 @@ bool identify(const std::string& path, int standard, struct stat& about) {
 
 }  // namespace
 
-InputFile::InputFile(const std::string& path, Content content) : name_(path == "-" ? "stdin" : path) {
+InputFile::InputFile(const std::string& path, Content content) : name_(input_name(path)) {
   descriptor_ = path == "-" ? STDIN_FILENO : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   struct stat about = {};
   if (descriptor_ < 0 || fstat(descriptor_, &about) != 0) {

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/private/grid.hpp"
 
 namespace vam::io {
@@ -42,7 +43,7 @@ std::optional<Promise> promise_of(const std::string& name, TargetKind target) {
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& name, const std::string& why) {
-  throw Error{Fault::data, (path == "-" ? "stdin" : path) + ": grid '" + name + "' " + why};
+  throw Error{Fault::data, input_name(path) + ": grid '" + name + "' " + why};
 }
 
 void require_facts(const std::string& path, const VolumeFacts& facts) {

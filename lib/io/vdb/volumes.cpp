@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/private/grid.hpp"
 #include "io/vdb/private/passage.hpp"
@@ -106,7 +107,7 @@ SparseVolume read_volume(const std::string& path, const std::string& name) {
     if (volume.name() == name || (name.empty() && volumes.size() == 1)) return std::move(volume);
     names += (names.empty() ? "" : ", ") + volume.name();
   }
-  const std::string subject = path == "-" ? "stdin" : path;
+  const std::string subject = input_name(path);
   if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
   throw Error{Fault::data, subject + ": has no grid '" + name + "', but " + names};
 }
