@@ -134,7 +134,7 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   follow.option("--seconds", "S", options.seconds, cli::positive, "Duration.").default_is("until a signal");
 }
 
-// What is not given is the printer file's; calibration records have nothing to say about the stage.
+// Unset options come from the printer file; calibration records have nothing to say about the stage.
 void settle(Options& options) {
   const model::PrinterStage stage =
       io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;

@@ -32,9 +32,9 @@ BlurredOperator::BlurredOperator(const Operator& sharp, double sigma_px, int sli
 }
 
 void BlurredOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
-  std::vector<Slab> smeared(objects.begin(), objects.end());
-  blur(smeared);
-  sharp_.forward(smeared, sinograms);
+  std::vector<Slab> blurred(objects.begin(), objects.end());
+  blur(blurred);
+  sharp_.forward(blurred, sinograms);
 }
 
 void BlurredOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {

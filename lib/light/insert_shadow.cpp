@@ -90,13 +90,13 @@ InsertShadow::InsertShadow(const model::Grid& grid, std::span<const Slab> insert
 void InsertShadow::note_hindered() {
   const int columns = static_cast<int>(columns_.size());
   const int angles = static_cast<int>(parts_.size());
-  hinders_.assign(columns_.size() * parts_.size(), 0);
+  occludes_.assign(columns_.size() * parts_.size(), 0);
   parallel_for(columns, [&](int c) {
     for (int a = 0; a < angles; ++a) {
       for (const Slab& slab : ends_) {
         const float* ends = slab.at(c, a);
         if (std::any_of(ends, ends + lanes, [](float u) { return u < unhindered; })) {
-          hinders_[static_cast<std::size_t>(c) * parts_.size() + static_cast<std::size_t>(a)] = 1;
+          occludes_[static_cast<std::size_t>(c) * parts_.size() + static_cast<std::size_t>(a)] = 1;
         }
       }
     }

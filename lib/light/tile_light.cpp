@@ -175,7 +175,7 @@ bool TileLight::shadowed(int angle) const {
   if (shadow_.empty()) return false;
   for (int c = 0; c < columns_; ++c) {
     const int column = taps_.first_cell + c - rays_.padding();
-    if (column >= 0 && column < rays_.columns() && shadow_.hinders(column, angle)) return true;
+    if (column >= 0 && column < rays_.columns() && shadow_.occludes(column, angle)) return true;
   }
   return false;
 }

@@ -66,7 +66,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   }
   if (transmitted_.empty()) {
     throw Error{Fault::data, "projector: none of its " + std::to_string(setup_.projector.columns) +
-                                 " columns lights the resin; check projector.axis_column and projector.pixel_mm"};
+                                 " columns reaches the resin; check projector.axis_column and projector.pixel_mm"};
   }
   const double voxel = setup_.grid.voxel_mm;
   const auto row_at = [&](double z_mm) {
@@ -79,7 +79,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
   const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
   taps_ = static_cast<int>(std::ceil(std::numbers::sqrt2 * static_cast<double>(widest))) + 1;
-  require_gentle(level);
+  require_moderate_rays(level);
   for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta = setup_.part_angle_rad(a);
     cosines_.push_back(static_cast<float>(std::cos(theta)));
@@ -88,7 +88,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
 }
 
 /// The row kernels hold a tile's rows: 64 slices under the largest zoom, and what the rays climb across the tile.
-void VialRays::require_gentle(RayNodes& nodes) const {
+void VialRays::require_moderate_rays(RayNodes& nodes) const {
   if (!climbs()) return;
   constexpr float least_zoom = 0.55F, largest_zoom = 1.85F;
   constexpr double steepest = 1.7;
@@ -102,18 +102,18 @@ void VialRays::require_gentle(RayNodes& nodes) const {
     }
   }
   const double climb = std::abs(optics::skew_ray(setup_.view, 0, top).climb);
-  const std::string lens =
-      "projector: its lens, " + format_number(*setup_.view.rows_lens_mm, 4) + " mm from the axis, is too near: ";
+  const std::string lens = "projector: its lens, " + format_number(*setup_.view.rows_lens_mm, 4) +
+                           " mm from the axis, is too close to the axis: ";
   const std::string remedy = "; check projector.throw_ratio and projector.lens_distance_mm";
   if (climb > steepest) {
-    throw Error{Fault::data, lens + "rays climb by " + format_number(climb, 3) + " mm per mm, and " +
-                                 format_number(steepest) + " can be followed" + remedy};
+    throw Error{Fault::data, lens + "rays climb by " + format_number(climb, 3) + " mm per mm, at most " +
+                                 format_number(steepest) + " supported" + remedy};
   }
   if (low >= least_zoom && high <= largest_zoom) return;
   const auto number = [](float v) { return format_number(static_cast<double>(v), 3); };
   throw Error{Fault::data, lens + "across the vial rows are " + number(low) + " to " + number(high) +
-                               " times as dense as on the axis, and " + number(least_zoom) + " to " +
-                               number(largest_zoom) + " times can be followed" + remedy};
+                               " times as dense as on the axis, at least " + number(least_zoom) + " and at most " +
+                               number(largest_zoom) + " supported" + remedy};
 }
 
 int VialRays::chunk(double r_mm) const {

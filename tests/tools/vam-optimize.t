@@ -173,7 +173,7 @@ fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
 fails 65 '90 angles' vam-optimize --angles 80 --init cal.exr part.vdb -o out.exr
 fails 65 'projector' vam-optimize --geometry parallel --angles 90 --init projector.exr part.vdb -o out.exr
-fails 65 'its lens, 16.64 mm from the axis, is too near' vam-optimize --set projector.throw_ratio=0.25 boat.vdb -o out.exr
+fails 65 'its lens, 16.64 mm from the axis, is too close to the axis' vam-optimize --set projector.throw_ratio=0.25 boat.vdb -o out.exr
 fails 65 "reaches 7.748 mm from the axis, beyond the resin's edge at 5 mm; scale" vam-optimize --set vial.radius_mm=5 part.vdb -o out.exr
 # Nothing to print: a disc and a rod thinner than half a voxel, and rows that pass below the part
 vam-slice --shape cylinder:diameter=6,height=0.18 --stretch-z 1 --voxel 0.2 -o flat.vdb

@@ -18,7 +18,7 @@ std::optional<std::string> another_size(const CameraMode& mode, int columns, int
 bool in_real_pace(const Address& address, const std::string& fallback) {
   const std::string pace = address.word("pace", fallback);
   if (pace != "real" && pace != "virtual") {
-    throw Error{Fault::usage, "device '" + address.text + "': pace=" + pace + " is neither real nor virtual"};
+    throw Error{Fault::usage, "device '" + address.text + "': pace=" + pace + ": expected real or virtual"};
   }
   return pace == "real";
 }

@@ -3,11 +3,11 @@
 
 namespace vam::light {
 
-#define VAM_COLUMNS_KERNELS                                                                                          \
-  /* to[c][i] = from[c][i], i < count <= 16, of columns that are 16 floats and `pitch` floats long; soon the columns \
-     `next` floats further on will be wanted */                                                                      \
-  void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to);                     \
-  /* to[c][i] += from[c][i], the other way */                                                                        \
+#define VAM_COLUMNS_KERNELS                                                                                    \
+  /* to[c][i] = from[c][i], i < count <= 16, of columns that are 16 floats and `pitch` floats long; prefetches \
+     the columns `next` floats further on */                                                                   \
+  void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to);               \
+  /* to[c][i] += from[c][i], the other way */                                                                  \
   void add_columns(const float* from, int columns, int count, int pitch, long next, float* to);
 
 namespace baseline {

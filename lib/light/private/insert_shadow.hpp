@@ -45,8 +45,8 @@ class InsertShadow {
   }
 
   /// Whether any row's ray of that column and angle meets the insert.
-  [[nodiscard]] bool hinders(int column, int angle) const {
-    return hinders_[static_cast<std::size_t>(column) * parts_.size() + static_cast<std::size_t>(angle)] != 0;
+  [[nodiscard]] bool occludes(int column, int angle) const {
+    return occludes_[static_cast<std::size_t>(column) * parts_.size() + static_cast<std::size_t>(angle)] != 0;
   }
 
   /// u in mm at which rays meet the insert, or `unhindered`: a slab of columns x angles for 16 rows each.
@@ -62,8 +62,8 @@ class InsertShadow {
 
   model::Grid grid_;
   std::vector<Direction> parts_, columns_;
-  std::vector<Slab> ends_;              // columns x angles, 16 rows
-  std::vector<unsigned char> hinders_;  // [column][angle]
+  std::vector<Slab> ends_;               // columns x angles, 16 rows
+  std::vector<unsigned char> occludes_;  // [column][angle]
 };
 
 }  // namespace vam::light

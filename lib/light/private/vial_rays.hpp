@@ -55,7 +55,7 @@ class VialRays {
   [[nodiscard]] double top_mm() const;
   [[nodiscard]] RayTable::Setup table_setup() const;
   [[nodiscard]] RayScale scale() const;
-  void require_gentle(RayNodes& nodes) const;
+  void require_moderate_rays(RayNodes& nodes) const;
 
   VialSetup setup_;
   RayTable table_;

@@ -83,7 +83,7 @@ Latency measure_latency(const BlinkScan& scan) {
       std::count_if(parts.begin(), parts.end(), [](double part) { return part > 0.02 && part < 0.98; });
   if (partial < 2) {
     throw Error{Fault::data,
-                "latency: no frame was exposed across a flip; blink at a rate that does not keep step with the camera"};
+                "latency: no frame was exposed across a flip; blink at a rate that is no multiple of the frame rate"};
   }
   const auto residuals = [&](const std::vector<double>& p) {
     auto out = lit_parts(scan, 1e-3 * p[0]);

@@ -25,7 +25,7 @@ void require_ramp(const ResponseScan& scan) {
     if (scan.light[i].size() < fewest_readings) {
       throw Error{Fault::data, "response: " + std::to_string(scan.light[i].size()) + " readings of grey " +
                                    format_number(scan.grey[i]) + "; at least " + std::to_string(fewest_readings) +
-                                   " are needed to know their scatter"};
+                                   " are needed to estimate the variance"};
     }
   }
 }

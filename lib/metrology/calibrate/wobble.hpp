@@ -1,5 +1,5 @@
-// What stands still and what goes round in a value that was measured at several stage angles: a vial whose middle
-// circles the rotation axis is seen beside it at any one angle.
+// Splits a value by stage angle into constant and once-per-turn parts: a vial whose middle circles the rotation axis is
+// seen beside it at any one angle.
 #pragma once
 
 #include <string>

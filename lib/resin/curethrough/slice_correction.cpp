@@ -75,7 +75,7 @@ void require_printable(const CureLimits& limits) {
   if (limits.settled(limits.phi_min) >= 1) {
     throw Error{Fault::data, "intensity range: the minimum alone settles at " +
                                  format_number(limits.settled(limits.phi_min), 3) +
-                                 " critical doses, so everything cures; give more contrast or print faster"};
+                                 " critical doses, so everything cures; increase contrast or print faster"};
   }
   if (burst_slices(limits) == 0) {
     const double highest = limits.settled(limits.phi_max);

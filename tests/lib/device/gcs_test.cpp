@@ -115,7 +115,7 @@ TEST_CASE("A slow motion times out and is stopped") {
 }
 
 // Every command of a whole run, with every way of its answer to be wrong.
-TEST_CASE("Each protocol answer wrong in turn: the right fault, in time, and the stage stands") {
+TEST_CASE("GCS: corrupt replies are detected in time and the stage stops") {
   SpinPlan plan;
   plan.speed_deg_s = 60;
   plan.period_s = 0.05;

@@ -41,7 +41,7 @@ struct GrblLab {
 
 }  // namespace
 
-TEST_CASE("A GRBL board that was reset when its port was opened turns nothing before it is homed") {
+TEST_CASE("GRBL: refuses motion before homing") {
   SimGcsSettings sim;
   sim.reset_at_open = true;
   GrblLab lab(sim);
@@ -85,7 +85,7 @@ TEST_CASE("A device other than GRBL is refused") {
         Fault::busy);
 }
 
-TEST_CASE("Each answer of a GRBL board wrong in turn: the right fault, in time, and the stage stands") {
+TEST_CASE("GRBL: corrupt replies are detected in time and the stage stops") {
   struct Case {
     const char* kind;
     Fault fault;

@@ -87,7 +87,7 @@ TEST_CASE("The Tic's errors are named and stop the start") {
   CHECK(fault_of([&] { lab.stage->enable(); }) == Fault::protocol);
 }
 
-TEST_CASE("Each answer of a Tic wrong in turn: the right fault, in time, and the stage stands") {
+TEST_CASE("Tic: corrupt replies are detected in time and the stage stops") {
   const std::vector<std::pair<const char*, Fault>> cases{{"silent", Fault::busy},
                                                          {"error", Fault::protocol},
                                                          {"garbage", Fault::protocol},

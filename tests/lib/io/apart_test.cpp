@@ -123,7 +123,7 @@ TEST_CASE("a child's own error, and the parent's, keep their words") {
       take_nothing);
 }
 
-TEST_CASE("a child reads the one descriptor it was given, opens none, talks to nobody and says nothing") {
+TEST_CASE("a sandboxed parser can neither open files nor use the network") {
   const scratch::Folder folder;
   const std::string path = folder.write("a", "0123456789");
   const int given = open(path.c_str(), O_RDONLY | O_CLOEXEC);

@@ -77,7 +77,7 @@ TEST_CASE("3MF: an object of another part, whose unit is its own") {
   CHECK(has(refusal(folder, package(root)), "3D/Objects/second.model"));
 }
 
-TEST_CASE("3MF: what expands without end, or means another shape than its triangles, is refused before it is made") {
+TEST_CASE("3MF: rejects unbounded components and non-mesh geometry") {
   const scratch::Folder folder;
   const auto ten = [](int id) {
     std::string text = "<components>";

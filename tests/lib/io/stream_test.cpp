@@ -183,7 +183,7 @@ TEST_CASE("kill -9 leaves nothing where the file system knows unnamed files") {
   CHECK(folder.count() == 0);
 }
 
-TEST_CASE("what kill -9 leaves behind is removed by the next output in that folder, what others still write is not") {
+TEST_CASE("removes temporaries of killed writers, keeps those of live ones") {
   const scratch::Folder folder;
   const auto any_file = [](const std::filesystem::path&) { return true; };
   const auto in_child = [&](bool dies) {

@@ -138,7 +138,7 @@ TEST_CASE("the column offset moves the light by fractions of a pixel") {
   CHECK(moved(1, 0) == 0);
 }
 
-TEST_CASE("light beyond the projector, negative, missing, or of another printer is refused with the numbers") {
+TEST_CASE("rejects out-of-range, negative, missing or mismatched intensity") {
   const StackInfo info = sinograms(20, 4, 5, 0.1, 0.1, -0.2);
   CHECK(has(error_of(
                 [&] {

@@ -195,7 +195,7 @@ TEST_CASE("The world shows the test pattern that the projector's log names") {
   std::filesystem::remove(shown);
 }
 
-TEST_CASE("An exposure is the sum of its parts; a card shines by the image's mean and has the lens' shading") {
+TEST_CASE("An exposure is the sum of its parts; a card's target brightness is the image mean, with the lens' shading") {
   SimBench bench = small_bench();
   bench.bodies.clear();
   bench.card = true;
