@@ -63,7 +63,9 @@ void run(const cli::App& app, Options& options) {
   }
   if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
   sink.finish();
-  publish(outcome, printer, options);
+  std::optional<optimize::Trials> trials;
+  if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
+  publish(outcome, trials, printer, options);
   sink.commit();
   if (checkpoint) checkpoint->remove();
 }

@@ -136,6 +136,35 @@ fails 65 'nan.state: .*NaN' vam-optimize --iterations 100000 --patience 0 --chec
 fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
 fails 65 'not a checkpoint' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
 
+# Printers off their settings.
+off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
+vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
+robust() { vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 "$@"; }
+quiet "for printers off their settings" robust --report robust.json --threads 1 coarse.vdb -o robust.exr
+is "each tolerance is judged" "$(grep -c margin_of_threshold robust.json)" 13
+is "a yield is reported" "$(grep -c '"yield": ' robust.json)" 1
+holds "the part prints as set" "$(python3 -c 'import json; print(json.load(open("robust.json"))["robust"]["nominal"]["wrong"])') == 0"
+robust --report again.json --threads 2 coarse.vdb -o again.exr
+is "1 and 2 threads give the same pixels for them" \
+  "$(tail -c 200000 robust.exr | cksum)" "$(tail -c 200000 again.exr | cksum)"
+same "and the same report" robust.json again.json
+for seconds in 0.3 0.5 0.8 1.2 2 4 60; do
+  timeout -s INT $seconds vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 --report parts.json \
+    --checkpoint robust.state coarse.vdb -o robust-parts.exr && break
+  [ -e robust-parts.exr ] && break
+done
+is "the pixels of such a run, interrupted" \
+  "$(tail -c 200000 robust-parts.exr | cksum)" "$(tail -c 200000 robust.exr | cksum)"
+same "its figures" parts.json robust.json
+fails 64 '--robust: method cal does not use it; omit it, or choose one of apg' \
+  vam-optimize --method cal --robust lamp=3% part.vdb -o out.exr
+fails 64 'use --geometry vial' vam-optimize --geometry parallel --robust lamp=3% part.vdb -o out.exr
+fails 64 'does not apply to --grey-target' vam-optimize --grey-target --robust lamp=3% part.vdb -o out.exr
+fails 64 "no tolerance is called 'colour'; there are axis" vam-optimize --robust colour=3 part.vdb -o out.exr
+fails 64 "'-1' is not a number above 0 in px" vam-optimize --robust axis=-1px part.vdb -o out.exr
+fails 64 'requires --robust' vam-optimize --yield-printers 5 part.vdb -o out.exr
+fails 64 'are no printer' vam-optimize --robust lamp=150% coarse.vdb -o out.exr
+
 quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"

@@ -16,13 +16,16 @@ namespace vam::optimize_tool {
 
 namespace {
 
+light::VialSetup vial_setup(model::Printer printer, const Scene& scene, const Options& options) {
+  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  return light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
+}
+
 light::Beam beam_of(const Scene& scene, const Options& options) {
+  if (options.geometry == "vial") return vial_setup(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
   model::Printer printer = scene.printer;
   if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
-  if (options.geometry == "vial") {
-    return light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * voxel_mm);
-  }
   return light::ParallelBeam{scene.turn, printer.resin.absorption_per_mm * voxel_mm,
                              model::resin_radius_mm(printer.vial) / voxel_mm,
                              options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
@@ -78,16 +81,50 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
   return scene;
 }
 
-double blur_px(const Scene& scene, const Options& options) {
-  if (options.no_blur) return 0;
+double diffusion_s(const Scene& scene, const Options& options) {
   const model::PrinterStage& stage = scene.printer.stage;
-  const double seconds = options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(stage.turns)));
-  const model::Resin& resin = scene.printer.resin;
-  return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / scene.grid.voxel_mm;
+  return options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(stage.turns)));
 }
+
+namespace {
+
+double blur_px(const model::Resin& resin, const Scene& scene, const Options& options) {
+  if (options.no_blur) return 0;
+  return light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, diffusion_s(scene, options)) / scene.grid.voxel_mm;
+}
+
+}  // namespace
+
+double blur_px(const Scene& scene, const Options& options) { return blur_px(scene.printer.resin, scene, options); }
 
 std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options, std::span<const Slab> inserts) {
   return light::make_operator(beam_of(scene, options), inserts);
+}
+
+namespace {
+
+/// The voxels are those of the part as it was sliced for the printer as set.
+optimize::Scenario make_scenario(const Scene& scene, const Options& options, std::span<const Slab> inserts,
+                                 const model::Deviation& by) {
+  const model::DeviatingPrinter off = model::deviate(scene.printer, *options.printer_tolerances, by);
+  light::VialSetup setup = vial_setup(off.printer, scene, options);
+  setup.angle_offset_rad += off.angle_offset_rad;
+  setup.z_scale = model::vertical_magnification(scene.printer);
+  return {light::make_operator(setup, inserts), blur_px(off.printer.resin, scene, options), off.intensity};
+}
+
+}  // namespace
+
+std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options& options,
+                                               std::span<const Slab> inserts) {
+  std::vector<optimize::Scenario> bank;
+  for (const model::Deviation& corner : model::balanced_corners()) {
+    model::Deviation opposite = corner;
+    for (double& one : opposite) one = -one;
+    bank.push_back(make_scenario(scene, options, inserts, corner));
+    bank.push_back(make_scenario(scene, options, inserts, opposite));
+  }
+  return bank;
 }
 
 }  // namespace vam::optimize_tool

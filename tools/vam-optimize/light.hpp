@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "io/vdb/vdb.hpp"
 #include "light/lit_grid.hpp"
@@ -10,6 +11,7 @@
 #include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
+#include "optimize/methods/scenarios.hpp"
 #include "tomo/radon.hpp"
 #include "vam-optimize/options.hpp"
 
@@ -26,6 +28,8 @@ struct Scene {
 
 [[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);
 
+/// Time during which the dose diffuses.
+[[nodiscard]] double diffusion_s(const Scene& scene, const Options& options);
 /// Standard deviation in voxels of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_px(const Scene& scene, const Options& options);
 
@@ -33,5 +37,10 @@ struct Scene {
 /// there are any, a slab for every slab of the pass.
 [[nodiscard]] std::unique_ptr<light::Operator> make_light(const Scene& scene, const Options& options,
                                                           std::span<const Slab> inserts = {});
+
+/// Printers off their settings by the tolerances of --robust, as their light falls on the same voxels: corners of the
+/// box of tolerances, each followed by the opposite one.
+[[nodiscard]] std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options& options,
+                                                             std::span<const Slab> inserts);
 
 }  // namespace vam::optimize_tool

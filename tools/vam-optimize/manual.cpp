@@ -43,6 +43,11 @@ std::vector<std::string> description() {
        "parts print with 1.2 to 1.5 times the even intensity. Some parts have a wider process window without a limit "
        "(--max-intensity 0). With a known resin the report contains the number of turns and their duration at full "
        "grey.",
+       "With --robust projections are made for printers off their settings, too: each iteration looks at the printer "
+       "as set and at two others with all tolerances used up, in opposite ways. The report has the figures as set and "
+       "at either end of each tolerance, the tolerance that costs most, and the yield, all at one exposure, judged by "
+       "the simulation of vam-dose with the grey levels of --bits. --until and --trace are about the printer as set; "
+       "all --iterations are done unless they or --patience are given.",
        "A grid 'insert' in the same file is an opaque object to print around (overprinting): it casts a "
        "shadow. Part voxels in its shadow from all sides are reported and excluded.",
        "Absorption by the resin (resin.absorption_per_mm) attenuates the beam: e^(-mu s), s the path length from the "
@@ -77,6 +82,8 @@ cli::Manual manual() {
         "vam-optimize --bits 4 --error-feedback part.vdb -o coarse.exr"},
        {"Compensated for a beam that is 0.1 mm wide, and safe to interrupt:",
         "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
+       {"For printers whose axis and lamp are not quite as set:",
+        "vam-optimize --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o robust.exr"},
        {"Graded stiffness: a bar whose dose rises from one grey image to the next, each to 0.25:",
         "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
         "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
@@ -89,7 +96,9 @@ cli::Manual manual() {
        "computed and mirrored. Memory: three arrays of a slice and three of a sinogram each, of all slices where they "
        "are coupled, else of 64 slices at a time, plus at most 512 MiB of finished slices that occur again; with "
        "--bits "
-       "and without --full-scale all projections."},
+       "and without --full-scale all projections. With --robust an iteration takes three times as long and needs one "
+       "array more of the slices and four of the sinograms, and all projections are kept; each printer that is judged "
+       "costs about a third of a plain iteration."},
       {"vam-slice", "vam-sinogram", "vam-resample", "vam-dose", "vam-score"}};
 }
 

@@ -1,14 +1,9 @@
 #include "vam-optimize/options.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <utility>
 #include <vector>
 
-#include "base/error.hpp"
 #include "base/text.hpp"
-#include "io/settings/csv_table.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 
@@ -18,9 +13,8 @@ namespace {
 
 /// "fbp, dose-norm: ", the methods that read the option.
 std::string readers(const std::string& flag, const std::string& others = "") {
-  const auto names = optimize::method_names([&](const optimize::MethodEntry& entry) {
-    return std::find(entry.options.begin(), entry.options.end(), flag) != entry.options.end();
-  });
+  const auto names =
+      optimize::method_names([&](const optimize::MethodEntry& entry) { return optimize::reads(entry, flag); });
   return join(names, ", ") + others + ": ";
 }
 
@@ -115,6 +109,22 @@ void declare_parameters(cli::App& app, Options& options) {
                " iterations without success. The computation takes several times as long.");
 }
 
+void declare_tolerances(cli::App& app, Options& options) {
+  std::vector<std::string> all;
+  for (const model::Tolerance& one : model::tolerance_table) {
+    all.push_back(std::string(one.name) + " (" + std::string(one.meaning) + ")");
+  }
+  app.group("Tolerances of the printer");
+  app.option("--robust", "TOLERANCES", options.robust,
+             readers("--robust") +
+                 "projections that print in printers off their settings by up to so much, too, e.g. "
+                 "'axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm': " +
+                 join(all, ", ") + ". The report has the figures at each tolerance.");
+  app.option("--yield-printers", "N", options.yield_printers, {0, 100000},
+             "Printers that are drawn for the yield of --robust, each quantity even within its tolerance.");
+  app.not_in_job();
+}
+
 void declare_beam(cli::App& app, Options& options) {
   app.group("Beam and resin");
   app.choice("--absorption-model", options.absorption_model, {"exact", "disc", "none"},
@@ -156,156 +166,13 @@ void declare(cli::App& app, Options& options) {
   declare_constraints(app, options);
   declare_stopping(app, options);
   declare_parameters(app, options);
+  declare_tolerances(app, options);
   declare_beam(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
-}
-
-namespace {
-
-/// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion; the
-/// shortest print is always one that meets a goal.
-void settle_auto(const cli::App& app, Options& options) {
-  if (options.method != "auto") return;
-  options.method = optimize::automatic_method;
-  if (!options.until.empty() || (app.given("--iterations") && !options.shortest)) return;
-  options.limits.at_least = optimize::automatic_iterations;
-  options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
-}
-
-/// An option that only other methods read.
-void refuse_unread(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
-  const auto reads = [](const optimize::MethodEntry& entry, const std::string& flag) {
-    return std::find(entry.options.begin(), entry.options.end(), flag) != entry.options.end();
-  };
-  for (const std::string& other : optimize::method_names()) {
-    for (const std::string& flag : optimize::method_entry(other).options) {
-      if (reads(method, flag) || !app.given(flag)) continue;
-      if (options.demands.grey && (flag == "--band" || flag == "--resin-response" || flag == "--softness")) continue;
-      const auto readers =
-          optimize::method_names([&](const optimize::MethodEntry& entry) { return reads(entry, flag); });
-      throw Error{Fault::usage, flag + ": method " + method.name + " does not use it; omit it, or choose one of " +
-                                    join(readers, ", ") + " by --method"};
-    }
-  }
-}
-
-void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
-  optimize::check(options.demands);
-  refuse_unread(app, options, method);
-  if (options.geometry == "vial" && options.columns) {
-    throw Error{Fault::usage,
-                "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "
-                "parallel"};
-  }
-  if (options.geometry == "vial" && options.absorption_model == "disc") {
-    throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
-  }
-  if (options.demands.grey && !method.grey) {
-    const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
-    throw Error{Fault::usage,
-                "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
-  }
-  if (options.demands.grey && (options.tolerance_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --tolerance-mm and --surface"};
-  }
-}
-
-/// Where the user gives no limit, there is a low one, which is raised while the part does not print.
-void settle_raising(const cli::App& app, Options& options) {
-  if (options.shortest && options.limit.of_even <= 0) {
-    throw Error{Fault::usage,
-                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and "
-                "--grey-target, and use a method that reads --max-intensity"};
-  }
-  if (options.shortest && options.until.empty()) {
-    throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
-  }
-  if (options.limit.of_even <= 0 || options.until.empty()) return;
-  options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
-  if (!options.shortest) return;
-  options.limit.of_even = optimize::shortest_of_even;
-  if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;
-}
-
-void settle_limit(Options& options, const optimize::MethodEntry& method) {
-  const bool reads = std::find(method.options.begin(), method.options.end(), "--max-intensity") != method.options.end();
-  if (options.turns && options.max_intensity) {
-    throw Error{Fault::usage, "--turns: sets the maximum intensity; omit --max-intensity"};
-  }
-  if (options.turns && !reads)
-    throw Error{Fault::usage, "--turns: method " + method.name + " has no maximum intensity"};
-  if (options.turns) return;  // with the printer
-  if (options.max_intensity) {
-    options.limit.most = *options.max_intensity;
-  } else if (reads && !options.demands.grey) {
-    options.limit.of_even = optimize::usual_of_even;
-  }
-}
-
-}  // namespace
-
-void settle(const cli::App& app, Options& options) {
-  settle_auto(app, options);
-  const optimize::MethodEntry& method = optimize::method_entry(options.method);
-  refuse_contradictions(app, options, method);
-  if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
-  options.how.offset = options.negative == "offset";
-  settle_limit(options, method);
-  options.limits.iterations = options.iterations.value_or(method.iterations);
-  settle_raising(app, options);
-  if (!options.until.empty()) {
-    options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
-  }
-}
-
-namespace {
-
-optimize::CureCurve read_curve(const std::string& path) {
-  const io::CsvTable table = io::read_csv(path, {"dose", "response"});
-  std::vector<std::pair<double, double>> points;
-  for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    points.emplace_back(table.number(row, 0), table.number(row, 1));
-  }
-  try {
-    return optimize::CureCurve::table(points);
-  } catch (const Error& error) {
-    throw Error{error.fault, path + ": " + error.what()};
-  }
-}
-
-/// LOW and HIGH are the doses whose responses differ from liquid and cured by the band.
-void settle_window(const cli::App& app, const std::string& path, optimize::Demands& demands) {
-  const auto band = static_cast<float>(demands.band);
-  const double low = static_cast<double>(demands.curve.doses(0, band).high);
-  const double high = static_cast<double>(demands.curve.doses(1, band).low);
-  if (!std::isfinite(low) || !std::isfinite(high)) {
-    throw Error{Fault::data, path + ": the response must reach from " + format_number(demands.band) + " to " +
-                                 format_number(1 - demands.band) + " (--band); measure more doses or change --band"};
-  }
-  if (!app.given("--dose-low")) demands.window.low = low;
-  if (!app.given("--dose-high")) demands.window.high = high;
-  optimize::check(demands);
-}
-
-}  // namespace
-
-void settle_response(const cli::App& app, Options& options) {
-  optimize::Demands& demands = options.demands;
-  const optimize::DoseWindow& window = demands.window;
-  if (options.response == "linear") {
-    demands.curve = optimize::CureCurve::linear();
-  } else if (options.response == "step") {
-    demands.curve = optimize::CureCurve::step(window.low, window.high);
-  } else if (options.response == "logistic") {
-    demands.curve = optimize::CureCurve::logistic(window.threshold(), options.softness);
-  } else {
-    demands.curve = read_curve(options.response);
-    if (!demands.grey) settle_window(app, options.response, demands);
-  }
 }
 
 }  // namespace vam::optimize_tool

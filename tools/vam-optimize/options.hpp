@@ -7,6 +7,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/exr/stack.hpp"
+#include "model/tolerances.hpp"
 #include "optimize/run/volume.hpp"
 
 namespace vam::optimize_tool {
@@ -35,6 +36,9 @@ struct Options {
   bool shortest = false;
   optimize::IntensityLimit limit;
   optimize::Raising raising;
+  std::string robust;
+  std::optional<model::Tolerances> printer_tolerances;  // as read from it
+  int yield_printers = 50;
   std::string negative = "clip";
   std::string absorption_model = "exact";
   bool no_blur = false;

@@ -40,13 +40,15 @@ void add_exposure(Json& report, const optimize::VolumeOutcome& outcome, const mo
 
 }  // namespace
 
-void publish(const optimize::VolumeOutcome& outcome, const model::Printer& printer, const Options& options) {
+void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials,
+             const model::Printer& printer, const Options& options) {
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();
   add_exposure(report, outcome, printer, options);
+  if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
   io::write_report(options.report, "vam-optimize/1", report);
 }
 

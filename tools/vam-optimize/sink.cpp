@@ -5,20 +5,27 @@
 namespace vam::optimize_tool {
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
-    : out_(options.output, info, options.stack), progress_("optimising", info.count) {
+    : keep_(options.printer_tolerances.has_value()),
+      out_(options.output, info, options.stack),
+      progress_("optimising", info.count) {
   if (!options.bits) return;
   const auto& file = printer.projector.response;
   const auto response =
       file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
   levels_.emplace(resin::GreyLevels(response, *options.bits), options.full_scale, options.error_feedback,
-                  [this](const Image& image) { out_.write(image); });
+                  [this](const Image& image) { write(image); });
+}
+
+void Sink::write(const Image& image) {
+  out_.write(image);
+  if (keep_) kept_.push_back(image);
 }
 
 void Sink::add(const Image& image) {
   if (levels_) {
     levels_->add(image);
   } else {
-    out_.write(image);
+    write(image);
   }
   progress_.tick();
 }

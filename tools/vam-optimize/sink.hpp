@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "base/image.hpp"
 #include "base/log.hpp"
@@ -12,7 +13,7 @@
 
 namespace vam::optimize_tool {
 
-/// Into the stack, quantised to the projector's grey levels on request.
+/// Into the stack, quantised to the projector's grey levels on request. With --robust all is kept to be judged.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);
@@ -20,8 +21,13 @@ class Sink {
   /// After the last slice.
   void finish();
   void commit() { out_.commit(); }
+  /// All that was written, in order, if it was to be kept.
+  [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }
 
  private:
+  void write(const Image& image);
+  bool keep_;
+  std::vector<Image> kept_;
   io::StackWriter out_;
   std::optional<optimize::Quantiser> levels_;
   Progress progress_;

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optimize/methods/tolerant.hpp"
 #include "score/exposure.hpp"
 
 namespace vam::optimize_tool {
@@ -94,10 +95,28 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
   task.make = [&](double max_intensity) {
     optimize::MethodOptions how = options.how;
     how.max_intensity = max_intensity;
+    if (options.printer_tolerances) return optimize::make_tolerant(how);
     return optimize::make_method(options.method, how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
+  if (options.printer_tolerances) {
+    task.scenarios = [&](std::span<const Slab> inserts) { return make_scenarios(scene, options, inserts); };
+  }
   return task;
+}
+
+optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options) {
+  optimize::Trial trial;
+  trial.printer = scene.printer;
+  if (options.absorption_model == "none") trial.printer.resin.absorption_per_mm = 0;
+  trial.tolerances = *options.printer_tolerances;
+  trial.info = info;
+  trial.grid = scene.grid;
+  trial.seconds = diffusion_s(scene, options);
+  trial.blur = !options.no_blur;
+  trial.threshold = options.demands.window.threshold();
+  trial.printers = options.yield_printers;
+  return trial;
 }
 
 }  // namespace vam::optimize_tool

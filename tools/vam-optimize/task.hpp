@@ -3,6 +3,7 @@
 
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
+#include "optimize/run/yield.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -15,5 +16,8 @@ namespace vam::optimize_tool {
 
 /// Without its output. Scene, inputs and options stay the caller's.
 [[nodiscard]] optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options);
+
+/// The printers to judge the frames with, of --robust.
+[[nodiscard]] optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

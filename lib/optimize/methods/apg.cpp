@@ -196,7 +196,7 @@ MethodEntry apg_method() {
           "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
           60,
           true,
-          {"--max-intensity"},
+          {"--max-intensity", "--robust"},
           make<Apg>};
 }
 

@@ -9,6 +9,7 @@
 
 #include "light/operator.hpp"
 #include "optimize/methods/archive.hpp"
+#include "optimize/methods/scenarios.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {
@@ -43,6 +44,9 @@ class Method {
   virtual void step(const Problem& problem, const light::Operator& light, Iterate& iterate) = 0;
   /// Goes on with a higher upper bound on intensity.
   void allow(double max_intensity) { options_.max_intensity = max_intensity; }
+  /// Printers in whose light the loss counts, too; they must outlive the method's last step. Only of methods that read
+  /// --robust.
+  void face(const Scenarios& scenarios) { scenarios_ = &scenarios; }
   /// Writes or reads what the next step needs beside the iterate, so that a run can be interrupted and resume.
   virtual void exchange(Archive& archive) = 0;
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
@@ -50,6 +54,7 @@ class Method {
 
  protected:
   MethodOptions options_;
+  const Scenarios* scenarios_ = nullptr;
 };
 
 /// Description of a method, for --help, manual, errors and tests of vam-optimize.
@@ -62,6 +67,8 @@ struct MethodEntry {
   std::vector<std::string> options;  // of vam-optimize that not every method reads
   std::unique_ptr<Method> (*make)(const MethodOptions&);
 };
+
+[[nodiscard]] bool reads(const MethodEntry& method, const std::string& option);
 
 /// For MethodEntry::make.
 template <class Kind>

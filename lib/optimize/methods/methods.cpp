@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "optimize/methods/method.hpp"
@@ -25,6 +27,10 @@ const MethodEntry& method_entry(const std::string& name) {
     if (entry.name == name) return entry;
   }
   throw Error{Fault::usage, "no method is called '" + name + "'; there are " + join(method_names(), ", ")};
+}
+
+bool reads(const MethodEntry& method, const std::string& option) {
+  return std::find(method.options.begin(), method.options.end(), option) != method.options.end();
 }
 
 std::unique_ptr<Method> make_method(const std::string& name, const MethodOptions& options) {

@@ -1,6 +1,7 @@
 #include "optimize/run/volume.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -12,6 +13,7 @@
 #include "optimize/run/private/ledger.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/run/private/pass_light.hpp"
+#include "optimize/run/private/threshold.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "optimize/target/schedule.hpp"
 
@@ -45,7 +47,7 @@ class Run {
       : task_(task),
         light_(light),
         reader_(task.source, light.object()),
-        whole_(light.couples_slices()),
+        whole_(light.couples_slices() || task.scenarios),
         halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
@@ -117,7 +119,11 @@ class Run {
     std::unique_ptr<light::Operator> around;
     if (!inserts.empty()) around = go_around(problem, pass, inserts, work);
     const PassLight light(light_, std::move(around), task_.blur_px, pass.slices());
+    std::optional<Scenarios> scenarios;
+    if (task_.scenarios) scenarios.emplace(light.sharp(), task_.scenarios(inserts), pass.slices());
     if (!work.method) begin(work, pass, light.sharp());
+    const Scenarios* faced = scenarios ? &*scenarios : nullptr;
+    if (faced != nullptr) work.method->face(*faced);
     Watch watch;
     if (task_.watch) {
       watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
@@ -130,7 +136,7 @@ class Run {
     }
     ledger_.end(outcome);
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
-    finish(problem, work.state, pass, light.sharp());
+    finish(problem, work.state, pass, light.sharp(), faced);
     return true;
   }
 
@@ -162,29 +168,12 @@ class Run {
     ledger_.note(iteration, figures);
   }
 
-  /// Brings the slices to the common threshold, but never beyond the largest light; all by one factor where they share
-  /// light.
-  void bring_to_threshold(const Problem& problem, Iterate& state, const light::Operator& light) const {
-    if (halo_ > 0) return;  // slices that share dose are to scale already
-    PerSlice factor =
-        whole_ ? to_shared_threshold(state.dose, problem) : to_common_threshold(metrics(state.dose, problem), problem);
-    if (max_intensity_ > 0) {
-      PerSlice brightest = largest(state.g);
-      if (whole_) brightest = largest_of_all(brightest);
-      const auto most = static_cast<float>(max_intensity_ * light.row_angle_rad());
-      for (std::size_t s = 0; s < factor.size(); ++s) {
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
-        }
-      }
-    }
-    scale(state.g, factor);
-    scale(state.dose, factor);
-  }
-
   /// Takes the finished slices out of the pass.
-  void finish(const Problem& problem, Iterate& state, const Pass& pass, const light::Operator& light) {
-    bring_to_threshold(problem, state, light);
+  void finish(const Problem& problem, Iterate& state, const Pass& pass, const light::Operator& light,
+              const Scenarios* scenarios) {
+    if (halo_ == 0) {  // slices that share dose with other passes are to scale already
+      bring_to_threshold(problem, light, whole_ ? Together::pass : Together::slice, max_intensity_, scenarios, state);
+    }
     const auto doses = statistics(state.dose, problem);
     const auto figures = metrics(state.dose, problem);
     for (int job = pass.first; job < pass.last; ++job) {
@@ -223,7 +212,7 @@ class Run {
   const VolumeTask& task_;
   const light::Operator& light_;
   SliceReader reader_;
-  bool whole_;  // rows light other slices than their own: all of them are one pass
+  bool whole_;  // slices share light, here or in a scenario: all of them are one pass
   int halo_;
   double max_intensity_ = 0, even_intensity_ = 0;
   RunMark mark_;

@@ -32,7 +32,9 @@ struct VolumeTask {
   bool watch = false;  // fill the trace
   std::size_t keep_bytes = std::size_t{512} << 20U;  // finished projections held for identical slices to come
   std::function<std::unique_ptr<light::Operator>(std::span<const Slab>)>
-      around;                           // the operator of a pass with these inserts
+      around;  // the operator of a pass with these inserts
+  /// Printers off their settings around these inserts, for methods that face them; may be empty.
+  std::function<std::vector<Scenario>(std::span<const Slab>)> scenarios;
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>(double max_intensity)> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence

@@ -1,0 +1,98 @@
+#include "model/tolerances.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/random.hpp"
+#include "base/text.hpp"
+
+namespace vam::model {
+
+namespace {
+
+constexpr std::string_view example = "; write for example 'axis=0.5px,index=0.005,lamp=3%'";
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string names() {
+  std::vector<std::string> all;
+  for (const Tolerance& one : tolerance_table) all.emplace_back(one.name);
+  return join(all, ", ");
+}
+
+/// Its place in the table.
+std::size_t named(std::string_view name, const std::string& clause) {
+  const auto is = [&](const Tolerance& one) { return one.name == name; };
+  const auto found = std::find_if(tolerance_table.begin(), tolerance_table.end(), is);
+  if (found != tolerance_table.end()) return static_cast<std::size_t>(found - tolerance_table.begin());
+  throw Error{Fault::usage,
+              "'" + clause + "': no tolerance is called '" + std::string(name) + "'; there are " + names()};
+}
+
+double amount(std::string_view text, std::string_view unit, const std::string& clause) {
+  if (text.ends_with(unit)) text = trimmed(text.substr(0, text.size() - unit.size()));
+  const auto value = parse_number(text);
+  if (value && std::isfinite(*value) && *value > 0) return *value;
+  throw Error{Fault::usage, "'" + clause + "': '" + std::string(text) + "' is not a number above 0" +
+                                (unit.empty() ? "" : " in " + std::string(unit)) + std::string(example)};
+}
+
+double of(const Tolerances& tolerances, const Deviation& by, Off what) {
+  const auto i = static_cast<std::size_t>(what);
+  return tolerances[i] * by[i];
+}
+
+}  // namespace
+
+Tolerances parse_tolerances(const std::string& text) {
+  Tolerances tolerances{};
+  if (trimmed(text).empty()) throw Error{Fault::usage, "no tolerance is given" + std::string(example)};
+  for (const std::string& part : split(text, ',')) {
+    const std::string clause(trimmed(part));
+    const auto at = clause.find('=');
+    if (at == std::string::npos) throw Error{Fault::usage, "'" + clause + "' has no '='" + std::string(example)};
+    const std::size_t i = named(trimmed(clause.substr(0, at)), clause);
+    if (tolerances[i] > 0) throw Error{Fault::usage, "'" + clause + "': is given twice"};
+    tolerances[i] = amount(trimmed(std::string_view(clause).substr(at + 1)), tolerance_table[i].unit, clause);
+  }
+  return tolerances;
+}
+
+DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, const Deviation& by) {
+  DeviatingPrinter off{printer, of(tolerances, by, Off::angle) * rad_per_deg, 1 + 0.01 * of(tolerances, by, Off::lamp)};
+  off.printer.projector.axis_column += of(tolerances, by, Off::axis);
+  off.printer.resin.index += of(tolerances, by, Off::index);
+  off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, Off::radius);
+  off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, Off::psf));
+  if (off.intensity > 0 && off.printer.resin.index >= 1 && resin_radius_mm(off.printer.vial) > 0) return off;
+  throw Error{Fault::usage, "tolerances: " + format_number(off.intensity) + " times the lamp, index " +
+                                format_number(off.printer.resin.index) + " and " +
+                                format_number(resin_radius_mm(off.printer.vial)) +
+                                " mm of resin are no printer; reduce them"};
+}
+
+std::vector<Deviation> balanced_corners() {
+  std::vector<Deviation> corners(8);
+  for (unsigned row = 0; row < corners.size(); ++row) {
+    for (unsigned column = 0; column < corners[row].size(); ++column) {
+      corners[row][column] = std::popcount(row & (column + 1)) % 2 == 0 ? 1 : -1;  // Sylvester
+    }
+  }
+  return corners;
+}
+
+Deviation drawn_deviation(std::uint64_t seed, int n) {
+  Deviation by{};
+  std::uint64_t state = scrambled(seed + static_cast<std::uint64_t>(n));
+  for (double& one : by) one = 2 * unit_interval(state = scrambled(state)) - 1;
+  return by;
+}
+
+}  // namespace vam::model

@@ -1,0 +1,18 @@
+// The scale of what has been optimised: where the printing threshold lies in its doses.
+#pragma once
+
+#include "light/operator.hpp"
+#include "optimize/methods/method.hpp"
+
+namespace vam::optimize {
+
+/// Who must print at one exposure.
+enum class Together { slice, pass };
+
+/// Scales a pass, slice by slice or as one, so that the threshold lies in the middle of its process window; with
+/// scenarios, in the middle between the largest void and the least part dose of any of them or of the nominal light.
+/// No light exceeds max_intensity (0: no limit).
+void bring_to_threshold(const Problem& problem, const light::Operator& light, Together together, double max_intensity,
+                        const Scenarios* scenarios, Iterate& state);
+
+}  // namespace vam::optimize

@@ -1,0 +1,139 @@
+#include "optimize/run/yield.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "base/json.hpp"
+#include "base/log.hpp"
+#include "light/blur.hpp"
+#include "light/simulation.hpp"
+#include "optimize/run/private/pass.hpp"
+#include "optimize/target/exclusions.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+constexpr std::uint64_t seed = 13;
+
+std::vector<Image> blurred(std::vector<Image> sharp, double sigma_px) {
+  if (sigma_px <= 0) return sharp;
+  std::vector<Image> out;
+  light::VolumeBlur blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
+  for (const Image& slice : sharp) blur.push(slice);
+  blur.finish();
+  return out;
+}
+
+/// The voxels to be judged and the inserts in the light's way.
+class Bench {
+ public:
+  Bench(const Trial& trial, const VolumeTask& task, std::span<const Image> frames)
+      : trial_(trial), frames_(frames), input_(read(trial, task)) {
+    if (!input_.inserts.empty()) exclude(input_.problem, input_.inserts);
+    for (int k = 0; k < trial.grid.nz && !input_.inserts.empty(); ++k) {
+      Image& insert = inserts_.emplace_back(trial.grid.nx, trial.grid.ny);
+      const float* from = input_.inserts[k / lanes].values.data() + k % lanes;
+      for (std::size_t i = 0; i < insert.size(); ++i) insert.values[i] = from[i * lanes];
+    }
+  }
+
+  [[nodiscard]] Printed print(const model::Deviation& by) const {
+    const model::DeviatingPrinter off = model::deviate(trial_.printer, trial_.tolerances, by);
+    optics::AxisAlignment alignment;
+    alignment.angle_offset_rad = off.angle_offset_rad;
+    const light::Simulation simulation(off.printer, alignment, trial_.info, trial_.grid);
+    std::vector<Image> doses(static_cast<std::size_t>(trial_.grid.nz));
+    simulation.dose(frames_, doses, inserts_);
+    const model::Resin& resin = off.printer.resin;
+    const double smeared_mm = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, trial_.seconds);
+    return judged(blurred(std::move(doses), trial_.blur ? smeared_mm / trial_.grid.voxel_mm : 0), off.intensity);
+  }
+
+ private:
+  static PassInput read(const Trial& trial, const VolumeTask& task) {
+    const Pass all{0, trial.grid.nz, 0, trial.grid.nz};
+    const SliceReader reader(task.source, {trial.grid.nx, trial.grid.ny});
+    return read_pass(
+        all, [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands);
+  }
+
+  [[nodiscard]] Printed judged(const std::vector<Image>& doses, double intensity) const {
+    const auto unit = static_cast<float>(intensity / trial_.threshold);
+    std::vector<model::DoseStatistics> slices;
+    for (std::size_t k = 0; k < doses.size(); ++k) slices.emplace_back(1.0);
+    parallel_for(static_cast<int>(doses.size()), [&](int k) {
+      const Label* labels = input_.problem.labels[k / lanes].data() + k % lanes;
+      const std::vector<float>& values = doses[k].values;
+      for (std::size_t i = 0; i < values.size(); ++i) slices[k].add(unit * values[i], labels[i * lanes]);
+    });
+    model::DoseStatistics all(1.0);
+    for (const model::DoseStatistics& slice : slices) all.merge(slice);
+    return {all.metrics(false), all.at_threshold()->wrong};
+  }
+
+  const Trial& trial_;
+  std::span<const Image> frames_;
+  PassInput input_;
+  std::vector<Image> inserts_;
+};
+
+double least_margin(const Trials::Single& single) { return std::min(single.minus.margin(), single.plus.margin()); }
+
+}  // namespace
+
+double Printed::margin() const { return std::min(figures.min_part - 1, 1 - figures.max_void); }
+
+Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames) {
+  const Bench bench(trial, task, frames);
+  Progress progress("judging", trial.printers);
+  Trials trials;
+  trials.nominal = bench.print({});
+  for (std::size_t i = 0; i < trial.tolerances.size(); ++i) {
+    if (trial.tolerances[i] == 0) continue;
+    model::Deviation plus{}, minus{};
+    plus[i] = 1;
+    minus[i] = -1;
+    trials.singles.push_back({i, bench.print(minus), bench.print(plus)});
+  }
+  const auto costlier = [](const auto& a, const auto& b) { return least_margin(a) < least_margin(b); };
+  trials.costliest = std::min_element(trials.singles.begin(), trials.singles.end(), costlier)->tolerance;
+  for (; trials.printers < trial.printers; ++trials.printers) {
+    if (bench.print(model::drawn_deviation(seed, trials.printers)).wrong <= allowed_wrong) ++trials.good;
+    progress.tick();
+  }
+  return trials;
+}
+
+namespace {
+
+Json figures_of(const Printed& printed) {
+  const model::DoseMetrics& m = printed.figures;
+  return {{"ver", m.ver},
+          {"pw_of_threshold", m.pw},
+          {"iou", m.iou},
+          {"wrong", printed.wrong},
+          {"margin_of_threshold", printed.margin()}};
+}
+
+}  // namespace
+
+Json report(const Trials& trials, const model::Tolerances& tolerances) {
+  Json json;
+  json["nominal"] = figures_of(trials.nominal);
+  for (const Trials::Single& single : trials.singles) {
+    const model::Tolerance& tolerance = model::tolerance_table[single.tolerance];
+    json["single"].push_back({{"name", tolerance.name},
+                              {"tolerance", tolerances[single.tolerance]},
+                              {"unit", tolerance.unit},
+                              {"minus", figures_of(single.minus)},
+                              {"plus", figures_of(single.plus)}});
+  }
+  json["costliest"] = model::tolerance_table[trials.costliest].name;
+  json["printers"] = trials.printers;
+  if (trials.printers > 0) json["yield"] = static_cast<double>(trials.good) / trials.printers;
+  return json;
+}
+
+}  // namespace vam::optimize

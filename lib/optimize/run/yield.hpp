@@ -1,0 +1,57 @@
+// How many printers off their settings print the part, at one exposure, and what costs most: judged by the simulation
+// of the light, not by the operators that the frames were made with.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/image.hpp"
+#include "base/json_fwd.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid.hpp"
+#include "model/stack.hpp"
+#include "model/tolerances.hpp"
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+/// What is judged: frames of `info`, one image a slice, in fluence; doses at grid and circle of the target.
+struct Trial {
+  model::Printer printer;
+  model::Tolerances tolerances{};
+  model::StackInfo info;
+  model::Grid grid;
+  double seconds = 0;  // during which the dose diffuses; blur false: nothing smears
+  bool blur = true;
+  double threshold = 0.8;  // dose at which the resin sets
+  int printers = 0;        // of the yield
+};
+
+/// The print of one printer.
+struct Printed {
+  model::DoseMetrics figures;  // doses in units of the threshold
+  double wrong = 0;            // fraction of voxels on the wrong side of the threshold
+  /// The least distance of any dose from the threshold; negative: on the wrong side.
+  [[nodiscard]] double margin() const;
+};
+
+struct Trials {
+  Printed nominal;
+  struct Single {
+    std::size_t tolerance = 0;  // of model::tolerance_table
+    Printed minus, plus;
+  };
+  std::vector<Single> singles;  // of every tolerance that is not 0
+  int printers = 0, good = 0;   // of printers that are drawn, those with at most allowed_wrong
+  std::size_t costliest = 0;    // of model::tolerance_table: its least margin is the smallest
+};
+inline constexpr double allowed_wrong = 1e-3;
+
+/// Memory: all doses and frames once. Throws Fault::data as light::Simulation does.
+[[nodiscard]] Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Image> frames);
+
+/// For --report.
+[[nodiscard]] Json report(const Trials& trials, const model::Tolerances& tolerances);
+
+}  // namespace vam::optimize

@@ -1,0 +1,176 @@
+// What follows from the options of vam-optimize, and what contradicts itself in them.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "io/settings/csv_table.hpp"
+#include "optimize/methods/automatic.hpp"
+#include "optimize/run/slice_figures.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+namespace {
+
+/// auto is the best method, stopped when the part prints with a margin unless the user sets a stopping criterion; the
+/// shortest print is always one that meets a goal.
+void settle_auto(const cli::App& app, Options& options) {
+  if (options.method != "auto") return;
+  options.method = optimize::automatic_method;
+  if (!options.until.empty() || !options.robust.empty() || (app.given("--iterations") && !options.shortest)) return;
+  options.limits.at_least = optimize::automatic_iterations;
+  options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
+}
+
+/// Tolerances are met by iterations that nothing but --until and --patience stops, if given.
+void settle_tolerances(const cli::App& app, Options& options) {
+  if (options.robust.empty()) {
+    if (app.given("--yield-printers")) throw Error{Fault::usage, "--yield-printers: requires --robust"};
+    return;
+  }
+  if (options.geometry != "vial") {
+    throw Error{Fault::usage, "--robust: a parallel beam has no printer to be off; use --geometry vial"};
+  }
+  if (options.demands.grey) throw Error{Fault::usage, "--robust: does not apply to --grey-target"};
+  try {
+    options.printer_tolerances = model::parse_tolerances(options.robust);
+  } catch (const Error& error) {
+    throw Error{error.fault, std::string("--robust: ") + error.what()};
+  }
+  if (!app.given("--patience")) options.limits.patience = 0;
+}
+
+/// An option that only other methods read.
+void refuse_unread(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
+  for (const std::string& other : optimize::method_names()) {
+    for (const std::string& flag : optimize::method_entry(other).options) {
+      if (optimize::reads(method, flag) || !app.given(flag)) continue;
+      if (options.demands.grey && (flag == "--band" || flag == "--resin-response" || flag == "--softness")) continue;
+      const auto readers =
+          optimize::method_names([&](const optimize::MethodEntry& entry) { return optimize::reads(entry, flag); });
+      throw Error{Fault::usage, flag + ": method " + method.name + " does not use it; omit it, or choose one of " +
+                                    join(readers, ", ") + " by --method"};
+    }
+  }
+}
+
+void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
+  optimize::check(options.demands);
+  refuse_unread(app, options, method);
+  if (options.geometry == "vial" && options.columns) {
+    throw Error{Fault::usage,
+                "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "
+                "parallel"};
+  }
+  if (options.geometry == "vial" && options.absorption_model == "disc") {
+    throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
+  }
+  if (options.demands.grey && !method.grey) {
+    const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
+    throw Error{Fault::usage,
+                "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
+  }
+  if (options.demands.grey && (options.tolerance_mm > 0 || options.demands.surface)) {
+    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --tolerance-mm and --surface"};
+  }
+}
+
+/// Where the user gives no limit, there is a low one, which is raised while the part does not print.
+void settle_raising(const cli::App& app, Options& options) {
+  if (options.shortest && options.limit.of_even <= 0) {
+    throw Error{Fault::usage,
+                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and "
+                "--grey-target, and use a method that reads --max-intensity"};
+  }
+  if (options.shortest && options.until.empty()) {
+    throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
+  }
+  if (options.limit.of_even <= 0 || options.until.empty()) return;
+  options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
+  if (!options.shortest) return;
+  options.limit.of_even = optimize::shortest_of_even;
+  if (!app.given("--iterations")) options.limits.iterations = 4 * options.limits.iterations;
+}
+
+void settle_limit(Options& options, const optimize::MethodEntry& method) {
+  const bool reads = optimize::reads(method, "--max-intensity");
+  if (options.turns && options.max_intensity) {
+    throw Error{Fault::usage, "--turns: sets the maximum intensity; omit --max-intensity"};
+  }
+  if (options.turns && !reads)
+    throw Error{Fault::usage, "--turns: method " + method.name + " has no maximum intensity"};
+  if (options.turns) return;  // with the printer
+  if (options.max_intensity) {
+    options.limit.most = *options.max_intensity;
+  } else if (reads && !options.demands.grey) {
+    options.limit.of_even = optimize::usual_of_even;
+  }
+}
+
+}  // namespace
+
+void settle(const cli::App& app, Options& options) {
+  settle_auto(app, options);
+  const optimize::MethodEntry& method = optimize::method_entry(options.method);
+  refuse_contradictions(app, options, method);
+  settle_tolerances(app, options);
+  if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
+  options.how.offset = options.negative == "offset";
+  settle_limit(options, method);
+  options.limits.iterations = options.iterations.value_or(method.iterations);
+  settle_raising(app, options);
+  if (!options.until.empty()) {
+    options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
+  }
+}
+
+namespace {
+
+optimize::CureCurve read_curve(const std::string& path) {
+  const io::CsvTable table = io::read_csv(path, {"dose", "response"});
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    points.emplace_back(table.number(row, 0), table.number(row, 1));
+  }
+  try {
+    return optimize::CureCurve::table(points);
+  } catch (const Error& error) {
+    throw Error{error.fault, path + ": " + error.what()};
+  }
+}
+
+/// LOW and HIGH are the doses whose responses differ from liquid and cured by the band.
+void settle_window(const cli::App& app, const std::string& path, optimize::Demands& demands) {
+  const auto band = static_cast<float>(demands.band);
+  const double low = static_cast<double>(demands.curve.doses(0, band).high);
+  const double high = static_cast<double>(demands.curve.doses(1, band).low);
+  if (!std::isfinite(low) || !std::isfinite(high)) {
+    throw Error{Fault::data, path + ": the response must reach from " + format_number(demands.band) + " to " +
+                                 format_number(1 - demands.band) + " (--band); measure more doses or change --band"};
+  }
+  if (!app.given("--dose-low")) demands.window.low = low;
+  if (!app.given("--dose-high")) demands.window.high = high;
+  optimize::check(demands);
+}
+
+}  // namespace
+
+void settle_response(const cli::App& app, Options& options) {
+  optimize::Demands& demands = options.demands;
+  const optimize::DoseWindow& window = demands.window;
+  if (options.response == "linear") {
+    demands.curve = optimize::CureCurve::linear();
+  } else if (options.response == "step") {
+    demands.curve = optimize::CureCurve::step(window.low, window.high);
+  } else if (options.response == "logistic") {
+    demands.curve = optimize::CureCurve::logistic(window.threshold(), options.softness);
+  } else {
+    demands.curve = read_curve(options.response);
+    if (!demands.grey) settle_window(app, options.response, demands);
+  }
+}
+
+}  // namespace vam::optimize_tool
