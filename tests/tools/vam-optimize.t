@@ -136,9 +136,23 @@ fails 65 'nan.state: .*NaN' vam-optimize --iterations 100000 --patience 0 --chec
 fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
 fails 65 'not a checkpoint' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
 
+# The front of duration against window.
+vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
+quiet "a front" vam-optimize --angles 60 $resin --tradeoff front.csv coarse.vdb -o front.exr
+is "its columns" "$(head -n 1 front.csv)" max_intensity,seconds,turns,pw,ver,iou,peak
+holds "it has eight limits" "$(wc -l <front.csv) >= 9"
+is "a brighter peak takes more time" "$(sed 1d front.csv | cut -d, -f2 | sort -g | cksum)" \
+  "$(sed 1d front.csv | cut -d, -f2 | cksum)"
+is "no peak is above its limit" "$(sed 1d front.csv | awk -F, '$7 > 1.0001 * $1' | wc -l)" 0
+holds "more intensity has a wider window" "$(sed -n '$p' front.csv | cut -d, -f4) > $(sed -n 2p front.csv | cut -d, -f4)"
+quiet "of a resin that is not known" vam-optimize --angles 60 --tradeoff plain.csv coarse.vdb -o front.exr
+is "there are no seconds" "$(sed 1d plain.csv | cut -d, -f2,3 | sort -u)" ,
+fails 64 'omit --max-intensity' vam-optimize --tradeoff out.csv --max-intensity 1 part.vdb -o out.exr
+fails 64 'use a method that reads' vam-optimize --tradeoff out.csv --method fbp part.vdb -o out.exr
+fails 73 'nowhere' vam-optimize --angles 12 --tradeoff nowhere/out.csv coarse.vdb -o out.exr
+
 # Printers off their settings.
 off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
-vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
 robust() { vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 "$@"; }
 quiet "for printers off their settings" robust --report robust.json --threads 1 coarse.vdb -o robust.exr
 is "each tolerance is judged" "$(grep -c margin_of_threshold robust.json)" 13

@@ -107,6 +107,13 @@ void declare_parameters(cli::App& app, Options& options) {
                format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
                std::to_string(optimize::shortest_raising.next) +
                " iterations without success. The computation takes several times as long.");
+  app.option("--tradeoff", "FILE", options.tradeoff,
+             readers("--max-intensity") + "write the front of duration against process window as CSV: the print at " +
+                 std::to_string(optimize::front_points) + " limits of the intensity or more, from " +
+                 format_number(optimize::shortest_of_even) + " times the even intensity on, each " +
+                 format_number(100 * (optimize::front_raising.factor - 1)) + " % above the one before. Takes " +
+                 std::to_string(optimize::front_iterations) +
+                 " iterations; the projections written are those of the last limit.");
 }
 
 void declare_tolerances(cli::App& app, Options& options) {

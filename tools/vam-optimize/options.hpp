@@ -34,6 +34,7 @@ struct Options {
   std::optional<double> max_intensity;
   std::optional<double> turns;  // of the print, at full grey
   bool shortest = false;
+  std::string tradeoff;
   optimize::IntensityLimit limit;
   optimize::Raising raising;
   std::string robust;

@@ -9,6 +9,7 @@
 #include "io/stream/stream.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
+#include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
 
@@ -44,6 +45,7 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
              const model::Printer& printer, const Options& options) {
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
+  if (!options.tradeoff.empty()) io::write_text(options.tradeoff, front_csv(outcome.front, printer, options));
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();

@@ -78,6 +78,20 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
   }
 }
 
+/// The front is that of rising limits, whatever the print is at each.
+void settle_tradeoff(const cli::App& app, Options& options) {
+  if (options.limit.of_even <= 0 || options.shortest || app.given("--until") || app.given("--iterations")) {
+    throw Error{Fault::usage,
+                "--tradeoff: sets the maximum intensity and the iterations; omit --max-intensity, --turns, --shortest, "
+                "--until, --iterations and --grey-target, and use a method that reads --max-intensity"};
+  }
+  options.until.clear();
+  options.raising = optimize::front_raising;
+  options.limit.of_even = optimize::shortest_of_even;
+  options.limits.iterations = optimize::front_iterations;
+  options.limits.patience = 0;
+}
+
 /// Where the user gives no limit, there is a low one, which is raised while the part does not print.
 void settle_raising(const cli::App& app, Options& options) {
   if (options.shortest && options.limit.of_even <= 0) {
@@ -121,7 +135,7 @@ void settle(const cli::App& app, Options& options) {
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);
   options.limits.iterations = options.iterations.value_or(method.iterations);
-  settle_raising(app, options);
+  options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(app, options);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }

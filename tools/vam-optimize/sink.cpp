@@ -4,15 +4,19 @@
 
 namespace vam::optimize_tool {
 
+resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
+  const auto& file = printer.projector.response;
+  const auto response =
+      file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
+  return {response, bits};
+}
+
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
     : keep_(options.printer_tolerances.has_value()),
       out_(options.output, info, options.stack),
       progress_("optimising", info.count) {
   if (!options.bits) return;
-  const auto& file = printer.projector.response;
-  const auto response =
-      file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
-  levels_.emplace(resin::GreyLevels(response, *options.bits), options.full_scale, options.error_feedback,
+  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.error_feedback,
                   [this](const Image& image) { write(image); });
 }
 

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "optimize/methods/tolerant.hpp"
 #include "score/exposure.hpp"
+#include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
 
@@ -99,6 +100,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
     return optimize::make_method(options.method, how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
+  if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);
   if (options.printer_tolerances) {
     task.scenarios = [&](std::span<const Slab> inserts) { return make_scenarios(scene, options, inserts); };
   }

@@ -13,7 +13,8 @@ void Search::exchange(Archive& archive) {
 }
 
 Outcome run_shortest(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause) {
+                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause,
+                     const AtLimit& at_limit) {
   if (raising.factor <= 0 || search.max_intensity <= 0) {
     return run_method(method, problem, light, limits, state, search.standing, watch, pause);
   }
@@ -23,6 +24,7 @@ Outcome run_shortest(Method& method, const Problem& problem, const light::Operat
     now.iterations = std::min(limits.iterations, search.until);
     const Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
     const bool ended = outcome.reason == "goal" || outcome.reason == "interrupted";
+    if (at_limit && outcome.reason != "interrupted") at_limit(search.max_intensity);
     if (ended || outcome.iterations >= limits.iterations) return outcome;
     search.max_intensity *= raising.factor;
     search.until = outcome.iterations + raising.next;

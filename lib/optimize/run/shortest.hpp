@@ -21,6 +21,12 @@ inline constexpr Raising usual_raising{.factor = 1.5, .first = 16, .next = 8};
 inline constexpr double shortest_of_even = 1.2;
 inline constexpr Raising shortest_raising{.factor = 1.1, .first = 24, .next = 6};
 
+/// The front of duration against window: 8 limits from 1.2 to 7.5 times the even intensity.
+inline constexpr Raising front_raising{.factor = 1.3, .first = 24, .next = 10};
+inline constexpr int front_points = 8;
+/// Iterations that reach the last of them.
+inline constexpr int front_iterations = front_raising.first + (front_points - 1) * front_raising.next;
+
 /// Where a search stands.
 struct Search {
   Standing standing;
@@ -29,9 +35,13 @@ struct Search {
   void exchange(Archive& archive);
 };
 
+/// Called with a limit whose iterations are done.
+using AtLimit = std::function<void(double max_intensity)>;
+
 /// As run_method(), which it is when the limit is fixed or there is none; else the limit is raised until the goal is
 /// met or limits.iterations are done.
 Outcome run_shortest(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
-                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause);
+                     const Raising& raising, Iterate& state, Search& search, const Watch& watch, const Pause& pause,
+                     const AtLimit& at_limit = {});
 
 }  // namespace vam::optimize

@@ -47,7 +47,7 @@ class Run {
       : task_(task),
         light_(light),
         reader_(task.source, light.object()),
-        whole_(light.couples_slices() || task.scenarios),
+        whole_(light.couples_slices() || task.scenarios || task.front),
         halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
@@ -69,6 +69,7 @@ class Run {
       work = {};
     }
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
+    outcome.front = std::move(front_);
     outcome.jobs = jobs();
     outcome.efficiency = finished_.efficiency();
     outcome.peak_intensity = finished_.peak();
@@ -128,8 +129,14 @@ class Run {
     if (task_.watch) {
       watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
     }
+    AtLimit at_limit;
+    if (task_.front) {
+      at_limit = [&](double most) {
+        front_.push_back(front_point(problem, light.smeared(), most, work.state, faced, task_.front));
+      };
+    }
     const Outcome outcome = run_shortest(*work.method, problem, light.smeared(), task_.limits, task_.raising,
-                                         work.state, work.search, watch, task_.interruption.pause);
+                                         work.state, work.search, watch, task_.interruption.pause, at_limit);
     if (outcome.reason == "interrupted") {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
@@ -189,6 +196,7 @@ class Run {
     begin_open(to);
     ledger_.exchange(to);
     to(max_intensity_);
+    exchange(to, front_);
     work.search.exchange(to);
     work.exchange(to);
     to.seal();
@@ -203,6 +211,7 @@ class Run {
     }
     ledger_.exchange(from);
     from(max_intensity_);
+    exchange(from, front_);
     work.search.exchange(from);
     work.method = task_.make(work.search.max_intensity);
     work.exchange(from);
@@ -212,13 +221,14 @@ class Run {
   const VolumeTask& task_;
   const light::Operator& light_;
   SliceReader reader_;
-  bool whole_;  // slices share light, here or in a scenario: all of them are one pass
+  bool whole_;  // slices share light, a scenario's light or a front: all of them are one pass
   int halo_;
   double max_intensity_ = 0, even_intensity_ = 0;
   RunMark mark_;
   Schedule schedule_;
   std::vector<int> times_;  // slices that a job stands for
   Ledger ledger_;
+  std::vector<FrontPoint> front_;
   Finished finished_{schedule_, task_.write};
 };
 

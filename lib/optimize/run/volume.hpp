@@ -9,6 +9,7 @@
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
+#include "optimize/run/front.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
 #include "optimize/target/slice_reader.hpp"
@@ -38,6 +39,7 @@ struct VolumeTask {
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>(double max_intensity)> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
+  Show front;  // fills the outcome's front while the limit is raised; empty: none
   Interruption interruption;
 };
 
@@ -51,6 +53,7 @@ struct VolumeOutcome {
   double max_intensity = 0;           // the limit, as raised; 0: none
   double even_intensity = 0;          // 0: not asked for
   double peak_intensity = 0;          // of the result
+  std::vector<FrontPoint> front;      // by rising limit, when asked for
   std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere
 };
 

@@ -1,0 +1,39 @@
+#include "optimize/run/front.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "optimize/methods/metrics.hpp"
+#include "optimize/run/private/pass.hpp"
+#include "optimize/run/private/threshold.hpp"
+
+namespace vam::optimize {
+
+void exchange(Archive& archive, std::vector<FrontPoint>& front) {
+  constexpr int most = 1 << 20;
+  auto count = static_cast<int>(front.size());
+  archive(count);
+  front.resize(static_cast<std::size_t>(std::clamp(count, 0, most)));
+  for (FrontPoint& p : front) {
+    model::DoseMetrics& m = p.metrics;
+    for (double* field : {&p.max_intensity, &p.peak, &m.ver, &m.pw, &m.iou, &m.min_part, &m.max_void, &m.iou_threshold})
+      archive(*field);
+  }
+}
+
+FrontPoint front_point(const Problem& problem, const light::Operator& light, double max_intensity, Iterate state,
+                       const Scenarios* scenarios, const Show& show) {
+  bring_to_threshold(problem, light, Together::pass, max_intensity, scenarios, state);
+  const Pass all{0, problem.slices, 0, problem.slices};
+  const std::vector<Image> shown = show(expand_images(all, state.g, light));
+  state.g = collapse_images(
+      all, [&](int k) { return shown[k]; }, light);
+  light.adjoint(state.g, state.dose);
+  double peak = 0;
+  for (const Image& image : shown) {
+    peak = std::max(peak, static_cast<double>(*std::max_element(image.values.begin(), image.values.end())));
+  }
+  return {max_intensity, peak, body_metrics(state.dose, problem)};
+}
+
+}  // namespace vam::optimize
