@@ -22,7 +22,7 @@ Outcome run_shortest(Method& method, const Problem& problem, const light::Operat
   for (;;) {
     Limits now = limits;
     now.iterations = std::min(limits.iterations, search.until);
-    const Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
+    Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
     const bool ended = outcome.reason == "goal" || outcome.reason == "interrupted";
     if (at_limit && outcome.reason != "interrupted") at_limit(search.max_intensity);
     if (ended || outcome.iterations >= limits.iterations) return outcome;

@@ -63,9 +63,9 @@ class Run {
   VolumeOutcome operator()() {
     Work work;
     if (task_.interruption.to != nullptr) exchange(*task_.interruption.to, mark_);
-    if (task_.interruption.from != nullptr) go_on(*task_.interruption.from, work);
+    if (task_.interruption.from != nullptr) resume(*task_.interruption.from, work);
     while (finished_.jobs() < jobs()) {
-      if (!run_pass(next_pass(), work)) return broken_off();
+      if (!run_pass(next_pass(), work)) return interrupted();
       work = {};
     }
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
@@ -82,7 +82,7 @@ class Run {
   [[nodiscard]] int jobs() const { return static_cast<int>(schedule_.slice_of_job.size()); }
   [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[job]; }
 
-  static VolumeOutcome broken_off() {
+  static VolumeOutcome interrupted() {
     VolumeOutcome outcome;
     outcome.reason = "interrupted";
     return outcome;
@@ -115,13 +115,13 @@ class Run {
 
   /// False when the pass was interrupted.
   bool run_pass(const Pass& pass, Work& work) {
-    auto [problem, inserts] = read_pass(
+    PassInput input = read_pass(
         pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
     std::unique_ptr<light::Operator> around;
-    if (!inserts.empty()) around = go_around(problem, pass, inserts, work);
+    if (!input.inserts.empty()) around = with_inserts(input.problem, pass, input.inserts, work);
     const PassLight light(light_, std::move(around), task_.blur_px, pass.slices());
     std::optional<Scenarios> scenarios;
-    if (task_.scenarios) scenarios.emplace(light.sharp(), task_.scenarios(inserts), pass.slices());
+    if (task_.scenarios) scenarios.emplace(light.sharp(), task_.scenarios(input.inserts), pass.slices());
     if (!work.method) begin(work, pass, light.sharp());
     const Scenarios* faced = scenarios ? &*scenarios : nullptr;
     if (faced != nullptr) work.method->face(*faced);
@@ -132,10 +132,10 @@ class Run {
     AtLimit at_limit;
     if (task_.front) {
       at_limit = [&](double most) {
-        front_.push_back(front_point(problem, light.smeared(), most, work.state, faced, task_.front));
+        front_.push_back(front_point(input.problem, light.blurred(), most, work.state, faced, task_.front));
       };
     }
-    const Outcome outcome = run_shortest(*work.method, problem, light.smeared(), task_.limits, task_.raising,
+    const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), task_.limits, task_.raising,
                                          work.state, work.search, watch, task_.interruption.pause, at_limit);
     if (outcome.reason == "interrupted") {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
@@ -143,7 +143,7 @@ class Run {
     }
     ledger_.end(outcome);
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
-    finish(problem, work.state, pass, light.sharp(), faced);
+    finish(input.problem, work.state, pass, light.sharp(), faced);
     return true;
   }
 
@@ -156,8 +156,8 @@ class Run {
   }
 
   /// The operator around these inserts; the problem loses what the inserts fill and hide.
-  std::unique_ptr<light::Operator> go_around(Problem& problem, const Pass& pass, std::span<const Slab> inserts,
-                                             const Work& work) {
+  std::unique_ptr<light::Operator> with_inserts(Problem& problem, const Pass& pass, std::span<const Slab> inserts,
+                                                const Work& work) {
     exclude(problem, inserts);
     auto light = task_.around(inserts);
     const auto dark = exclude_dark(problem, *light);
@@ -203,7 +203,7 @@ class Run {
   }
 
   /// Finished passes are handed on as if they had just been computed; the open one is taken up.
-  void go_on(Archive& from, Work& work) {
+  void resume(Archive& from, Work& work) {
     exchange(from, mark_);
     while (auto images = next_finished(from, light_.image(), jobs() - finished_.jobs())) {
       if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, *images);

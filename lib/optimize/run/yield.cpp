@@ -47,8 +47,8 @@ class Bench {
     std::vector<Image> doses(static_cast<std::size_t>(trial_.grid.nz));
     simulation.dose(frames_, doses, inserts_);
     const model::Resin& resin = off.printer.resin;
-    const double smeared_mm = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, trial_.seconds);
-    return judged(blurred(std::move(doses), trial_.blur ? smeared_mm / trial_.grid.voxel_mm : 0), off.intensity);
+    const double blur_mm = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, trial_.seconds);
+    return judged(blurred(std::move(doses), trial_.blur ? blur_mm / trial_.grid.voxel_mm : 0), off.intensity);
   }
 
  private:

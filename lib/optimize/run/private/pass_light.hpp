@@ -20,7 +20,7 @@ class PassLight {
   /// Its rows are the iterate's: fewer than the image's where half a turn is enough.
   [[nodiscard]] const light::Operator& sharp() const { return sharp_; }
   /// What the dose is optimised with.
-  [[nodiscard]] const light::Operator& smeared() const { return blurred_ ? *blurred_ : sharp_; }
+  [[nodiscard]] const light::Operator& blurred() const { return blurred_ ? *blurred_ : sharp_; }
 
  private:
   std::unique_ptr<light::Operator> around_;
