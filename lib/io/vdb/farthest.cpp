@@ -23,13 +23,13 @@ double farthest_mm(const SparseVolume& volume, float above) {
   const auto reach = [&](const openvdb::CoordBBox& box) {
     return farthest_corner(state.grid, {box.min() - state.first, box.max() - state.first});
   };
-  for (auto tile = state.sparse->cbeginValueOn(); tile; ++tile) {
+  for (auto tile = state.sparse->cbeginValueAll(); tile; ++tile) {
     if (tile.isVoxelValue()) continue;  // by leaves
     if (*tile > above) farthest = std::max(farthest, reach(tile.getBoundingBox()));
   }
   for (auto leaf = state.sparse->tree().cbeginLeaf(); leaf; ++leaf) {
     if (reach(leaf->getNodeBoundingBox()) <= farthest) continue;
-    for (auto voxel = leaf->cbeginValueOn(); voxel; ++voxel) {
+    for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel) {
       if (*voxel > above) farthest = std::max(farthest, reach({voxel.getCoord(), voxel.getCoord()}));
     }
   }

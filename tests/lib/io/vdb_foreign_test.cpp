@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -45,6 +46,24 @@ TEST_CASE("a level set of another program is read as its active box, off the ind
   const SparseVolume again = read_volume(folder / "again.vdb", "surface");
   CHECK(again.grid() == volume.grid());
   check(again);
+}
+
+TEST_CASE("the farthest voxel is found whether it is active or not, in leaves and in tiles") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create();
+  grid->setName("target");
+  grid->tree().setValue({-20, 0, 0}, 0.0F);  // the box
+  grid->tree().setValue({20, 0, 0}, 0.0F);
+  grid->tree().setValueOff({6, 8, 0}, 1.0F);
+  const auto farthest = [&] {
+    write_by_openvdb(folder / "a.vdb", {grid});
+    const SparseVolume read = read_volume(folder / "a.vdb", "");
+    return farthest_mm(read, 0) / read.grid().voxel_mm;
+  };
+  CHECK(farthest() == doctest::Approx(10));
+  grid->tree().addTile(1, {8, 8, 0}, 1.0F, false);  // 8 x 8 x 8 voxels, inactive
+  CHECK(farthest() == doctest::Approx(std::hypot(15, 15)));
 }
 
 TEST_CASE("unusable grids are status 65 with the reason") {
