@@ -14,6 +14,9 @@ namespace vam {
 /// "a,b,c" to its parts; an empty text has none.
 [[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
 
+/// Without the blanks at either end.
+[[nodiscard]] std::string trimmed(std::string_view text, std::string_view blanks = " \t\r\n");
+
 /// The candidate with the smallest edit distance to `word`, empty when none is within a third of its length.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -11,18 +11,6 @@ namespace vam::model {
 
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const auto& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
-
 double number(const std::string& text, const std::string& clause) {
   double value = 0;
   const char* end = text.data() + text.size();
@@ -45,7 +33,7 @@ Condition parse_clause(const std::string& clause, const std::vector<std::string>
   condition.relation = clause.substr(at, two ? 2 : 1);
   if (std::find(known.begin(), known.end(), condition.name) == known.end()) {
     throw Error{Fault::usage,
-                "'" + clause + "': no figure is called '" + condition.name + "'; there are " + joined(known)};
+                "'" + clause + "': no figure is called '" + condition.name + "'; there are " + join(known, ", ")};
   }
   std::string bound = trimmed(clause.substr(at + condition.relation.size()));
   const bool percent = std::find(in_percent.begin(), in_percent.end(), condition.name) != in_percent.end();

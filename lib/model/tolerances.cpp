@@ -15,12 +15,6 @@ namespace {
 
 constexpr std::string_view example = "; write for example 'axis=0.5px,index=0.005,lamp=3%'";
 
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
 std::string names() {
   std::vector<std::string> all;
   for (const Tolerance& one : tolerance_table) all.emplace_back(one.name);
@@ -36,11 +30,11 @@ std::size_t named(std::string_view name, const std::string& clause) {
               "'" + clause + "': no tolerance is called '" + std::string(name) + "'; there are " + names()};
 }
 
-double amount(std::string_view text, std::string_view unit, const std::string& clause) {
-  if (text.ends_with(unit)) text = trimmed(text.substr(0, text.size() - unit.size()));
+double amount(std::string text, std::string_view unit, const std::string& clause) {
+  if (text.ends_with(unit)) text = trimmed(std::string_view(text).substr(0, text.size() - unit.size()));
   const auto value = parse_number(text);
   if (value && std::isfinite(*value) && *value > 0) return *value;
-  throw Error{Fault::usage, "'" + clause + "': '" + std::string(text) + "' is not a number above 0" +
+  throw Error{Fault::usage, "'" + clause + "': '" + text + "' is not a number above 0" +
                                 (unit.empty() ? "" : " in " + std::string(unit)) + std::string(example)};
 }
 
@@ -55,12 +49,12 @@ Tolerances parse_tolerances(const std::string& text) {
   Tolerances tolerances{};
   if (trimmed(text).empty()) throw Error{Fault::usage, "no tolerance is given" + std::string(example)};
   for (const std::string& part : split(text, ',')) {
-    const std::string clause(trimmed(part));
+    const std::string clause = trimmed(part);
     const auto at = clause.find('=');
     if (at == std::string::npos) throw Error{Fault::usage, "'" + clause + "' has no '='" + std::string(example)};
     const std::size_t i = named(trimmed(clause.substr(0, at)), clause);
     if (tolerances[i] > 0) throw Error{Fault::usage, "'" + clause + "': is given twice"};
-    tolerances[i] = amount(trimmed(std::string_view(clause).substr(at + 1)), tolerance_table[i].unit, clause);
+    tolerances[i] = amount(trimmed(clause.substr(at + 1)), tolerance_table[i].unit, clause);
   }
   return tolerances;
 }

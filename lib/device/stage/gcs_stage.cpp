@@ -26,11 +26,6 @@ std::string stop_bytes(const GcsSettings& settings) {
   return settings.address ? "\n" + now + addressed("STP\n", settings) + now : now + "\nSTP\n" + now;
 }
 
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \r") - begin + 1);
-}
-
 std::string decimal(double value) {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.6f", value);

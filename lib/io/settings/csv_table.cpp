@@ -14,15 +14,11 @@ namespace vam::io {
 namespace {
 
 constexpr std::uint64_t size_limit = std::uint64_t{64} << 20;
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\"");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
+constexpr std::string_view quotes = " \t\r\"";
 
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells = split(line, ',');
-  for (std::string& cell : cells) cell = trimmed(cell);
+  for (std::string& cell : cells) cell = trimmed(cell, quotes);
   return cells;
 }
 
@@ -57,7 +53,7 @@ CsvTable read_csv(const std::string& path, const std::vector<std::string>& colum
   int number = 0;
   for (const std::string& raw : split(read_all(path, Content::text, size_limit), '\n')) {
     ++number;
-    const std::string line = trimmed(raw);
+    const std::string line = trimmed(raw, quotes);
     if (line.empty() || line[0] == '#') continue;
     const std::string place = table.source + ":" + std::to_string(number);
     const std::vector<std::string> cells = cells_of(raw);

@@ -11,11 +11,6 @@ namespace vam::io {
 
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 std::optional<double> cell(const std::string& text) {
   const auto number = parse_number(trimmed(text));
   return number && std::isfinite(*number) ? number : std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/image.hpp"
+#include "base/random.hpp"
 #include "sim/bench/private/beams.hpp"
 
 namespace vam::sim {
@@ -29,16 +30,11 @@ constexpr double scatter_per_mm = 0.08;  // of full scale
 constexpr double reference_us = 20000;
 constexpr double fwhm_per_sigma = 2.354820045;
 
-// Unit normal deviate of a pixel, always the same (splitmix64 and Box-Muller).
+// Unit normal deviate of a pixel, always the same (Box-Muller).
 double normal(std::uint64_t key) {
-  const auto next = [&key] {
-    std::uint64_t z = (key += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return (static_cast<double>((z ^ (z >> 31)) >> 11) + 0.5) * 0x1p-53;
-  };
-  const double radius = std::sqrt(-2 * std::log(next()));
-  return radius * std::cos(2 * std::numbers::pi * next());
+  const std::uint64_t first = scrambled(key);
+  const double radius = std::sqrt(-2 * std::log(1 - unit_interval(first)));
+  return radius * std::cos(2 * std::numbers::pi * unit_interval(scrambled(first)));
 }
 
 // What a camera column sees: its chief ray in the resin, and what each of the projector's sheets of light gives it.
