@@ -22,9 +22,9 @@ struct ExposurePlan {
 [[nodiscard]] double window_middle(const model::DoseMetrics& doses);
 
 /// The fewest whole turns at which full light brings the critical dose into the middle half of the process window, and
-/// the fraction of full light, at most 1, that puts it in the middle [physics §4]. `doses` times `mj_cm3` are those of
-/// one turn in full light. Throws Fault::data when the middle is not positive, or when the turns are more than a
-/// million. The printer must have a critical dose.
+/// the fraction of full light, at most 1, that puts it in the middle or as near as full light can [physics §4]. `doses`
+/// times `mj_cm3` are those of one turn in full light. Throws Fault::data when the middle is not positive, or when the
+/// turns are more than a million. The printer must have a critical dose.
 [[nodiscard]] ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer);
 
 /// turns, seconds, multiplier and peak_intensity_mw_cm2, into a report.

@@ -17,7 +17,7 @@ void add_print(cli::App& app, PrintOptions& options) {
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("determined by resin.absorption_per_mm, else 2000");
   app.option("--critical-dose", "MJ_CM3", options.critical_dose_mj_cm3, cli::positive,
-             "Dose D_c that cures to full strength, by the paper best five times the gelation dose.");
+             "Dose D_c that cures to full strength; five times the gelation dose is recommended.");
   app.default_is("resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
              "Irradiance at the window, at grey 0.");

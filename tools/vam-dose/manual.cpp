@@ -25,8 +25,9 @@ cli::Manual manual() {
        "the printer file has resin.critical_dose_mj_cm3 and resin.absorption_per_mm: then the largest value of the "
        "stack, or --full-scale, corresponds to projector.max_intensity_mw_cm2, and the report has the number of turns "
        "and the duration of the print at stage.speed_deg_s. With --exposure-plan the dose is that of a whole print: "
-       "the minimum number of turns in which the middle of the process window reaches the critical dose, with the "
-       "intensity reduced to reach it exactly; the report's planned_full_scale is the --full-scale for vam-project.",
+       "the minimum number of turns in which the critical dose lies in the middle half of the process window at full "
+       "intensity or less, with the intensity reduced to put it in the middle where it can be; the report's "
+       "planned_full_scale is the --full-scale for vam-project.",
        "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print "
        "(resin.diffusion_mm2_s) blur the volume; the dose beyond its faces is taken as 0."},
       {{"Simulate the print of the disc grid and score it:",

@@ -25,7 +25,8 @@ void declare(cli::App& app, Options& options) {
   app.option("--seconds", "S", options.seconds, cli::non_negative, "Time during which the dose diffuses.");
   app.default_is("the time of stage.turns turns");
   app.flag("--exposure-plan", options.exposure_plan,
-           "Determine whole turns and the fraction of full intensity that put the critical dose in the middle of the "
+           "Determine whole turns and the fraction of full intensity that put the critical dose in the middle half of "
+           "the "
            "process window, and write the dose of that exposure.")
       .needs({"--like"});
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");

@@ -14,8 +14,8 @@ cli::Manual manual() {
        "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures take "
        "the ALPHA/2 and 1 - ALPHA/2 percentiles for the extremes, to limit the influence of single voxels.",
        "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
-       "also determine the exposure: the minimum number of whole turns, their duration, and the fraction of full "
-       "intensity that puts the critical dose in the middle of the process window.",
+       "also determine the exposure: the minimum number of whole turns in which the critical dose lies in the middle "
+       "half of the process window, their duration, and the fraction of full intensity.",
        "V ends at the writable radius, or at the resin's edge for a part that reaches beyond (vam-slice --extent "
        "resin). "
        "There light comes from some stage angles only; --reach writes the fraction for every voxel.",
