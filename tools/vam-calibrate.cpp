@@ -114,7 +114,7 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o, true);
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
-  check.option("--need", "SCAN", o.needed, "Require a record of this scan.");
+  check.option("--need", "SCANS", o.needed, "Require a record of each of these scans, separated by commas.");
   check.option("--devices", "FILE", o.devices, "Refuse records of devices with other serial numbers.");
   cli::add_printer(check, o.printer);
   add_resin(app.subcommand("resin", "gelation threshold, from a printed standard cylinder", o.command), resin);

@@ -43,7 +43,7 @@ cli::Manual manual() {
            "vial: the print scatters and grows with its dose, and the projected image fluoresces in the resin.",
            "The vial turns according to the log of vam-sim-stage (--angles), or at a constant --speed. The projector "
            "shows the frames given by the log of vam-project (--flips), which also make the print grow: the test "
-           "pattern named in the log, else the frames of --frames or --pattern. Without that log the first frame is "
+           "pattern named in the log, else those of --projected or --pattern. Without that log the first frame is "
            "shown all the time. A camera frame integrates over its whole exposure, also across changes of the image.",
            "Its own log is the reference for tests of the tools: for every frame its number, the angle, the exposed "
            "time so far in seconds and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
@@ -70,8 +70,9 @@ void declare(cli::App& app, Options& o) {
   app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Stage speed without --angles.");
   app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.")
       .was("--shown");
-  app.option("--frames", "FILE", o.frames,
-             "Frames shown by vam-project: an EXR frame stack, video or folder of images.");
+  app.option("--projected", "FILE", o.frames,
+             "Frames shown by vam-project: an EXR frame stack, video or folder of images.")
+      .was("--frames");
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
   app.option("--pitch", "PX", o.pattern.pitch_px, {1, 100000}, "Pitch of the pattern.");
   app.option("--width", "PX", o.pattern.width_px, {1, 100000}, "Width of the pattern's lines.");
@@ -153,7 +154,7 @@ optics::PatternPlan pattern_of(const Json& event) {
 
 std::vector<GreyImage> images(const Options& o, const model::Projector& projector) {
   if (!o.frames.empty() && !o.pattern.name.empty()) {
-    throw Error{Fault::usage, "--frames: conflicts with --pattern; give one of them"};
+    throw Error{Fault::usage, "--projected: conflicts with --pattern; give one of them"};
   }
   if (!o.frames.empty()) {
     auto read = read_images(o.frames);

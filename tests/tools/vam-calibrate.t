@@ -85,7 +85,7 @@ ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.to
 ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: warning: vam-capture check is now vam-calibrate check true'
-ok 'check' vam-calibrate check --need edges --need response
+ok 'check' vam-calibrate check --need 'edges, response'
 vam-calibrate check >state
 is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
 

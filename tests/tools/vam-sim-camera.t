@@ -7,8 +7,8 @@ fails 64 'not an IPv4 address' vam-sim-camera --address here
 fails 64 'cannot serve a camera' vam-sim-camera --address 192.0.2.1
 fails 64 'not a frame number' vam-sim-camera --lose x
 fails 64 'expected a form like sphere' vam-sim-camera --part cube
-fails 64 'conflicts with --pattern' vam-sim-camera --pattern grid --frames x.exr
-fails 66 'missing' vam-sim-camera --frames missing
+fails 64 'conflicts with --pattern' vam-sim-camera --pattern grid --projected x.exr
+fails 66 'missing' vam-sim-camera --projected missing
 fails 73 'cannot be written' vam-sim-camera --log missing/log
 
 camera_up --lose 5 --cut 8,11 --speed 45 --lit 0.5 --shrink 60 --log truth

@@ -127,7 +127,11 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     throw Error{Fault::usage,
                 "no calibration.folder in the printer settings; name one, e.g. --set calibration.folder=DIR"};
   const auto& scans = io::calibration_scans();
-  for (const auto& name : options.needed) {
+  std::vector<std::string> needed;
+  for (const auto& list : options.needed) {
+    for (auto& scan : split(list, ',')) needed.push_back(trimmed(scan));
+  }
+  for (const auto& name : needed) {
     if (std::find(scans.begin(), scans.end(), name) == scans.end()) {
       throw Error{Fault::usage, "--need " + name + ": expected one of " + join(scans, ", ")};
     }
@@ -136,7 +140,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
   Json report = Json::object();
   std::string first;
   for (const auto& scan : scans) {
-    const bool needed = std::find(options.needed.begin(), options.needed.end(), scan) != options.needed.end();
+    const bool required = std::find(needed.begin(), needed.end(), scan) != needed.end();
     const auto record = io::current_record(calibration, scan);
     std::string why;
     if (record) {
@@ -150,7 +154,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
                       {"status", record->json->value("status", "")},
                       {"usable", why.empty()}};
       if (!why.empty()) why = record->path + ": " + why;
-    } else if (needed) {
+    } else if (required) {
       why = calibration.folder + ": has no record of " + scan + "; run vam-calibrate";
     }
     if (first.empty() && !why.empty()) first = why;

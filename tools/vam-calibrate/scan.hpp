@@ -28,7 +28,7 @@ struct ScanOptions {
   bool side = false;                               // beam: frames of a camera beside the vial
   double step_deg = 0;                             // axis: frames without recorded angles
   std::string devices;                             // identities of the devices in use
-  std::vector<std::string> needed;                 // check
+  std::vector<std::string> needed;                 // check: lists of scans
   cli::PrinterOptions printer;
 };
 

@@ -23,7 +23,8 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     if (volume.name() == "insert") place.insert = &volume;
   }
   if (options.exposure_plan && place.target == nullptr) {
-    throw Error{Fault::data, options.like + ": has no grid 'target'; --exposure-plan requires the part"};
+    throw Error{Fault::data,
+                options.like + ": has no grid 'target'; --exposure-plan requires the part (vam-slice writes it)"};
   }
   const double farthest_mm = place.target != nullptr ? io::farthest_mm(*place.target, model::coverage_rounding) : 0;
   place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);

@@ -99,7 +99,9 @@ cli::Manual manual() {
        "and without --full-scale all projections. With --robust an iteration takes three times as long and needs one "
        "array more of the slices and four of the sinograms, and all projections are kept; each printer that is judged "
        "costs about a third of a plain iteration."},
-      {"vam-slice", "vam-sinogram", "vam-resample", "vam-dose", "vam-score"}};
+      {"vam-slice", "vam-sinogram", "vam-resample", "vam-dose", "vam-score"},
+      {},
+      {{130, "SIGINT; with --checkpoint the run can be resumed."}, {143, "SIGTERM; likewise."}}};
 }
 
 }  // namespace vam::optimize_tool

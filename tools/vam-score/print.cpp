@@ -11,15 +11,20 @@
 namespace vam::score_tool {
 
 void write_print(const Options& options, const io::SparseVolume& dose, double threshold) {
+  const auto require_print = [&](bool empty) {
+    if (!empty) return;
+    throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold) + " " + dose.units +
+                                 "; choose a --threshold below the largest dose"};
+  };
   const auto read_slices = [&](int k, int count, float* out) { dose.read_slices(k, count, out); };
   const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
   if (options.print_as == "mesh") {
     const auto mesh = solid::isosurface(dose.grid(), read_slices, threshold);
-    if (mesh.triangles.empty()) throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold)};
+    require_print(mesh.triangles.empty());
     return io::write_ply(options.print, mesh, {}, comments);
   }
   const auto print = solid::printed_points(dose.grid(), read_slices, threshold);
-  if (print.points.points.empty()) throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold)};
+  require_print(print.points.points.empty());
   io::write_ply(options.print, print.points, print.values, comments);
 }
 

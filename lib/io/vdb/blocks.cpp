@@ -68,7 +68,7 @@ void read_blocks(const std::string& path, const std::string& name,
         found = taker.found();
         names = taker.names();
       });
-  if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "', but " + names};
+  if (!found) throw Error{Fault::data, file.name() + ": has no grid '" + name + "'; choose one of " + names};
 }
 
 }  // namespace vam::io

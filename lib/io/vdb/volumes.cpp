@@ -109,7 +109,7 @@ SparseVolume read_volume(const std::string& path, const std::string& name) {
   }
   const std::string subject = input_name(path);
   if (name.empty()) throw Error{Fault::data, subject + ": holds several grids (" + names + "); choose one by name"};
-  throw Error{Fault::data, subject + ": has no grid '" + name + "', but " + names};
+  throw Error{Fault::data, subject + ": has no grid '" + name + "'; choose one of " + names};
 }
 
 }  // namespace vam::io

@@ -46,7 +46,7 @@ TEST_CASE("blocks read in passing equal the volume read whole") {
   });
   std::string line;
   CHECK(status([&] { by_blocks(folder / "file.vdb", "dose"); }, &line) == 65);
-  CHECK(line.ends_with("has no grid 'dose', but target, insert, weight"));
+  CHECK(line.ends_with("has no grid 'dose'; choose one of target, insert, weight"));
 }
 
 TEST_CASE("blocks of other programs: half floats, all octants, tiles of any size, other grids before") {

@@ -186,7 +186,7 @@ TEST_CASE("a grid is chosen by name") {
   CHECK(read_volume(folder / "a.vdb", "weight").name() == "weight");
   std::string line;
   CHECK(status([&] { read_volume(folder / "a.vdb", "dose"); }, &line) == 65);
-  CHECK(line.ends_with("a.vdb: has no grid 'dose', but target, weight"));
+  CHECK(line.ends_with("a.vdb: has no grid 'dose'; choose one of target, weight"));
   CHECK(status([&] { read_volume(folder / "a.vdb", ""); }, &line) == 65);
   CHECK(line.ends_with("choose one by name"));
 }
