@@ -92,7 +92,7 @@ void declare(cli::App& app, Options& o) {
   app.group("Print");
   app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
-  app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.");
+  app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.").writes();
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
   app.option("--target", "FILE.vdb", o.reference,
              "Volume with the part to compare with, in the same frame of reference.")

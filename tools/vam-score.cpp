@@ -64,6 +64,10 @@ void add_light(score::Score& result, const std::string& sinogram) {
 void refuse_same_files(const Options& options) {
   for (const auto& output : {options.print, options.report, options.reach}) {
     if (output.empty()) continue;
+    if (output == "-") {
+      throw Error{Fault::usage,
+                  "--mesh, --reach, --report: standard output holds the figures of merit; name a file instead of -"};
+    }
     io::refuse_same_file(options.input, output);
     if (!options.target.empty()) io::refuse_same_file(options.target, output);
   }

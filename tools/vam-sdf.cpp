@@ -51,7 +51,8 @@ void declare(cli::App& app, Options& options) {
   app.positional("PRINT", options.print, "Mesh (" + io::mesh_format_names() + ") or volume (.vdb).");
   app.positional("REFERENCE", options.reference, "Mesh or volume of the design.");
   app.option("-o,--output", "FILE.ply", options.output,
-             "Write the aligned print with distances and colours at its vertices.");
+             "Write the aligned print with distances and colours at its vertices.")
+      .writes();
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
   app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.");
@@ -88,10 +89,11 @@ void declare_height(cli::App& app, HeightOptions& options) {
   app.was("--reference-level");
   app.choice("--align", options.align, {"none", "icp", "full"},
              "Alignment of the design with the print: centred, refined from there, or from any orientation.");
-  app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.");
+  app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.")
+      .writes();
   app.option("--line", "X0,Y0,X1,Y1", options.line, 4,
              "End points of a section, in pixels from the top left. Default: the middle column.");
-  app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.");
+  app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.").writes();
   app.option("--require", "CONDITIONS", options.require,
              "Conditions on rms and max (mm), iou, shrinkage (%), height (mm).");
   cli::add_report(app, options.report);

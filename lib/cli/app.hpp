@@ -82,6 +82,8 @@ class App {
   App& default_is(const std::string& text);
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
+  /// The option declared last names a file that the tool writes: no two of them may name the same one.
+  App& writes();
   /// The option declared last is refused where none of these is given.
   App& needs(const std::vector<std::string>& any_of);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
@@ -111,6 +113,7 @@ class App {
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
   void require_needed() const;
+  void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;
 

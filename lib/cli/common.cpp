@@ -5,7 +5,7 @@
 namespace vam::cli {
 
 App& add_output(App& app, std::string& output) {
-  return app.option("-o,--output", "FILE", output, "Output file; - is standard output.").not_in_job();
+  return app.option("-o,--output", "FILE", output, "Output file; - is standard output.").not_in_job().writes();
 }
 
 App& add_printer(App& app, PrinterOptions& options) {
@@ -21,7 +21,9 @@ App& add_printer(App& app, PrinterOptions& options) {
 }
 
 App& add_report(App& app, std::string& report) {
-  return app.option("--report", "FILE", report, "Write a report in JSON; its keys carry the units.").not_in_job();
+  return app.option("--report", "FILE", report, "Write a report in JSON; its keys carry the units.")
+      .not_in_job()
+      .writes();
 }
 
 App& add_threads(App& app) {

@@ -26,6 +26,7 @@ struct Option {
   std::vector<Former> former = {};          // not shown
   std::function<std::string()> value = {};  // in force
   bool in_job = true;                       // App::job() lists it
+  bool writes = false;                      // names a file that is written
 };
 
 struct Group {

@@ -213,6 +213,7 @@ fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o
 is "a former spelling is reported" "$(vam-optimize --peak 1 part.vdb -o out.exr 2>&1 | head -n 1)" 'vam-optimize: warning: --peak is now --full-scale'
 fails 64 '--angles' vam-optimize --angles 0 part.vdb -o out.exr
 fails 64 'is also the input' vam-optimize part.vdb -o part.vdb
+fails 64 'as --output does; name a file for one of them' vam-optimize part.vdb --report -
 fails 66 'absent.vdb' vam-optimize absent.vdb -o out.exr
 fails 65 '90 angles' vam-optimize --angles 80 --init cal.exr part.vdb -o out.exr
 fails 65 'projector' vam-optimize --geometry parallel --angles 90 --init projector.exr part.vdb -o out.exr

@@ -32,6 +32,8 @@ fails 64 "is not a number" vam-score --grid target part.vdb --require 'ver<=x'
 fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'isovalue' vam-score --grid target part.vdb --isovalue -1
 fails 64 'is also the input' vam-score --grid target part.vdb --mesh part.vdb
+fails 64 'standard output holds the figures' vam-score --grid target part.vdb --mesh -
+fails 64 'as --reach does; name another file' vam-score --grid target part.vdb --reach one.ply --mesh ./one.ply
 fails 65 "no grid 'dose'" vam-score part.vdb
 fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
 fails 65 'nothing prints' vam-score --grid target part.vdb --mesh none.ply --isovalue 7

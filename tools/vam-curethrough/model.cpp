@@ -199,7 +199,8 @@ void declare(cli::App& app, ModelOptions& options) {
                  "EXR frame stack, folder of numbered images, or a target volume (.vdb, or standard input): maximum "
                  "intensity in the part, minimum outside.");
   app.option("-o,--output", "FILE", options.output,
-             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).");
+             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).")
+      .writes();
   app.option("--target", "FILE", options.part.path, "Part that the slices should give, for the cure map.")
       .was("--part");
   add_part(app, options.part);

@@ -18,7 +18,7 @@ void declare(cli::App& app, GreyResponseOptions& options) {
   app.option("--dark", "READING", options.dark, cli::any, "Dark reading of the photodiode; subtracted.");
   app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.")
       .was("--scale");
-  app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.");
+  app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.").writes();
   cli::add_report(app, options.report);
 }
 

@@ -114,7 +114,7 @@ void declare(cli::App& app, SweepOptions& options) {
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation dose D_gel of the working curve.");
   app.default_is("a fifth of the critical dose, as in the paper");
-  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.");
+  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.").writes();
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);

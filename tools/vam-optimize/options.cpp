@@ -75,8 +75,8 @@ void declare_stopping(cli::App& app, Options& options) {
              "State of the run if interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from it with "
              "bit-identical results; target, printer and all options that affect the result must be the same. Removed "
              "on completion.");
-  app.not_in_job();
-  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.");
+  app.not_in_job().writes();
+  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.").writes();
   app.not_in_job();  // whether there is one is part of the state
 }
 
@@ -113,7 +113,8 @@ void declare_parameters(cli::App& app, Options& options) {
                  format_number(optimize::shortest_of_even) + " times the even intensity on, each " +
                  format_number(100 * (optimize::front_raising.factor - 1)) + " % above the one before. Takes " +
                  std::to_string(optimize::front_iterations) +
-                 " iterations; the projections written are those of the last limit.");
+                 " iterations; the projections written are those of the last limit.")
+      .writes();
 }
 
 void declare_tolerances(cli::App& app, Options& options) {

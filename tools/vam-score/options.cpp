@@ -19,9 +19,10 @@ void declare(cli::App& app, Options& options) {
   app.flag("--surface", options.how.surface, "Score surface voxels, too: as part when at least half covered.");
   app.flag("--absolute", options.how.absolute, "PW and IPDR in units of the dose.");
   app.option("--reach", "FILE", options.reach,
-             "Write a volume (OpenVDB grid reach): the fraction of stage angles from which each voxel is lit.");
+             "Write a volume (OpenVDB grid reach): the fraction of stage angles from which each voxel is lit.")
+      .writes();
   app.group("Print");
-  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print");
+  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print").writes();
   app.choice("--ply-as", options.print_as, {"mesh", "points"}, "Its surface, or its voxels coloured by dose.")
       .needs({"--mesh"})
       .was("--print-as");

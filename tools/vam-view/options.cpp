@@ -8,7 +8,7 @@ namespace vam::view_tool {
 
 void declare(cli::App& app, Options& options) {
   app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.");
-  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.");
+  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes();
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.");
   app.group("Selection");
   app.option("--grid", "NAME", options.grid, "Grid of the volume. Required if the volume has more than one.");

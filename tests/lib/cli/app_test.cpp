@@ -302,6 +302,25 @@ TEST_CASE("an option that needs another is refused without it") {
   }
 }
 
+TEST_CASE("two outputs do not share a file or standard output; devices may be shared") {
+  const auto run = [](const std::vector<std::string>& words, std::string& text) {
+    Tool tool;
+    std::string trace;
+    std::string report;
+    tool.app.option("--trace", "FILE", trace, "Trace.").writes().option("--report", "FILE", report, "Report.").writes();
+    int status = 0;
+    text = written_to(stderr, [&] { status = tool.run(words); });
+    return status;
+  };
+  std::string text;
+  CHECK(run({"--trace", "missing-a", "--report", "missing-b"}, text) == 0);
+  CHECK(run({"--trace", "/dev/null", "--report", "/dev/null"}, text) == 0);
+  CHECK(run({"--trace", "missing-a", "--report", "./missing-a"}, text) == 64);
+  CHECK(text == "vam-demo: --report: would write to ./missing-a, as --trace does; name another file\n");
+  CHECK(run({"--trace", "-", "--report", "-"}, text) == 64);
+  CHECK(text == "vam-demo: --report: would write to standard output, as --trace does; name a file for one of them\n");
+}
+
 TEST_CASE("a former spelling is not shown") {
   Tool tool;
   const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--windov", "hann"}) == 64); });
