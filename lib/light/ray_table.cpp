@@ -42,32 +42,24 @@ RayTable::RayTable(const Setup& setup)
   parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
 }
 
+HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {
+  return {static_cast<float>((z_mm / setup_.height_mm) * (z_mm / setup_.height_mm)),
+          static_cast<float>(scale.columns_per_mm),
+          static_cast<float>(scale.column_origin),
+          static_cast<float>(scale.rows_per_mm * z_mm),
+          static_cast<float>(scale.row_origin),
+          static_cast<float>(scale.rows_per_slice),
+          static_cast<float>(scale.columns_per_voxel)};
+}
+
 void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const {
   const int rows = inner.rows + outer.rows * outer.sheets;
   nodes.resize(rows * static_cast<std::size_t>(directions + 1));
-  const auto z2 = static_cast<float>((z_mm / setup_.height_mm) * (z_mm / setup_.height_mm));
-  const auto columns_per_mm = static_cast<float>(scale.columns_per_mm);
-  const auto column_origin = static_cast<float>(scale.column_origin);
-  const auto row_rate = static_cast<float>(scale.rows_per_mm * z_mm);
-  const auto row_origin = static_cast<float>(scale.row_origin);
-  const auto rows_per_slice = static_cast<float>(scale.rows_per_slice);
-  const auto columns_per_voxel = static_cast<float>(scale.columns_per_voxel);
+  const HeightScale here = scale_at(z_mm, scale);
   parallel_for(rows, [&](int row) {
     const TableNode* from = nodes_.data() + static_cast<std::ptrdiff_t>(row) * directions;
     RayNode* to = nodes.data() + static_cast<std::ptrdiff_t>(row) * (directions + 1);
-    for (int i = 0; i < directions; ++i) {
-      const TableNode& node = from[i];
-      const float g = value(node.row, z2);
-      const float g_rate = 2 * z2 * (node.row[1] + 2 * z2 * node.row[2]);  // z dg/dz
-      to[i] = {columns_per_mm * value(node.x_p, z2) + column_origin,
-               row_rate * g + row_origin,
-               rows_per_slice * (g + g_rate),
-               std::max(0.0F, value(node.strength, z2)),
-               columns_per_voxel * value(node.spacing, z2),
-               node.cosine,
-               node.sine,
-               0};
-    }
+    for (int i = 0; i < directions; ++i) to[i] = node_at(from[i], here);
     to[directions] = to[0];
   });
 }

@@ -54,6 +54,10 @@ std::vector<Tile> TileLight::tiles(const VialRays& rays) {
       const int j = t / across * edge + voxel / edge;
       if (i >= grid.nx || j >= grid.ny) continue;
       r_mm = std::max(r_mm, std::hypot(grid.x_mm(i), grid.y_mm(j)));
+      if (rays.posed()) {
+        if (std::hypot(grid.x_mm(i), grid.y_mm(j)) <= rays.setup().radius_mm) tile.voxels.push_back(voxel);
+        continue;
+      }
       const int count = rays.find(i, j, found);
       tile.rays.insert(tile.rays.end(), found, found + count);
       tile.voxels.insert(tile.voxels.end(), static_cast<std::size_t>(count), voxel);
@@ -73,7 +77,11 @@ void TileLight::enter(int tile, const Tile& rays, const Chunk& chunk) {
   j0_ = tile / across * edge;
   i1_ = std::min(i0_ + edge, grid.nx);
   j1_ = std::min(j0_ + edge, grid.ny);
-  const std::size_t pitch = rays.rays.size();
+  make_room(rays.rays.size());
+  voxels_.resize(voxel_gap + product(edge * edge, chunk.width() + voxel_gap) + overrun);
+}
+
+void TileLight::make_room(std::size_t pitch) {
   cells_.resize(pitch);
   floats_.resize((2 + static_cast<std::size_t>(rays_.taps())) * pitch);
   taps_ = {cells_.data(),
@@ -86,7 +94,6 @@ void TileLight::enter(int tile, const Tile& rays, const Chunk& chunk) {
            0,
            0,
            0};
-  voxels_.resize(voxel_gap + product(edge * edge, chunk.width() + voxel_gap) + overrun);
 }
 
 /// Slices from grid.nz on are no part of a volume whose rays climb.
@@ -119,16 +126,41 @@ void TileLight::store_voxels(std::span<Slab> objects) const {
   });
 }
 
+/// Every voxel stands elsewhere than a frame before.
+bool TileLight::find_posed_taps(int frame) {
+  posed_voxels_.clear();
+  if (!rays_.lit(chunk_.slice(), chunk_.width(), frame)) return false;
+  const HeightScale scale = rays_.posed_scale(chunk_.slice(), chunk_.width(), frame);
+  posed_nodes_.resize(tile_->voxels.size() * VialRays::most_rays + 1);
+  int rays = 0;
+  for (const int voxel : tile_->voxels) {
+    const int found = rays_.find_posed(i0_ + voxel % edge, j0_ + voxel / edge, frame, scale, &posed_nodes_[rays]);
+    posed_voxels_.insert(posed_voxels_.end(), static_cast<std::size_t>(found), voxel);
+    rays += found;
+  }
+  if (rays == 0) return false;
+  const int whole = (rays + ray_block - 1) / ray_block * ray_block;
+  posed_nodes_.resize(static_cast<std::size_t>(whole) + 1);
+  std::fill(posed_nodes_.begin() + rays, posed_nodes_.end(), posed_nodes_[rays - 1]);
+  make_room(static_cast<std::size_t>(whole));
+  rays_.find_posed_taps(posed_nodes_, rays, frame, chunk_.width(), taps_);
+  return true;
+}
+
 /// The taps of all rays, and the columns and rows that they take from.
-void TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
-  rays_.find_taps(nodes, tile_->rays.data(), count(), angle, chunk_.width(), taps_);
+bool TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
+  if (rays_.posed()) {
+    if (!find_posed_taps(angle)) return false;
+  } else {
+    rays_.find_taps(nodes, tile_->rays.data(), count(), angle, chunk_.width(), taps_);
+  }
   columns_ = taps_.last_cell - taps_.first_cell + taps_.taps;
   if (!rays_.climbs()) {
     row_ = chunk_.slice();
     rows_ = chunk_.width();
     lit_first_ = 0;
     lit_end_ = static_cast<int>(slabs) * lanes;
-    return;
+    return true;
   }
   taps_.first_row = std::floor(taps_.first_row);
   row_ = static_cast<int>(taps_.first_row);
@@ -136,6 +168,7 @@ void TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
   rows_ = (needed + lanes - 1) / lanes * lanes;
   lit_first_ = rays_.first_row();
   lit_end_ = std::min(static_cast<int>(slabs) * lanes, rays_.end_row());
+  return true;
 }
 
 /// visit(slab's pixel, place in the tile's light, columns, rows): the lit pixels of the tile, slab by slab.
@@ -189,7 +222,7 @@ void TileLight::cast_shadow(int angle) {
   const model::Grid& grid = rays_.setup().grid;
   depth_.assign(product(taps_.taps, taps_.pitch), 0.0F);
   for (int e = 0; e < count(); ++e) {
-    const int voxel = tile_->voxels[e];
+    const int voxel = voxels()[e];
     const int j = j0_ + voxel / edge;
     const double x = grid.x_mm(i0_ + voxel % edge);
     const double y = grid.y_mm(j);
@@ -205,20 +238,20 @@ TileColumns TileLight::columns() {
 }
 
 void TileLight::take(const RayNodes& nodes, int angle, std::span<const Slab> sinograms) {
-  find_taps(nodes, angle, sinograms.size());
+  if (!find_taps(nodes, angle, sinograms.size())) return;
   fetch(angle, sinograms);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
-  Kernels::best().gather(columns(), taps_, tile_->voxels.data(), count(), chunk_.width(), rays_.climbs(),
+  Kernels::best().gather(columns(), taps_, voxels().data(), count(), chunk_.width(), rays_.climbs(),
                          voxels_.data() + voxel_gap);
 }
 
 void TileLight::give(const RayNodes& nodes, int angle, std::span<Slab> sinograms) {
-  find_taps(nodes, angle, sinograms.size());
+  if (!find_taps(nodes, angle, sinograms.size())) return;
   light_.assign(product(columns_, rows_), 0.0F);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
-  Kernels::best().scatter(voxels_.data() + voxel_gap, taps_, tile_->voxels.data(), count(), chunk_.width(),
+  Kernels::best().scatter(voxels_.data() + voxel_gap, taps_, voxels().data(), count(), chunk_.width(),
                           rays_.climbs(), columns());
   put_back(angle, sinograms);
 }

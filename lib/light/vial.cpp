@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "light/private/tile_light.hpp"
 #include "optics/skew_ray.hpp"
@@ -53,6 +54,9 @@ std::vector<std::pair<int, int>> angle_blocks(int angles) {
 
 InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
   if (inserts.empty()) return {};
+  if (rays.posed()) {
+    throw Error{Fault::data, "poses: an insert in the light cannot be combined with a vial or part that is displaced"};
+  }
   const VialSetup& setup = rays.setup();
   std::vector<double> angles;
   for (int a = 0; a < setup.turn.rows; ++a) {
@@ -89,7 +93,7 @@ void VialOperator::each_chunk(std::size_t slabs, const Visit& visit) const {
     }
     if (tiles.empty()) continue;
     for (const Chunk& chunk : chunks(slabs, slices)) {
-      if (rays_.climbs()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
+      if (rays_.climbs() && !rays_.posed()) rays_.at_slices(chunk.slice(), chunk.width(), buffer);
       visit(rays_.climbs() ? buffer : level_, chunk, tiles);
     }
   }
@@ -107,7 +111,7 @@ void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinogr
       const auto [first, end] = blocks[b];
       for (const int t : tiles) {
         const Tile& tile = tiles_[t];
-        if (tile.rays.empty()) continue;
+        if (tile.voxels.empty()) continue;
         light.enter(t, tile, chunk);
         light.load_voxels(objects);
         for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
@@ -126,7 +130,7 @@ void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> obje
       const Tile& tile = tiles_[t];
       light.enter(t, tile, chunk);
       light.clear_voxels();
-      for (int angle = 0; angle < angles && !tile.rays.empty(); ++angle) light.take(nodes, angle, sinograms);
+      for (int angle = 0; angle < angles && !tile.voxels.empty(); ++angle) light.take(nodes, angle, sinograms);
       light.store_voxels(objects);
     });
   });

@@ -36,44 +36,37 @@ auto best_kernel() {
 
 }  // namespace
 
-/// Slabs are looked up whole.
+/// Slabs are looked up whole. Slices that no row reaches in any pose need no rays.
 double VialRays::top_mm() const {
   const int slices = (setup_.grid.nz + lanes - 1) / lanes * lanes;
-  return std::max(std::abs(height_mm(0)), std::abs(height_mm(slices - 1)));
+  const model::Range lift = model::lift_mm(setup_.poses);
+  const double top =
+      std::max(std::abs(height_mm(0) + lift.least), std::abs(height_mm(slices - 1) + lift.most));
+  if (!posed()) return top;
+  constexpr double lower = 1.25;  // light may cross a slice that its row is far above
+  const double rows_mm = std::max(std::abs(std::max(setup_.lowest_mm, row_mm(0))),
+                                  std::abs(std::min(setup_.highest_mm, row_mm(setup_.rows - 1))));
+  return std::min(top, lower * rows_mm + 4 * lanes * setup_.grid.voxel_mm);
 }
 
 RayTable::Setup VialRays::table_setup() const {
+  constexpr double least_height_mm = 1e-3;
   RayTable::Setup table;
   table.view = setup_.view;
-  table.angles = setup_.turn.rows;
+  table.angles = static_cast<int>(std::lround(turn_rad / std::abs(setup_.turn.step_rad)));
   table.sense = sense();
   table.absorption_per_mm = setup_.absorption_per_mm;
-  table.r_max_mm = farthest_mm(setup_);
+  table.r_max_mm = farthest_mm(setup_) + model::farthest_mm(setup_.poses, model::Moves::part);
   table.pitch_mm = setup_.grid.voxel_mm / (setup_.view.rows_lens_mm ? 1 : 2);
-  table.height_mm = top_mm();
+  table.height_mm = std::max(top_mm(), least_height_mm);
   return table;
 }
 
 VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_setup()) {
-  const double resin_mm = optics::resin_radius_mm(setup_.view);
-  tomo::require_translucent(setup_.absorption_per_mm, resin_mm);
-  for (int c = 0; c < setup_.projector.columns; ++c) {
-    const optics::ChiefRay ray = optics::chief_ray(setup_.view, setup_.projector.x_mm(c));
-    if (!ray.hits || std::abs(ray.x_v_mm) > setup_.radius_mm + setup_.grid.voxel_mm) continue;
-    if (transmitted_.empty()) first_ = c;
-    const double depth_mm = model::half_chord(resin_mm, ray.x_v_mm);
-    transmitted_.push_back(ray.transmittance * std::exp(-setup_.absorption_per_mm * depth_mm));
-  }
-  if (transmitted_.empty()) {
-    throw Error{Fault::data, "projector: none of its " + std::to_string(setup_.projector.columns) +
-                                 " columns reaches the resin; check projector.axis_column and projector.pixel_mm"};
-  }
-  const double voxel = setup_.grid.voxel_mm;
-  const auto row_at = [&](double z_mm) {
-    return std::clamp((z_mm - setup_.first_row_mm) / voxel, -1.0, static_cast<double>(setup_.rows));
-  };
-  first_row_ = std::max(0, static_cast<int>(std::ceil(row_at(setup_.lowest_mm) - 0.01)));
-  end_row_ = std::min(setup_.rows, static_cast<int>(std::floor(row_at(setup_.highest_mm) + 0.01)) + 1);
+  tomo::require_translucent(setup_.absorption_per_mm, optics::resin_radius_mm(setup_.view));
+  if (posed()) posed_ = PosedRays(setup_, table_setup(), table_);
+  note_columns();
+  note_rows();
   RayNodes level;
   table_.at_height(0, scale(), level);
   const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
@@ -87,9 +80,75 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   }
 }
 
+/// From the first to the last one that lights the circle in any pose.
+void VialRays::note_columns() {
+  const double resin_mm = optics::resin_radius_mm(setup_.view);
+  const double circle_mm =
+      setup_.radius_mm + setup_.grid.voxel_mm + model::farthest_mm(setup_.poses, model::Moves::part);
+  const double off_mm = model::farthest_mm(setup_.poses, model::Moves::vial);
+  const auto lights = [&](double x_p_mm) {
+    const optics::ChiefRay ray = optics::chief_ray(setup_.view, x_p_mm);
+    return ray.hits && std::abs(ray.x_v_mm) <= circle_mm;
+  };
+  for (int c = 0; c < setup_.projector.columns; ++c) {
+    const double x_p = setup_.projector.x_mm(c);
+    // A vial that moves along the light changes where its columns are by less than it moves.
+    if (!lights(x_p) && !(off_mm > 0 && (lights(x_p - 1.5 * off_mm) || lights(x_p + 1.5 * off_mm)))) continue;
+    const optics::ChiefRay ray = optics::chief_ray(setup_.view, x_p);
+    if (transmitted_.empty()) first_ = c;
+    const double depth_mm = model::half_chord(resin_mm, ray.x_v_mm);
+    transmitted_.push_back(ray.transmittance * std::exp(-setup_.absorption_per_mm * depth_mm));
+  }
+  if (!transmitted_.empty()) return;
+  throw Error{Fault::data, "projector: none of its " + std::to_string(setup_.projector.columns) +
+                               " columns reaches the resin; check projector.axis_column and projector.pixel_mm"};
+}
+
+void VialRays::note_rows() {
+  const double voxel = setup_.grid.voxel_mm;
+  const auto row_at = [&](double z_mm) {
+    return std::clamp((z_mm - setup_.first_row_mm) / voxel, -1.0, static_cast<double>(setup_.rows));
+  };
+  first_row_ = std::max(0, static_cast<int>(std::ceil(row_at(setup_.lowest_mm) - 0.01)));
+  end_row_ = std::min(setup_.rows, static_cast<int>(std::floor(row_at(setup_.highest_mm) + 0.01)) + 1);
+  if (!posed()) return;
+  constexpr float spare = 0.05F;  // for heights and displaced vials
+  least_row_ = 1e9F;
+  most_row_ = 0;
+  for (int row = 0; row < table_.inner.rows; ++row) {
+    const TableNode* points = table_.points(table_.inner, row, 0);
+    for (int i = 0; i < table_.directions; ++i) {
+      least_row_ = std::min(least_row_, (1 - spare) * points[i].row[0]);
+      most_row_ = std::max(most_row_, (1 + spare) * points[i].row[0]);
+    }
+  }
+}
+
+bool VialRays::lit(int first, int slices, int frame) const {
+  const double bottom = height_mm(first) + posed_.lift_mm(frame);
+  const double top = height_mm(first + slices - 1) + posed_.lift_mm(frame);
+  const auto least = static_cast<double>(least_row_);
+  const auto most = static_cast<double>(most_row_);
+  return top * (top > 0 ? most : least) > row_mm(first_row_ - 1) && bottom * (bottom > 0 ? least : most) < row_mm(end_row_);
+}
+
+HeightScale VialRays::posed_scale(int first, int slices, int frame) const {
+  return table_.scale_at(height_mm(first + 0.5 * (slices - 1)) + posed_.lift_mm(frame), scale());
+}
+
+void VialRays::find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const {
+  static const std::vector<RaySource> own = [] {
+    std::vector<RaySource> sources;
+    for (int e = 0; e < ray_block * most_blocks; ++e) sources.push_back({e, e, 0, 0, 0});
+    return sources;
+  }();
+  constexpr int one = 1;
+  take_from(nodes, own.data(), count, {0, 0, one, cosines_[frame], sines_[frame]}, slices, taps);
+}
+
 /// The row kernels hold a tile's rows: 64 slices under the largest zoom, and what the rays climb across the tile.
 void VialRays::require_moderate_rays(RayNodes& nodes) const {
-  if (!climbs()) return;
+  if (!table_.climbs()) return;
   constexpr float least_zoom = 0.55F, largest_zoom = 1.85F;
   constexpr double steepest = 1.7;
   const double top = top_mm();
@@ -167,20 +226,26 @@ void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
   table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), nodes);
 }
 
-void VialRays::find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
+void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count, const Standing& part, int slices,
                          RayTaps& taps) const {
   static const auto kernel = best_kernel();
-  const auto a = static_cast<std::size_t>(angle);
-  const RayFrame frame{angle * table_.phases,
-                       table_.phases,
-                       table_.directions,
-                       cosines_[a],
-                       sines_[a],
+  const RayFrame frame{part.shift,
+                       part.step,
+                       part.directions,
+                       part.cosine,
+                       part.sine,
                        static_cast<float>(columns() + 2 * padding() - 1),
                        climbs() ? 0.5F * static_cast<float>(slices - 1) : 0.0F,
                        climbs(),
                        taps_};
   kernel(nodes.data(), rays, count, frame, taps);
+}
+
+void VialRays::find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
+                         RayTaps& taps) const {
+  const auto a = static_cast<std::size_t>(angle);
+  take_from(nodes, rays, count,
+            {angle * table_.phases, table_.phases, table_.directions, cosines_[a], sines_[a]}, slices, taps);
 }
 
 }  // namespace vam::light

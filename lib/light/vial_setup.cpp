@@ -65,7 +65,12 @@ VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment&
 }
 
 VialSetup completed(VialSetup setup) {
-  require_one_turn(setup.turn.rows, setup.turn.step_rad * deg_per_rad);
+  if (setup.poses.empty()) {
+    require_one_turn(setup.turn.rows, setup.turn.step_rad * deg_per_rad);
+  } else if (setup.poses.size() != static_cast<std::size_t>(setup.turn.rows)) {
+    throw Error{Fault::data, "poses: " + std::to_string(setup.poses.size()) + " for " +
+                                 std::to_string(setup.turn.rows) + " frames; one a frame is needed"};
+  }
   const double resin_mm = optics::resin_radius_mm(setup.view);
   setup.radius_mm = setup.radius_mm > 0 ? std::min(setup.radius_mm, resin_mm) : resin_mm;
   if (setup.rows == 0) {

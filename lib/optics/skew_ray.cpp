@@ -20,7 +20,7 @@ struct Incident {
   double transmittance = 1;  // of the window
 };
 
-Incident incident(const View& view, double x_p, double z_p) {
+Incident incident(const View& view, double x_p, double z_p, const Displacement& vial) {
   const double slope_x = view.lens_mm ? x_p / *view.lens_mm : 0;
   const double slope_z = view.rows_lens_mm ? z_p / *view.rows_lens_mm : 0;
   const double forward = 1 / std::sqrt(1 + square(slope_x) + square(slope_z));  // cosine of the angle with the axis
@@ -33,11 +33,12 @@ Incident incident(const View& view, double x_p, double z_p) {
   const double level = std::hypot(across, along);
   const double sine = across / level;
   const double cosine = along / level;
-  const double x_w = x_p - window * slope_x;  // where the ray meets the window
-  const double u_w = x_w * sine - window * cosine;
+  const double x_w = x_p - window * slope_x - vial.x_mm;  // where the ray meets the window, seen from the vial's axis
+  const double y_w = -(window + vial.y_mm);
+  const double u_w = x_w * sine + y_w * cosine;
   Incident ray;
   ray.s = n * up;
-  ray.impact_mm = x_w * cosine + window * sine;
+  ray.impact_mm = x_w * cosine - y_w * sine;
   ray.phi_rad = std::asin(sine);
   ray.height_mm = z_p - window * slope_z - u_w * up / level;
   ray.transmittance = fresnel(1, forward, n, along);
@@ -48,8 +49,8 @@ Incident incident(const View& view, double x_p, double z_p) {
 
 double SkewRay::steepness() const { return std::sqrt(1 + square(climb)); }
 
-SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm) {
-  const Incident before = incident(view, x_p_mm, z_p_mm);
+SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacement& vial) {
+  const Incident before = incident(view, x_p_mm, z_p_mm, vial);
   SkewRay ray{true, before.impact_mm, -before.phi_rad, before.height_mm, 0, before.transmittance};
   double index = view.bath_index;
   double level = std::sqrt(square(index) - square(before.s));  // n cos(elevation): the index of the plan view
@@ -72,14 +73,15 @@ SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm) {
   return ray;
 }
 
-RayAt ray_through(const View& view, double x_mm, double y_mm, double z_mm, double x_p_guess_mm, double z_p_guess_mm) {
+RayAt ray_through(const View& view, double x_mm, double y_mm, double z_mm, double x_p_guess_mm, double z_p_guess_mm,
+                  const Displacement& vial) {
   constexpr double h = 1e-4;  // mm: central differences to 1e-9
   struct Miss {
     double across, height;  // from the point to the ray
     SkewRay ray;
   };
   const auto miss = [&](double x_p, double z_p) -> Miss {
-    const SkewRay ray = skew_ray(view, x_p, z_p);
+    const SkewRay ray = skew_ray(view, x_p, z_p, vial);
     const double c = std::cos(ray.delta_rad);
     const double s = std::sin(ray.delta_rad);
     return {ray.offset_mm - (x_mm * c + y_mm * s), ray.z_mm(y_mm * c - x_mm * s) - z_mm, ray};

@@ -23,9 +23,17 @@ struct SkewRay {
   [[nodiscard]] double steepness() const;
 };
 
+/// Where the vial's axis stands off the rotation axis, in the lab: x along the columns, y along the light. Lens, image
+/// plane and window stay [physics §11].
+struct Displacement {
+  double x_mm = 0;
+  double y_mm = 0;
+};
+
 /// The ray of the image-plane point (x_p_mm, z_p_mm) in the plane of the rotation axis, z_p measured from the lens's
-/// axis. A view that is telecentric along a direction has rays that do not diverge in it.
-[[nodiscard]] SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm);
+/// axis. A view that is telecentric along a direction has rays that do not diverge in it. The ray is told in the vial's
+/// frame, whose axis is the vial's.
+[[nodiscard]] SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacement& vial = {});
 
 /// The ray through a point of the lab, found by Newton's method, and how dense rays are there.
 struct RayAt {
@@ -36,8 +44,9 @@ struct RayAt {
   double density = 0;  // d x_p d z_p / (area across the ray): T * density is fluence per image-plane intensity
 };
 
-/// The ray through lab point (x, y, z) near the guess (x_p, z_p); `hits` is false where there is none.
+/// The ray through the point (x, y, z) of the vial's frame near the guess (x_p, z_p); `hits` is false where there is
+/// none.
 [[nodiscard]] RayAt ray_through(const View& view, double x_mm, double y_mm, double z_mm, double x_p_guess_mm,
-                                double z_p_guess_mm);
+                                double z_p_guess_mm, const Displacement& vial = {});
 
 }  // namespace vam::optics

@@ -31,9 +31,9 @@ std::optional<Ray> refract(const Ray& ray, const Vec& normal, Real n1, Real n2) 
   return out;
 }
 
-// Nearest crossing of the cylinder x^2 + y^2 = radius^2 from outside.
-std::optional<Ray> enter(const Ray& ray, const Cylinder& cylinder, Real n_outside) {
-  const Vec& p = ray.point;
+// Nearest crossing of the cylinder around the vertical through (x, y) from outside.
+std::optional<Ray> enter(const Ray& ray, const Cylinder& cylinder, Real n_outside, Real x, Real y) {
+  const Vec p{ray.point[0] - x, ray.point[1] - y, ray.point[2]};
   const Vec& d = ray.direction;
   const Real a = d[0] * d[0] + d[1] * d[1];
   const Real b = p[0] * d[0] + p[1] * d[1];
@@ -41,8 +41,8 @@ std::optional<Ray> enter(const Ray& ray, const Cylinder& cylinder, Real n_outsid
   const Real square = b * b - a * c;
   if (square < 0) return std::nullopt;
   Ray at = ray;
-  at.point = combine(1, p, (-b - std::sqrt(square)) / a, d);
-  return refract(at, unit({at.point[0], at.point[1], 0}), n_outside, cylinder.index);
+  at.point = combine(1, ray.point, (-b - std::sqrt(square)) / a, d);
+  return refract(at, unit({at.point[0] - x, at.point[1] - y, 0}), n_outside, cylinder.index);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ std::optional<Ray> trace(const Bench& bench, Real x, Real z) {
   }
   Real outside = bench.bath;
   for (const Cylinder& cylinder : bench.cylinders) {
-    if (ray) ray = enter(*ray, cylinder, outside);
+    if (ray) ray = enter(*ray, cylinder, outside, bench.axis_x, bench.axis_y);
     outside = cylinder.index;
   }
   return ray;

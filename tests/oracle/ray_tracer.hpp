@@ -28,6 +28,7 @@ struct Bench {
   Real bath = 1;
   Real window = 0;
   std::vector<Cylinder> cylinders;  // outermost first
+  Real axis_x = 0, axis_y = 0;      // of the cylinders
 };
 
 /// The ray that would pass (x, 0, z) if nothing were in its way, followed into the innermost cylinder. Empty if it

@@ -10,6 +10,12 @@
 
 namespace vam::oracle {
 
+/// Where things are at one angle: off the axis by (x, y, z), the vial with the part, or the part alone.
+struct SkewPose {
+  double x = 0, y = 0, z = 0;
+  bool vial = false;
+};
+
 struct SkewDose {
   Bench bench;
   double pixel = 0;              // pitch in the plane of the axis, across and along z
@@ -17,7 +23,9 @@ struct SkewDose {
   double first_row = 0;          // z of row 0 in the plane of the axis, from the lens's axis; rows go up
   int rays = 0;                  // across and along a pixel
   double absorption = 0;         // per length
-  int angles = 0;                // over one turn, from 0
+  int angles = 0;                // over `turns` turns, from 0
+  double turns = 1;
+  std::vector<SkewPose> poses;   // one an angle, or none
   int size = 0, slices = 0;      // voxels: size x size around the axis
   double voxel = 0, height = 0;  // edge, and height of a voxel
   double first_slice = 0;        // z of the lowest voxel centres, from the lens's axis

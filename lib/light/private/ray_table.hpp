@@ -23,12 +23,37 @@ struct RayScale {
   double columns_per_voxel = 1;  // where d x_p / d r is 1
 };
 
+/// The scale at one height.
+struct HeightScale {
+  float z2;  // (height / largest height)^2
+  float columns_per_mm, column_origin;
+  float row_rate, row_origin;
+  float rows_per_slice, columns_per_voxel;
+};
+
 /// A point of the table: coefficients of 1, z^2 and z^4, z in units of the largest height.
 struct TableNode {
   using Even = std::array<float, 3>;
   Even x_p{}, row{1}, strength{}, spacing{1};  // z_p = z * row(z^2)
   float cosine = 1, sine = 0;                  // of the ray's angle in plan
 };
+
+/// The node at one height.
+inline RayNode node_at(const TableNode& node, const HeightScale& scale) {
+  const float z2 = scale.z2;
+  const auto value = [z2](const TableNode::Even& even) { return even[0] + z2 * (even[1] + z2 * even[2]); };
+  const float g = value(node.row);
+  const float g_rate = 2 * z2 * (node.row[1] + 2 * z2 * node.row[2]);  // z dg/dz
+  const float strength = value(node.strength);
+  return {scale.columns_per_mm * value(node.x_p) + scale.column_origin,
+          scale.row_rate * g + scale.row_origin,
+          scale.rows_per_slice * (g + g_rate),
+          strength > 0 ? strength : 0.0F,
+          scale.columns_per_voxel * value(node.spacing),
+          node.cosine,
+          node.sine,
+          0};
+}
 
 struct LevelRays;
 
@@ -63,12 +88,17 @@ class RayTable {
   };
   explicit RayTable(const Setup& setup);
 
+  [[nodiscard]] HeightScale scale_at(double z_mm, const RayScale& scale) const;
   /// The nodes at that height: element row_begin(zone, row, sheet) + i is direction alpha = sense * i * 2 pi /
   /// directions, i = 0 to directions.
   void at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const;
   [[nodiscard]] std::size_t row_begin(const Zone& zone, int row, int sheet) const {
     return static_cast<std::size_t>(zone.first_row + row * zone.sheets + sheet) *
            static_cast<std::size_t>(directions + 1);
+  }
+  /// Its `directions` points.
+  [[nodiscard]] const TableNode* points(const Zone& zone, int row, int sheet) const {
+    return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
   [[nodiscard]] bool climbs() const { return climbs_; }
   /// Largest change of x_p, in mm of the image plane, from one height to another, at that radius.

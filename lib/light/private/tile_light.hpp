@@ -19,7 +19,8 @@ struct Chunk {
   [[nodiscard]] int width() const { return static_cast<int>(slabs) * lanes; }
 };
 
-/// The rays of a tile's voxels, in whole blocks; those that fill up the last block belong to no voxel.
+/// The rays of a tile's voxels, in whole blocks; those that fill up the last block belong to no voxel. With poses the
+/// voxels alone: they have other rays in every frame.
 struct Tile {
   int chunk = 0;  // slices that may share the rays
   std::vector<RaySource> rays;
@@ -51,7 +52,10 @@ class TileLight {
  private:
   template <class Visit>
   void each_voxel(const Visit& visit) const;
-  void find_taps(const RayNodes& nodes, int angle, std::size_t slabs);
+  /// False where no light comes.
+  bool find_taps(const RayNodes& nodes, int angle, std::size_t slabs);
+  bool find_posed_taps(int frame);
+  void make_room(std::size_t pitch);
   template <class SlabType, class Visit>
   void each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const;
   void fetch(int angle, std::span<const Slab> sinograms);
@@ -59,7 +63,9 @@ class TileLight {
   void cast_shadow(int angle);
   [[nodiscard]] bool shadowed(int angle) const;
   [[nodiscard]] TileColumns columns();
-  [[nodiscard]] int count() const { return static_cast<int>(tile_->voxels.size()); }
+  /// Of every ray.
+  [[nodiscard]] const std::vector<int>& voxels() const { return rays_.posed() ? posed_voxels_ : tile_->voxels; }
+  [[nodiscard]] int count() const { return static_cast<int>(voxels().size()); }
 
   const VialRays& rays_;
   const InsertShadow& shadow_;
@@ -71,6 +77,8 @@ class TileLight {
   int rows_ = 0;     // floats of a column
   int columns_ = 0;  // of the tile
   int lit_first_ = 0, lit_end_ = 0;
+  RayNodes posed_nodes_;  // of one frame
+  std::vector<int> posed_voxels_;
   std::vector<int> cells_;
   std::vector<float, CacheAligned<float>> floats_, voxels_, light_, ends_, depth_;
 };

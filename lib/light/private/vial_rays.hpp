@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "light/private/posed_rays.hpp"
 #include "light/private/ray_table.hpp"
 #include "light/vial_setup.hpp"
 
@@ -13,12 +14,16 @@ namespace vam::light {
 /// between rows.
 class VialRays {
  public:
-  /// Throws Fault::data unless the rows are one turn, when no column of the projector lights the resin, and when the
-  /// lens is so near that rays climb too steeply.
+  /// Throws Fault::data unless the rows are one turn or have poses, when no column of the projector lights the resin,
+  /// when the lens is so near that rays climb too steeply, and for poses that displace the vial too far.
   explicit VialRays(const VialSetup& setup);
 
   [[nodiscard]] const VialSetup& setup() const { return setup_; }
-  [[nodiscard]] bool climbs() const { return table_.climbs(); }
+  /// Whether voxels stand elsewhere in every frame: then rays are found for each of them, posed_rays(); else by the
+  /// table at a height, at_slices() and find_taps().
+  [[nodiscard]] bool posed() const { return !setup_.poses.empty(); }
+  /// Whether rows light other slices than their own.
+  [[nodiscard]] bool climbs() const { return table_.climbs() || posed(); }
   /// The columns that light voxels: columns() from first_column() of the projector on.
   [[nodiscard]] int first_column() const { return first_; }
   [[nodiscard]] int columns() const { return static_cast<int>(transmitted_.size()); }
@@ -43,6 +48,17 @@ class VialRays {
   /// Where `count` rays, whole blocks of them, take light from at a stage angle.
   void find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices, RayTaps& taps) const;
 
+  /// Whether light of a frame may reach these slices.
+  [[nodiscard]] bool lit(int first, int slices, int frame) const;
+  /// The scale at the middle of these slices in a frame.
+  [[nodiscard]] HeightScale posed_scale(int first, int slices, int frame) const;
+  /// Nodes of the rays through a voxel column, at most most_rays; returns how many.
+  int find_posed(int i, int j, int frame, const HeightScale& scale, RayNode* to) const {
+    return posed_.find(table_, setup_.grid.x_mm(i), setup_.grid.y_mm(j), frame, scale, to);
+  }
+  /// Where `count` rays, whole blocks of them, take light from: one node each, and one more.
+  void find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const;
+
   /// The rows that may be lit.
   [[nodiscard]] int first_row() const { return first_row_; }
   [[nodiscard]] int end_row() const { return end_row_; }
@@ -50,15 +66,26 @@ class VialRays {
   [[nodiscard]] double row_mm(double row) const { return setup_.first_row_mm + row * setup_.grid.voxel_mm; }
 
  private:
+  /// How the part stands, as RayFrame has it.
+  struct Standing {
+    int shift, step, directions;
+    float cosine, sine;
+  };
+  void take_from(const RayNodes& nodes, const RaySource* rays, int count, const Standing& part, int slices,
+                 RayTaps& taps) const;
   [[nodiscard]] int sense() const { return (setup_.turn.step_rad < 0 ? 1 : -1) * setup_.direction; }
   [[nodiscard]] double height_mm(double slice) const { return setup_.z_scale * setup_.grid.z_mm(slice); }
   [[nodiscard]] double top_mm() const;
   [[nodiscard]] RayTable::Setup table_setup() const;
   [[nodiscard]] RayScale scale() const;
   void require_moderate_rays(RayNodes& nodes) const;
+  void note_columns();
+  void note_rows();
 
   VialSetup setup_;
   RayTable table_;
+  PosedRays posed_;
+  float least_row_ = 1, most_row_ = 1;  // z_p over height, of any ray
   int first_ = 0;
   int first_row_ = 0;
   int end_row_ = 0;

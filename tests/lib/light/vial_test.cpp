@@ -167,3 +167,74 @@ TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the
   }
   CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 32, 36), cross), 2) < 1e-5);
 }
+
+namespace {
+
+/// Two turns in which things circle and rise.
+VialSetup posed(VialSetup setup, int frames, model::Moves moves) {
+  setup.turn = {frames, 0.2, 4 * std::numbers::pi / frames};
+  for (int k = 0; k < frames; ++k) {
+    setup.poses.push_back({360.0 * k / frames, 0.8 * std::cos(0.9 * k), 0.8 * std::sin(0.9 * k), 0.21 * k - 4, moves});
+  }
+  return setup;
+}
+
+}  // namespace
+
+TEST_CASE("in every pose A and A* are adjoint, with more slices than rows and with more rows than slices") {
+  for (const model::Moves moves : {model::Moves::vial, model::Moves::part}) {
+    VialSetup tall = posed(climbing(33, 70, 37), 37, moves);
+    tall.rows = 40;
+    tall.first_row_mm = 4.3;
+    CHECK(adjoint_error_of_volume(VialOperator(tall), 5) < 1e-5);
+    VialSetup wide = posed(climbing(40, 20, 48), 48, moves);
+    wide.absorption_per_mm = 0.07;
+    wide.direction = -1;
+    wide.radius_mm = 12.7;  // beyond the reach, where rays fold
+    wide.grid = model::centred_grid(40, 40, 20, 25.0 / 40, 3);
+    wide.rows = 30;
+    wide.first_row_mm = 1;
+    CHECK(adjoint_error_of_volume(VialOperator(wide), 2) < 1e-5);
+    VialSetup level = posed(climbing(40, 20, 48), 48, moves);
+    level.view.rows_lens_mm.reset();
+    level.z_scale = 1;
+    CHECK(adjoint_error_of_volume(VialOperator(level), 2) < 1e-5);
+  }
+}
+
+TEST_CASE("poses of no displacement give the dose of none") {
+  const VialSetup still = climbing(40, 43, 60);
+  VialSetup setup = still;
+  for (int k = 0; k < 60; ++k) setup.poses.push_back({6.0 * k});
+  const VialOperator plain(still);
+  const VialOperator posed_light(setup);
+  std::vector<Slab> g;
+  for (unsigned s = 0; s < 3; ++s) g.push_back(parts::noise(plain.sinogram(), s));
+  std::vector<Slab> a = slabs(3, 40, 40);
+  std::vector<Slab> b = slabs(3, 40, 40);
+  plain.adjoint(g, a);
+  posed_light.adjoint(g, b);
+  double worst = 0, most = 0;
+  for (std::size_t s = 0; s < 3; ++s) {
+    for (std::size_t i = 0; i < a[s].values.size(); ++i) {
+      const auto column = static_cast<int>(i / lanes);
+      // At the rim the table ends, and points without a ray are counted before or after interpolation.
+      if (std::hypot(still.grid.x_mm(column % 40), still.grid.y_mm(column / 40)) > 0.94 * still.radius_mm) continue;
+      worst = std::max(worst, static_cast<double>(std::abs(a[s].values[i] - b[s].values[i])));
+      most = std::max(most, static_cast<double>(std::abs(a[s].values[i])));
+    }
+  }
+  CHECK(worst < 2e-4 * most);  // places in float; noise is steep
+}
+
+TEST_CASE("poses that cannot be are errors: too far, too few, around an insert") {
+  VialSetup setup = climbing(20, 8, 24);
+  setup.poses.assign(23, {});
+  CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
+  setup.poses.assign(24, {0, 1.3, 0, 0, model::Moves::vial});
+  CHECK(fault_of([&] { VialOperator light(setup); }) == vam::Fault::data);
+  setup.poses.assign(24, {0, 1.3, 0, 0, model::Moves::part});
+  CHECK_NOTHROW(VialOperator{setup});
+  const std::vector<Slab> insert = slabs(1, 20, 20);
+  CHECK(fault_of([&] { VialOperator light(setup, insert); }) == vam::Fault::data);
+}

@@ -52,6 +52,32 @@ TEST_CASE("a skew ray is that of Snell's law in vector form") {
   }
 }
 
+TEST_CASE("rays through a vial that stands off the axis are those of vector Snell") {
+  const Displacement off{0.8, -0.5};
+  for (const Case& c : cases) {
+    vam::oracle::Bench moved = c.bench;
+    moved.axis_x = 0.8L;
+    moved.axis_y = -0.5L;
+    for (const double x_p : {-6.0, 0.3, 7.0}) {
+      for (const double z_p : {-20.0, 0.0, 11.0}) {
+        const auto want = vam::oracle::trace(moved, x_p, z_p);
+        const SkewRay ray = skew_ray(c.view, x_p, z_p, off);
+        REQUIRE(ray.hits == want.has_value());
+        auto seen = *want;  // from the vial's axis
+        seen.point[0] -= 0.8L;
+        seen.point[1] += 0.5L;
+        const auto line = vam::oracle::line_of(seen);
+        const auto climb = seen.direction[2] / std::hypot(seen.direction[0], seen.direction[1]);
+        const auto u = -seen.point[0] * std::sin(line.a) + seen.point[1] * std::cos(line.a);
+        CHECK(std::abs(ray.offset_mm - static_cast<double>(line.t)) < 1e-9);
+        CHECK(std::abs(ray.delta_rad - static_cast<double>(line.a)) < 1e-9);
+        CHECK(std::abs(ray.height_mm - static_cast<double>(seen.point[2] - climb * u)) < 1e-9);
+        CHECK(std::abs(ray.transmittance - static_cast<double>(want->transmittance)) < 1e-9);
+      }
+    }
+  }
+}
+
 TEST_CASE("a level ray is a chief ray") {
   for (const Case& c : cases) {
     for (const double x_p : {-9.0, 0.0, 4.0}) {

@@ -1,0 +1,101 @@
+#include "model/pose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "base/text.hpp"
+
+namespace vam::model {
+
+namespace {
+
+constexpr const char* header = "angle_deg,dx_mm,dy_mm,dz_mm,moves";
+
+double distance_mm(const Pose& a, const Pose& b) {
+  return std::hypot(a.dx_mm - b.dx_mm, a.dy_mm - b.dy_mm, a.dz_mm - b.dz_mm);
+}
+
+Pose parse_line(const std::string& line) {
+  std::istringstream stream(line);
+  std::array<double, 4> numbers{};
+  std::string cell;
+  for (double& number : numbers) {
+    std::getline(stream, cell, ',');
+    const auto value = parse_number(cell);
+    if (!value) throw std::runtime_error("a pose has '" + cell + "' for a number");
+    number = *value;
+  }
+  std::getline(stream, cell);
+  return {numbers[0], numbers[1], numbers[2], numbers[3], moves_named(cell)};
+}
+
+}  // namespace
+
+std::string moves_name(Moves moves) { return moves == Moves::vial ? "vial" : "part"; }
+
+Moves moves_named(const std::string& name) {
+  if (name == "vial") return Moves::vial;
+  if (name == "part") return Moves::part;
+  throw std::runtime_error("a pose moves '" + name + "', not vial or part");
+}
+
+std::string poses_text(const Poses& poses) {
+  std::string text = header;
+  for (const Pose& pose : poses) {
+    text += '\n';
+    for (const double number : {pose.angle_deg, pose.dx_mm, pose.dy_mm, pose.dz_mm}) {
+      text += format_number(number, 9) + ',';
+    }
+    text += moves_name(pose.moves);
+  }
+  return text;
+}
+
+Poses parse_poses(const std::string& text) {
+  std::istringstream stream(text);
+  std::string line;
+  std::getline(stream, line);
+  if (line != header) throw std::runtime_error("the table of poses does not begin with " + std::string(header));
+  Poses poses;
+  while (std::getline(stream, line)) poses.push_back(parse_line(line));
+  return poses;
+}
+
+Range lift_mm(const Poses& poses) {
+  if (poses.empty()) return {};
+  const auto lower = [](const Pose& a, const Pose& b) { return a.dz_mm < b.dz_mm; };
+  const auto [least, most] = std::minmax_element(poses.begin(), poses.end(), lower);
+  return {least->dz_mm, most->dz_mm};
+}
+
+double farthest_mm(const Poses& poses, Moves moves) {
+  double farthest = 0;
+  for (const Pose& pose : poses) {
+    if (pose.moves == moves) farthest = std::max(farthest, std::hypot(pose.dx_mm, pose.dy_mm));
+  }
+  return farthest;
+}
+
+bool repeat(const Poses& poses) {
+  double longest = 0;
+  for (std::size_t i = 1; i < poses.size(); ++i) longest = std::max(longest, distance_mm(poses[i - 1], poses[i]));
+  constexpr double rounding_mm = 1e-6;
+  return poses.empty() || distance_mm(poses.back(), poses.front()) <= 2 * longest + rounding_mm;
+}
+
+Pose pose_between(const Poses& poses, double frame) {
+  const auto last = static_cast<double>(poses.size() - 1);
+  const double place = std::clamp(frame, 0.0, last);
+  const auto low = static_cast<std::size_t>(place);
+  const Pose& a = poses[low];
+  const Pose& b = poses[std::min(low + 1, poses.size() - 1)];
+  const double part = place - static_cast<double>(low);
+  const auto between = [&](double from, double to) { return from + part * (to - from); };
+  return {between(a.angle_deg, b.angle_deg), between(a.dx_mm, b.dx_mm), between(a.dy_mm, b.dy_mm),
+          between(a.dz_mm, b.dz_mm), part < 0.5 ? a.moves : b.moves};
+}
+
+}  // namespace vam::model

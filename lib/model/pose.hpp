@@ -1,0 +1,53 @@
+// Where the vial, or the part in it, stands while each frame is shown: off the place that the settings give it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vam::model {
+
+/// What a displacement moves: the vial with all that is in it (wobble; refraction moves with it), or the part in a vial
+/// that stays (sinking). Along z both are the same, as the vial is a cylinder.
+enum class Moves { vial, part };
+
+/// The displacement in the laboratory while one frame is shown: x along the projector's columns, y along the light, z
+/// up, in mm [physics §1].
+struct Pose {
+  double angle_deg = 0;  // stage angle of the frame
+  double dx_mm = 0;
+  double dy_mm = 0;
+  double dz_mm = 0;
+  Moves moves = Moves::vial;
+  bool operator==(const Pose&) const = default;
+};
+
+/// One for every frame, in order; none: nothing is displaced.
+using Poses = std::vector<Pose>;
+
+/// "vial" or "part"; throws std::runtime_error for another word.
+[[nodiscard]] std::string moves_name(Moves moves);
+[[nodiscard]] Moves moves_named(const std::string& name);
+
+/// The lines of a table of poses with its header, "angle_deg,dx_mm,dy_mm,dz_mm,moves" [formats: Poses], and the way
+/// back. Throws std::runtime_error for another text.
+[[nodiscard]] std::string poses_text(const Poses& poses);
+[[nodiscard]] Poses parse_poses(const std::string& text);
+
+struct Range {
+  double least = 0;
+  double most = 0;
+};
+/// Of dz_mm; 0 without poses.
+[[nodiscard]] Range lift_mm(const Poses& poses);
+
+/// Largest horizontal displacement of the vial, or of the part in the vial.
+[[nodiscard]] double farthest_mm(const Poses& poses, Moves moves);
+
+/// Whether the frames can be shown again and again: the way from the last pose back to the first one is no longer than
+/// twice the longest way from frame to frame.
+[[nodiscard]] bool repeat(const Poses& poses);
+
+/// At a place between frames, linear between the nearest two, the ends beyond. `moves` is that of the nearest.
+[[nodiscard]] Pose pose_between(const Poses& poses, double frame);
+
+}  // namespace vam::model
