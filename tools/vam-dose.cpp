@@ -26,14 +26,15 @@ void run(const cli::App& app, Options& options) {
 
   io::StackReader in(options.input);
   io::require(options.input, in.info(), model::Kind::sinogram);
-  const dose_tool::Place place = place_of(options, printer, in.info());
-  io::SparseVolume volume = empty_volume(app, place, printer, in.info());
-  const dose_tool::Exposed exposed = expose(in, options, printer, place, volume);
+  const model::StackInfo info = posed(in.info(), options);
+  const dose_tool::Place place = place_of(options, printer, info);
+  io::SparseVolume volume = empty_volume(app, place, printer, info);
+  const dose_tool::Exposed exposed = expose(in, info, options, printer, place, volume);
 
   const dose_tool::Unit unit = unit_of(exposed, options, printer);
   convert(volume, unit);
   io::write_volume(options.output, volume);
-  io::write_report(options.report, "vam-dose/1", figures(exposed, unit, options, printer, in.info().space));
+  io::write_report(options.report, "vam-dose/1", figures(exposed, unit, options, printer, info));
 }
 
 }  // namespace

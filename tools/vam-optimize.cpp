@@ -44,7 +44,7 @@ void run(const cli::App& app, Options& options) {
   std::optional<optimize_tool::Initial> initial;
   if (!options.init.empty()) {
     initial.emplace(options.init, info);
-    task.initial = [&](int k) { return (*initial)(k); };
+    task.initial = [&](int k) { return k < info.count ? (*initial)(k) : Image(info.width, info.height); };
   }
   std::optional<optimize_tool::Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
@@ -52,7 +52,9 @@ void run(const cli::App& app, Options& options) {
     task.interruption = checkpoint->interruption(job_of(app, printer, options));
   }
   optimize_tool::Sink sink(options, printer, info);
-  task.write = [&](int, const Image& image) { sink.add(image); };
+  task.write = [&](int k, const Image& image) {
+    if (k < info.count) sink.add(image);  // there may be more slices than rows
+  };
 
   const std::string subject = options.input == "-" ? "stdin" : options.input;
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);

@@ -18,6 +18,7 @@ class BlurredOperator final : public Operator {
   [[nodiscard]] Shape image() const override { return sharp_.image(); }
   [[nodiscard]] double row_angle_rad() const override { return sharp_.row_angle_rad(); }
   [[nodiscard]] bool couples_slices() const override { return true; }
+  [[nodiscard]] bool rows_are_slices() const override { return sharp_.rows_are_slices(); }
   /// The spans are the pass's slabs from the first on.
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;

@@ -20,17 +20,30 @@ double climb_ratio(const model::Printer& printer, double radius_mm) {
 
 }  // namespace
 
-Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm) {
+Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm,
+                  const model::Poses& poses) {
   Margin margin;
   const double rim =
       0.5 * grid.voxel_mm + std::min({-grid.x_mm(0), -grid.y_mm(0), grid.x_mm(grid.nx - 1), grid.y_mm(grid.ny - 1)});
   const auto voxels = [&](double mm) { return std::max(0, static_cast<int>(std::ceil(mm / grid.voxel_mm - 1e-6))); };
   margin.side = voxels(radius_mm - rim);
   const double ratio = climb_ratio(printer, radius_mm);
+  const model::Range lift = model::lift_mm(poses);
+  const double scale = model::vertical_magnification(printer);
+  if (lift.least != 0 || lift.most != 0) margin.above = margin.below = 1;
   if (ratio == 1) return margin;
+  const model::Projector& p = printer.projector;
+  const double lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
+  const double highest_mm = p.axis_row * p.pixel_mm;
   const auto spread = [&](double z_mm) { return z_mm > 0 ? z_mm * (ratio - 1) : z_mm * (1 / ratio - 1); };
-  margin.above = voxels(spread(grid.z_mm(grid.nz - 1))) + 1;
-  margin.below = voxels(spread(-grid.z_mm(0))) + 1;
+  // Of an end of the part, `sign` up or down, wherever it passes the picture.
+  const auto most = [&](double end_mm, double sign) {
+    if (poses.empty()) return spread(sign * end_mm);
+    const auto in_picture = [&](double lift_mm) { return std::clamp(end_mm + lift_mm / scale, lowest_mm, highest_mm); };
+    return std::max(spread(sign * in_picture(lift.least)), spread(sign * in_picture(lift.most)));
+  };
+  margin.above = voxels(most(grid.z_mm(grid.nz - 1), 1)) + 1;
+  margin.below = voxels(most(grid.z_mm(0), -1)) + 1;
   return margin;
 }
 

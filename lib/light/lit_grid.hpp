@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/grid.hpp"
+#include "model/pose.hpp"
 #include "model/printer.hpp"
 
 namespace vam::light {
@@ -14,8 +15,10 @@ struct Margin {
 };
 
 /// Up to that radius (optics::judged_radius_mm) on the sides; below and above as far as the light of the grid's own
-/// rows climbs. Nothing below and above where rays stay level. Throws Fault::data as projector_view does.
-[[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm);
+/// rows climbs, in any pose. Nothing below and above where rays stay level, but a slice where poses lift the part, as
+/// rows then stand between slices. Throws Fault::data as projector_view does.
+[[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm,
+                                const model::Poses& poses = {});
 
 [[nodiscard]] model::Grid extended(const model::Grid& grid, const Margin& margin);
 

@@ -36,6 +36,9 @@ class Operator {
   /// Whether light of one slice gives dose in others: then methods decide for all slices of a pass together.
   [[nodiscard]] virtual bool couples_slices() const { return false; }
 
+  /// Whether slice k is lit by row k in the first place. Else any row may light it in some frame.
+  [[nodiscard]] virtual bool rows_are_slices() const { return true; }
+
   /// sinograms = A objects.
   virtual void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const = 0;
   /// objects = A* sinograms: the relative dose.

@@ -53,12 +53,34 @@ VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int
   return setup;
 }
 
+void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& slices) {
+  if (poses.empty()) return;
+  constexpr double rounding = 0.01;  // of a row
+  const model::Range lift = model::lift_mm(poses);
+  const double voxel = setup.grid.voxel_mm;
+  const double low_mm = std::max(setup.lowest_mm, slices.z_mm(0) + lift.least / setup.z_scale);
+  const double high_mm = std::min(setup.highest_mm, slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale);
+  const double first = std::ceil((low_mm - setup.grid.z_mm(0)) / voxel - rounding);
+  const double last = std::floor((high_mm - setup.grid.z_mm(0)) / voxel + rounding);
+  if (last < first) {
+    throw Error{Fault::data, "poses: the slices are at z = " + mm(slices.z_mm(0) + lift.least / setup.z_scale) +
+                                 " ... " + mm(slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale) +
+                                 ", but the projector's rows cover " + mm(setup.lowest_mm) + " ... " +
+                                 mm(setup.highest_mm) + "; check projector.axis_row and the table"};
+  }
+  setup.poses = poses;
+  setup.turn.rows = static_cast<int>(poses.size());
+  setup.rows = static_cast<int>(last - first) + 1;
+  setup.first_row_mm = setup.grid.z_mm(first);
+}
+
 VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
                      const model::StackInfo& info, const model::Grid& grid) {
   VialSetup setup = on_the_bench(printer, alignment, grid);
   require_columns_of(setup.projector, info);
   require_slices_of(grid, info);
   setup.turn = optics::turn_of(info);
+  setup.poses = info.poses;
   setup.rows = info.count;
   setup.first_row_mm = info.z_start_mm;
   return setup;

@@ -38,8 +38,12 @@ struct VialSetup {
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int angles,
                                    double radius_mm);
 
-/// Light that a projector's stack holds: its rows and angles. Throws Fault::data unless its columns are the printer's
-/// and its slices the grid's.
+/// The poses of the frames, and the rows that light these slices in any of them, as far as the projector has them; rows
+/// stand where slices do. Without poses nothing changes. Throws Fault::data when no row does.
+void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& slices);
+
+/// Light that a projector's stack holds: its rows, angles and poses. Throws Fault::data unless its columns are the
+/// printer's and its slices the grid's.
 [[nodiscard]] VialSetup vial_setup(const model::Printer& printer, const optics::AxisAlignment& alignment,
                                    const model::StackInfo& info, const model::Grid& grid);
 

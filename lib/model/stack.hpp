@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "model/pose.hpp"
+
 namespace vam::model {
 
 enum class Kind { sinogram, frames };
@@ -29,6 +31,7 @@ struct StackInfo {
   std::string units = "relative";            // of the pixel values
   std::vector<std::string> history;          // one line per command that touched the data
   std::map<std::string, std::string> extra;  // unknown text attributes, copied through
+  Poses poses;                               // of the rows of a sinogram or of the frames; none: nothing is displaced
 };
 
 /// Facts of one image; absent ones follow from StackInfo and the index.

@@ -17,6 +17,10 @@ void declare(cli::App& app, Options& options) {
   app.option("--size", "MM", options.size_mm, cli::positive,
              "Edge of the square around the axis. Voxels are as high as slices.");
   app.default_is("all that is lit from every side (projector), or the width of the sinogram (virtual)");
+  app.option("--poses", "FILE", options.poses,
+             "Where vial or part stand in every frame: a table (CSV) with the columns "
+             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame.");
+  app.default_is("the poses of the stack, or none");
   app.group("Beam and resin");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Sinogram value shown at full intensity; larger values are clipped, values below "

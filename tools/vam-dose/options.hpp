@@ -16,6 +16,7 @@ struct Options {
   std::string output = "-";
   std::string like;
   std::optional<double> size_mm;
+  std::string poses;
   std::optional<double> full_scale;
   std::optional<double> seconds;
   bool no_blur = false;

@@ -1,14 +1,35 @@
 #include "vam-dose/place.hpp"
 
 #include "base/error.hpp"
+#include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/vdb/gate.hpp"
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
+#include "light/poses.hpp"
 #include "model/dose_metrics.hpp"
 #include "optics/writable.hpp"
 
 namespace vam::dose_tool {
+
+model::StackInfo posed(model::StackInfo info, const Options& options) {
+  const bool projector = info.space == model::Space::projector;
+  if (!options.poses.empty()) {
+    if (!projector) throw Error{Fault::usage, "--poses: applies to a projector sinogram; a virtual one has no vial"};
+    info.poses = io::read_poses(options.poses);
+    io::require_angles(options.poses, info.poses, info.height, info.angle_start_deg, info.angle_step_deg);
+  }
+  if (info.poses.empty()) return info;
+  if (options.in_plane) {
+    throw Error{Fault::usage, "--in-plane: the rows of a stack with poses light slices that pass by; omit the option"};
+  }
+  if (options.exposure_plan && !model::repeat(info.poses)) {
+    throw Error{Fault::usage, "--exposure-plan: the poses of " + options.input +
+                                  " do not return to the first one, so the print cannot be repeated turn by turn; set "
+                                  "the intensity by vam-project --gain"};
+  }
+  return info;
+}
 
 Place place_of(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
   Place place;
@@ -28,10 +49,11 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
   }
   const double farthest_mm = place.target != nullptr ? io::farthest_mm(*place.target, model::coverage_rounding) : 0;
   place.judged_mm = optics::judged_radius_mm(printer, farthest_mm);
+  light::require_in_reach(info.poses, printer, place.judged_mm);
   place.grid = (place.target != nullptr ? *place.target : place.like.front()).grid();
   if (info.space == model::Space::projector) {  // what prints around the part must be seen
     const model::Grid inner = place.grid;
-    place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm));
+    place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm, info.poses));
     for (io::SparseVolume& volume : place.like) {
       if (volume.grid() == inner) volume.extend_to(place.grid);
     }

@@ -46,10 +46,11 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
 }
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
-             model::Space light) {
+             const model::StackInfo& light) {
   const light::LightSeen& seen = exposed.light;
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
-  report["model"] = light != model::Space::projector ? "parallel" : exposed.climbs ? "chief rays" : "level chief rays";
+  report["model"] = light.space != model::Space::projector ? "parallel" : exposed.climbs ? "chief rays" : "level chief rays";
+  report["poses"] = light.poses.size();
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["efficiency"] = seen.efficiency.value();
   report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;

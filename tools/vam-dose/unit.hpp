@@ -27,6 +27,6 @@ void convert(io::SparseVolume& volume, const Unit& unit);
 
 /// For --report.
 [[nodiscard]] Json figures(const Exposed& exposed, const Unit& unit, const Options& options,
-                           const model::Printer& printer, model::Space light);
+                           const model::Printer& printer, const model::StackInfo& light);
 
 }  // namespace vam::dose_tool

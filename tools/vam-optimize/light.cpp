@@ -5,8 +5,10 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/settings/pose_file.hpp"
 #include "light/beam.hpp"
 #include "light/blur.hpp"
+#include "light/poses.hpp"
 #include "model/dose_metrics.hpp"
 #include "optics/writable.hpp"
 #include "optimize/run/volume.hpp"
@@ -18,7 +20,37 @@ namespace {
 
 light::VialSetup vial_setup(model::Printer printer, const Scene& scene, const Options& options) {
   if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
-  return light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
+  light::VialSetup setup =
+      light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
+  if (scene.poses.empty()) return setup;
+  setup.poses = scene.poses;
+  setup.turn.rows = scene.frames();
+  setup.rows = scene.rows;
+  setup.first_row_mm = scene.first_row_mm;
+  return setup;
+}
+
+model::Poses poses_of(const model::Grid& part, const model::Printer& printer, const Options& options) {
+  if (options.helix_mm) return light::helix_poses(printer, part, *options.helix_mm, options.angles);
+  if (!options.wobble.empty()) {
+    const io::WobbleRecord wobble = io::read_wobble(options.wobble, printer, printer.stage.direction);
+    return light::wobble_poses(wobble.radius_mm, wobble.lab_angle_deg, printer.stage.direction, options.angles);
+  }
+  if (options.poses.empty()) return {};
+  model::Poses poses = io::read_poses(options.poses);
+  io::require_angles(options.poses, poses, 0, 0, 360.0 / options.angles);
+  return poses;
+}
+
+/// The rows of light, and slices above the part where there are more rows than slices: both are as many.
+void place_poses(Scene& scene, const model::Grid& part) {
+  if (scene.poses.empty()) return;
+  const light::Margin up_and_down{0, scene.margin.below, scene.margin.above};
+  light::VialSetup setup = light::vial_setup(scene.printer, scene.grid, scene.turn.angles, 0);
+  light::place_rows(setup, scene.poses, light::extended(part, up_and_down));
+  scene.rows = setup.rows;
+  scene.first_row_mm = setup.first_row_mm;
+  scene.margin.above += std::max(0, scene.rows - scene.grid.nz);
 }
 
 light::Beam beam_of(const Scene& scene, const Options& options) {
@@ -67,15 +99,19 @@ double constrained_mm(const io::SparseVolume& target, const model::Printer& prin
 Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
   const model::Grid& grid = target.grid();
   const double radius_mm = constrained_mm(target, printer, options);
+  const model::Poses poses = poses_of(grid, printer, options);
+  light::require_in_reach(poses, printer, radius_mm);
   const light::Margin margin =
-      options.geometry == "vial" ? light::lit_margin(printer, grid, radius_mm) : light::Margin{};
+      options.geometry == "vial" ? light::lit_margin(printer, grid, radius_mm, poses) : light::Margin{};
   const model::Grid lit = light::extended(grid, margin);
-  Scene scene{lit, margin, printer, model::writable_circle(lit, radius_mm), {}};
+  Scene scene{lit, margin, printer, model::writable_circle(lit, radius_mm), {}, poses};
   const int columns = options.columns.value_or(tomo::columns_across(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
-  if (options.geometry == "vial") {
+  place_poses(scene, grid);
+  scene.grid = light::extended(grid, scene.margin);
+  if (options.geometry == "vial" && poses.empty()) {
     require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options)));
-  } else {
+  } else if (options.geometry != "vial") {
     scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
   }
   return scene;
@@ -83,7 +119,9 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
 
 double diffusion_s(const Scene& scene, const Options& options) {
   const model::PrinterStage& stage = scene.printer.stage;
-  return options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(stage.turns)));
+  const bool once = !model::repeat(scene.poses);
+  const double turns = once ? static_cast<double>(scene.frames()) / scene.turn.angles : stage.turns;
+  return options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(turns)));
 }
 
 namespace {

@@ -10,6 +10,7 @@
 #include "light/operator.hpp"
 #include "model/circle.hpp"
 #include "model/grid.hpp"
+#include "model/pose.hpp"
 #include "model/printer.hpp"
 #include "optimize/methods/scenarios.hpp"
 #include "tomo/radon.hpp"
@@ -24,6 +25,12 @@ struct Scene {
   model::Printer printer;
   model::Circle circle;         // what it reaches
   tomo::ParallelGeometry turn;  // with --geometry parallel
+  model::Poses poses;           // of the frames; none: one turn in which nothing is displaced
+  int rows = 0;                 // of light, from first_row_mm on
+  double first_row_mm = 0;
+
+  /// Rows of a sinogram.
+  [[nodiscard]] int frames() const { return poses.empty() ? turn.angles : static_cast<int>(poses.size()); }
 };
 
 [[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);

@@ -171,6 +171,16 @@ void declare(cli::App& app, Options& options) {
   app.option("--columns", "N", options.columns, {1, 65536},
              "Number of detector bins of a parallel beam, each one voxel wide.");
   app.default_is("as many as cover the writable circle");
+  app.group("Poses of vial and part");
+  app.option("--poses", "FILE", options.poses,
+             "Where vial or part stand in every frame: a table (CSV) with the columns "
+             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame, 360 / --angles degrees apart, for any number of turns. "
+             "Becomes part of the stack.");
+  app.option("--helix", "MM", options.helix_mm, cli::any,
+             "For parts taller than the picture: the vial is lifted (below 0: lowered) by so much a turn, in as many "
+             "turns as the whole part takes to pass the picture.");
+  app.option("--wobble", "RECORD", options.wobble,
+             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis tells.");
   declare_constraints(app, options);
   declare_stopping(app, options);
   declare_parameters(app, options);

@@ -19,6 +19,9 @@ struct Options {
   std::string geometry = "vial";
   int angles = 360;
   std::optional<int> columns;
+  std::string poses;  // one of the three, or none
+  std::optional<double> helix_mm;
+  std::string wobble;
   optimize::Demands demands;  // target constraints
   double tolerance_mm = 0;
   std::string weights, tolerances;

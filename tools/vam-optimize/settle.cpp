@@ -57,9 +57,20 @@ void refuse_unread(const cli::App& app, const Options& options, const optimize::
   }
 }
 
+void refuse_poses(const Options& options) {
+  const int ways = (options.poses.empty() ? 0 : 1) + (options.helix_mm ? 1 : 0) + (options.wobble.empty() ? 0 : 1);
+  if (ways == 0) return;
+  if (ways > 1) throw Error{Fault::usage, "--poses, --helix, --wobble: give one of them; a table can hold it all"};
+  if (options.helix_mm == 0.0) throw Error{Fault::usage, "--helix: 0 mm a turn never passes the part"};
+  if (options.geometry != "vial") {
+    throw Error{Fault::usage, "--poses, --helix, --wobble: a parallel beam has no vial to move; use --geometry vial"};
+  }
+}
+
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
   refuse_unread(app, options, method);
+  refuse_poses(options);
   if (options.geometry == "vial" && options.columns) {
     throw Error{Fault::usage,
                 "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "

@@ -14,15 +14,16 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
                             const Options& options) {
   model::StackInfo info;
   info.width = scene.turn.columns;
-  info.height = scene.turn.angles;
-  info.count = scene.grid.nz;
+  info.height = scene.frames();
+  info.count = scene.poses.empty() ? scene.grid.nz : scene.rows;
+  info.poses = scene.poses;
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
   if (options.geometry == "vial") {
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
     info.pixel_mm = scene.printer.projector.pixel_mm;
   }
-  info.z_start_mm = scene.grid.z_mm(0);
+  info.z_start_mm = scene.poses.empty() ? scene.grid.z_mm(0) : scene.first_row_mm;
   info.angle_step_deg = 360.0 / scene.turn.angles;
   info.units = "1/rad";
   info.history = target.history;
@@ -69,6 +70,10 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
 /// limit is irradiance over the lamp's.
 optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
   if (!options.turns) return options.limit;
+  if (!model::repeat(scene.poses)) {
+    throw Error{Fault::usage,
+                "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
+  }
   const auto per_radian = score::dose_per_radian_mj_cm3(scene.printer);
   if (!per_radian) {
     throw Error{Fault::usage,

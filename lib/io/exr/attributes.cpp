@@ -23,6 +23,7 @@ using model::Space;
 using model::StackInfo;
 
 constexpr std::array kinds = {Kind::sinogram, Kind::frames};
+constexpr const char* poses_name = "vam:poses";
 constexpr std::array spaces = {Space::virtual_, Space::projector, Space::camera};
 
 void set_text(Imf::Header& header, const char* name, const std::string& text) {
@@ -106,6 +107,8 @@ void set_common(Imf::Header& header, const StackInfo& info) {
 
 void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageInfo& about) {
   header.setName(part_name(info, index));
+  if (index == 0 && !info.poses.empty()) set_text(header, poses_name, model::poses_text(info.poses));
+  if (index > 0) header.erase(poses_name);  // long, and the same for all
   set_integer(header, "vam:index", index);
   set_number(header, "vam:z_mm", about.z_mm);
   if (about.has_angle) set_number(header, "vam:angle_deg", about.angle_deg);
@@ -137,9 +140,11 @@ StackInfo stack_info(const Imf::Header& header) {
   info.angle_step_deg = number(header, "vam:angle_step_deg").value_or(0);
   info.units = text(header, "vam:units").value_or(info.units);
   info.history = split(text(header, "vam:history").value_or(""));
+  if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
-    const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history";
+    const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
+                      name == poses_name;
     const bool standard = name == "name" || name == "type" || name == "view";
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
   }

@@ -208,6 +208,11 @@ void StackReader::State::add_part(const Imf::Header& header) {
     info.width = layout.width;
     info.height = layout.height;
     announced = std::exchange(info.count, 0);
+    if (info.kind == model::Kind::sinogram && !info.poses.empty() &&
+        info.poses.size() != static_cast<std::size_t>(info.height)) {
+      throw std::runtime_error("vam:poses has " + std::to_string(info.poses.size()) + " lines, but the images have " +
+                               std::to_string(info.height) + " angles");
+    }
   }
   const std::string part = "part " + std::to_string(about.size());
   if (layout.width != info.width || layout.height != info.height) {

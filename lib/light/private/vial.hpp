@@ -26,6 +26,7 @@ class VialOperator final : public Operator {
   [[nodiscard]] Shape image() const override { return {rays_.setup().projector.columns, rays_.setup().turn.rows}; }
   [[nodiscard]] double row_angle_rad() const override;
   [[nodiscard]] bool couples_slices() const override { return rays_.climbs(); }
+  [[nodiscard]] bool rows_are_slices() const override { return !rays_.posed(); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
   void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }

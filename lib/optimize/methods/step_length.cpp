@@ -31,9 +31,11 @@ double largest_eigenvalue(const light::Operator& light, const Problem& problem) 
   const std::size_t lane = slice % lanes;
   const auto& labels = problem.labels[slice / lanes];
   const light::Shape shape = light.object();
-  std::vector<Slab> objects = slabs(slice / lanes + 1, shape.width, shape.height);  // an operator counts from the first
-  std::vector<Slab> sinograms = slabs(objects.size(), light.sinogram().width, light.sinogram().height);
-  Slab& object = objects.back();
+  // An operator counts from the first; rows of any slab may light the slice where they are not its own.
+  const std::size_t count = light.rows_are_slices() ? slice / lanes + 1 : problem.labels.size();
+  std::vector<Slab> objects = slabs(count, shape.width, shape.height);
+  std::vector<Slab> sinograms = slabs(count, light.sinogram().width, light.sinogram().height);
+  Slab& object = objects[slice / lanes];
   for (int y = 0; y < shape.height; ++y) {
     for (int x = 0; x < shape.width; ++x) {
       const bool point = (x * 7 + y * 13) % 31 == 0;
@@ -54,8 +56,8 @@ double largest_eigenvalue(const light::Operator& light, const Problem& problem) 
   for (int i = 0; i < iterations; ++i) {
     const auto unit = static_cast<float>(1.0 / norm);
     for (float& v : object.values) v *= unit;
-    for (std::size_t before = 0; before + 1 < objects.size(); ++before) {
-      std::fill(objects[before].values.begin(), objects[before].values.end(), 0.0F);
+    for (Slab& other : objects) {
+      if (&other != &object) std::fill(other.values.begin(), other.values.end(), 0.0F);
     }
     light.forward(objects, sinograms);
     light.precondition(sinograms);

@@ -1,0 +1,71 @@
+#include "io/settings/pose_file.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/settings/csv_table.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+model::Poses read_poses(const std::string& path) {
+  const CsvTable table = read_csv(path, {"angle_deg", "dx_mm", "dy_mm", "dz_mm", "moves"});
+  constexpr double most_mm = 1e4;
+  model::Poses poses;
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const std::string place = table.source + ":" + std::to_string(table.lines[row]) + ": ";
+    model::Pose pose{table.number(row, 0), table.number(row, 1), table.number(row, 2), table.number(row, 3), {}};
+    for (const double mm : {pose.dx_mm, pose.dy_mm, pose.dz_mm}) {
+      if (std::abs(mm) <= most_mm) continue;
+      throw Error{Fault::data, place + "a displacement of " + format_number(mm) + " mm is impossible; check the unit"};
+    }
+    try {
+      pose.moves = model::moves_named(table.rows[row][4]);
+    } catch (const std::runtime_error& problem) {
+      throw Error{Fault::data, place + problem.what()};
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void require_angles(const std::string& path, const model::Poses& poses, int frames, double start_deg, double step_deg) {
+  if (frames > 0 && poses.size() != static_cast<std::size_t>(frames)) {
+    throw Error{Fault::data, path + ": has " + std::to_string(poses.size()) + " poses, but the stack has " +
+                                 std::to_string(frames) + " frames; one a frame is needed"};
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double want = start_deg + static_cast<double>(k) * step_deg;
+    if (std::abs(poses[k].angle_deg - want) <= 0.01 * std::abs(step_deg)) continue;
+    throw Error{Fault::data, path + ": pose " + std::to_string(k) + " is at " + format_number(poses[k].angle_deg) +
+                                 " degrees, but frame " + std::to_string(k) + " is at " + format_number(want) +
+                                 "; the step is 360 / --angles"};
+  }
+}
+
+WobbleRecord read_wobble(const std::string& path, const model::Printer& printer, int direction) {
+  constexpr std::uint64_t size_limit = std::uint64_t{1} << 20;
+  const Json record = Json::parse(read_all(path, Content::text, size_limit), nullptr, false);
+  const auto refuse = [&](const std::string& why) { return Error{Fault::data, path + ": " + why}; };
+  if (!record.is_object() || record.value("schema", "") != "vam-calibration/1") {
+    throw refuse("is not a record of vam-calibrate");
+  }
+  const std::string scan = record.value("scan", "");
+  const auto number = [&](const char* name) {
+    const Json* value = record.contains("values") && record["values"].contains(name) ? &record["values"][name] : nullptr;
+    if (value == nullptr || !value->is_object() || !value->contains("value") || !(*value)["value"].is_number()) {
+      throw refuse("knows no " + std::string(name) +
+                   "; needed is a record of vam-calibrate axis, or of edges at several stage angles");
+    }
+    return (*value)["value"].get<double>();
+  };
+  if (scan != "edges" && scan != "axis") throw refuse("is a record of " + scan + ", not of edges or axis");
+  // At the phase the vial is furthest along the columns, which lie along +x turned by the azimuth.
+  const double azimuth_deg = scan == "axis" ? printer.camera.azimuth_deg : 0;
+  return {number("wobble_mm"), azimuth_deg + direction * number("wobble_phase")};
+}
+
+}  // namespace vam::io

@@ -1,0 +1,24 @@
+// Poses that follow from a few numbers.
+#pragma once
+
+#include "model/grid.hpp"
+#include "model/pose.hpp"
+#include "model/printer.hpp"
+
+namespace vam::light {
+
+/// A vial whose axis circles the rotation axis: at stage angle theta it stands at radius_mm in the direction
+/// lab_angle_deg - direction * theta of the laboratory, from +x towards +y [physics §11]. One turn.
+[[nodiscard]] model::Poses wobble_poses(double radius_mm, double lab_angle_deg, int direction, int angles);
+
+/// A part taller than the picture, lifted by pitch_mm a turn (lowered, if negative): the whole grid passes all rows, in
+/// as many whole turns as that takes, midway in their middle. Every slice is in the picture for the picture's height
+/// over the pitch, in turns. Throws Fault::usage when that is less than half a turn.
+[[nodiscard]] model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid, double pitch_mm,
+                                       int angles);
+
+/// Throws Fault::data where poses displace the vial and the part reaches beyond the writable radius: the rays that fold
+/// there are known for a vial in its place only.
+void require_in_reach(const model::Poses& poses, const model::Printer& printer, double judged_mm);
+
+}  // namespace vam::light
