@@ -50,9 +50,9 @@ void run(const cli::App& app, Options& options) {
     if (!input.empty()) io::refuse_same_file(input, options.output);
   }
 
-  const solid::Writable room = options.extent == "resin"
-                                   ? solid::whole_resin(printer)
-                                   : solid::writable(printer, optics::writable_radius_mm(printer));
+  solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
+                                                   : solid::writable(printer, optics::writable_radius_mm(printer));
+  if (options.any_height) room.low_mm = -(room.high_mm = solid::any_height_mm);
   const solid::Part part = part_of(options, room);
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject);
   double radius_mm = options.extent == "part" ? 0 : room.radius_mm;

@@ -10,8 +10,8 @@
 namespace vam::light {
 
 /// The grid of the dose when none is given: cubes as high as a slice, a square around the axis that holds every voxel
-/// that can be lit from all sides (projector) or the detector (virtual), or of size_mm; as high as the stack, and as its
-/// poses lift the part past the rows. Throws Fault::data when voxels could not be cubes.
+/// that can be lit from all sides (projector) or the detector (virtual), or of size_mm; as high as the stack, and as
+/// its poses lift the part past the rows. Throws Fault::data when voxels could not be cubes.
 [[nodiscard]] model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& info,
                                     std::optional<double> size_mm);
 

@@ -35,12 +35,9 @@ FoundRay ray_at(const LevelRays& light, double x_mm, double y_mm, double z_mm, c
 }
 
 TableNode node_of(const FoundRay& level, const FoundRay& middle, const FoundRay& top) {
-  return {even_fit(level.x_p_mm, middle.x_p_mm, top.x_p_mm),
-          even_fit(level.row, middle.row, top.row),
-          even_fit(level.strength, middle.strength, top.strength),
-          even_fit(level.spacing, middle.spacing, top.spacing),
-          static_cast<float>(std::cos(level.delta_rad)),
-          static_cast<float>(std::sin(level.delta_rad))};
+  return {even_fit(level.x_p_mm, middle.x_p_mm, top.x_p_mm),       even_fit(level.row, middle.row, top.row),
+          even_fit(level.strength, middle.strength, top.strength), even_fit(level.spacing, middle.spacing, top.spacing),
+          static_cast<float>(std::cos(level.delta_rad)),           static_cast<float>(std::sin(level.delta_rad))};
 }
 
 TableNode node_over_heights(const LevelRays& light, double x_mm, double y_mm, const FoundRay& level,

@@ -20,8 +20,7 @@ double climb_ratio(const model::Printer& printer, double radius_mm) {
 
 }  // namespace
 
-Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm,
-                  const model::Poses& poses) {
+Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm, const model::Poses& poses) {
   Margin margin;
   const double rim =
       0.5 * grid.voxel_mm + std::min({-grid.x_mm(0), -grid.y_mm(0), grid.x_mm(grid.nx - 1), grid.y_mm(grid.ny - 1)});

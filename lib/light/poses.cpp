@@ -28,11 +28,10 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   const double part_middle_mm = scale * grid.z_mm(0.5 * (grid.nz - 1));
   const double pitch = std::abs(pitch_mm);
   if (pitch > 2 * picture_mm) {
-    throw Error{Fault::usage, "--helix: at " + format_number(pitch, 4) + " mm a turn a slice passes the picture, " +
-                                  format_number(picture_mm, 4) + " mm high in the resin, in " +
-                                  format_number(picture_mm / pitch, 3) +
-                                  " turns; at least half a turn is needed: give at most " +
-                                  format_number(2 * picture_mm, 4)};
+    throw Error{Fault::usage,
+                "--helix: at " + format_number(pitch, 4) + " mm a turn a slice passes the picture, " +
+                    format_number(picture_mm, 4) + " mm high in the resin, in " + format_number(picture_mm / pitch, 3) +
+                    " turns; at least half a turn is needed: give at most " + format_number(2 * picture_mm, 4)};
   }
   constexpr double rounding = 1e-6;
   const double turns = std::ceil((part_mm + picture_mm) / pitch - rounding);
@@ -40,7 +39,8 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   model::Poses poses;
   for (int k = 0; k < frames; ++k) {
     const double turned = (k + 0.5) / angles - 0.5 * turns;
-    poses.push_back({360.0 * k / angles, 0, 0, picture_middle_mm - part_middle_mm + pitch_mm * turned, model::Moves::vial});
+    poses.push_back(
+        {360.0 * k / angles, 0, 0, picture_middle_mm - part_middle_mm + pitch_mm * turned, model::Moves::vial});
   }
   return poses;
 }

@@ -251,8 +251,8 @@ void TileLight::give(const RayNodes& nodes, int angle, std::span<Slab> sinograms
   light_.assign(product(columns_, rows_), 0.0F);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
-  Kernels::best().scatter(voxels_.data() + voxel_gap, taps_, voxels().data(), count(), chunk_.width(),
-                          rays_.climbs(), columns());
+  Kernels::best().scatter(voxels_.data() + voxel_gap, taps_, voxels().data(), count(), chunk_.width(), rays_.climbs(),
+                          columns());
   put_back(angle, sinograms);
 }
 

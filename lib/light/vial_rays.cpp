@@ -40,8 +40,7 @@ auto best_kernel() {
 double VialRays::top_mm() const {
   const int slices = (setup_.grid.nz + lanes - 1) / lanes * lanes;
   const model::Range lift = model::lift_mm(setup_.poses);
-  const double top =
-      std::max(std::abs(height_mm(0) + lift.least), std::abs(height_mm(slices - 1) + lift.most));
+  const double top = std::max(std::abs(height_mm(0) + lift.least), std::abs(height_mm(slices - 1) + lift.most));
   if (!posed()) return top;
   constexpr double lower = 1.25;  // light may cross a slice that its row is far above
   const double rows_mm = std::max(std::abs(std::max(setup_.lowest_mm, row_mm(0))),
@@ -129,7 +128,8 @@ bool VialRays::lit(int first, int slices, int frame) const {
   const double top = height_mm(first + slices - 1) + posed_.lift_mm(frame);
   const auto least = static_cast<double>(least_row_);
   const auto most = static_cast<double>(most_row_);
-  return top * (top > 0 ? most : least) > row_mm(first_row_ - 1) && bottom * (bottom > 0 ? least : most) < row_mm(end_row_);
+  return top * (top > 0 ? most : least) > row_mm(first_row_ - 1) &&
+         bottom * (bottom > 0 ? least : most) < row_mm(end_row_);
 }
 
 HeightScale VialRays::posed_scale(int first, int slices, int frame) const {
@@ -244,8 +244,8 @@ void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count
 void VialRays::find_taps(const RayNodes& nodes, const RaySource* rays, int count, int angle, int slices,
                          RayTaps& taps) const {
   const auto a = static_cast<std::size_t>(angle);
-  take_from(nodes, rays, count,
-            {angle * table_.phases, table_.phases, table_.directions, cosines_[a], sines_[a]}, slices, taps);
+  take_from(nodes, rays, count, {angle * table_.phases, table_.phases, table_.directions, cosines_[a], sines_[a]},
+            slices, taps);
 }
 
 }  // namespace vam::light

@@ -26,7 +26,8 @@ struct VialSetup {
   double first_row_mm = 0;  // z_p of row 0, from the lens's axis up; rows follow in voxel_mm
   double lowest_mm = -1e9;  // z_p of the projector's rows: what lies beyond stays dark where rays climb
   double highest_mm = 1e9;
-  model::Poses poses;  // one a row of the turn, which may then be any number of turns; none: the vial stands in its place
+  model::Poses
+      poses;  // one a row of the turn, which may then be any number of turns; none: the vial stands in its place
 
   /// Where the part stands at that row of the turn.
   [[nodiscard]] double part_angle_rad(int row) const {

@@ -31,8 +31,7 @@ FoundRay begin_at(const RayTable& table, double r_mm, double turn) {
 
 }  // namespace
 
-VialShift::VialShift(const RayTable::Setup& setup, const RayTable& table, double largest_mm)
-    : largest_mm_(largest_mm) {
+VialShift::VialShift(const RayTable::Setup& setup, const RayTable& table, double largest_mm) : largest_mm_(largest_mm) {
   const double inside = table.inner.pitch_mm * (table.inner.rows - 1);
   rows_ = std::max(2, static_cast<int>(std::ceil(inside / table.reach_mm * rows_per_reach)) + 1);
   pitch_mm_ = inside / (rows_ - 1);

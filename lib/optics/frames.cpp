@@ -17,7 +17,7 @@ std::string range(double low, double high) { return format_number(low) + " to " 
 
 void require_projector_stack(const std::string& subject, const model::StackInfo& info, const FramePlace& place) {
   const double turn_deg = std::abs(info.angle_step_deg) * info.height;
-  if (std::abs(turn_deg - 360) > 1e-3) {
+  if (info.poses.empty() && std::abs(turn_deg - 360) > 1e-3) {
     throw Error{Fault::data, subject + ": its " + std::to_string(info.height) + " angles span " +
                                  format_number(turn_deg) + " degrees, not one turn of 360"};
   }
@@ -57,7 +57,8 @@ FrameComposer::FrameComposer(std::string subject, const model::StackInfo& info, 
     : subject_(std::move(subject)),
       info_(info),
       place_(place),
-      column_peak_(static_cast<std::size_t>(std::max(place.columns, 0)) * 3, 0.0F) {
+      column_peak_(static_cast<std::size_t>(std::max(place.columns, 0)) * 3, 0.0F),
+      repeats_(model::repeat(info.poses)) {
   require_projector_stack(subject_, info, place);
 }
 
@@ -161,7 +162,8 @@ void FrameComposer::check() const {
 
 void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {
   if (slice.width == 0) return;
-  const int a = (angle % info_.height + info_.height) % info_.height;
+  const int wrapped = (angle % info_.height + info_.height) % info_.height;
+  const int a = repeats_ ? wrapped : std::clamp(angle, 0, info_.height - 1);
   const float* from = slice.values.data() + static_cast<std::size_t>(a) * slice.width;
   float* to = row + slice.first;
   for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
@@ -186,6 +188,20 @@ Image FrameComposer::frame(double angle_deg, double span_deg) const {
     }
   }
   return image;
+}
+
+double turns_of(const model::StackInfo& info) {
+  return info.poses.empty() ? 1 : info.height * std::abs(info.angle_step_deg) / 360;
+}
+
+double turns_to_show(const model::StackInfo& info, std::optional<double> asked, double usual) {
+  if (info.poses.empty()) return asked.value_or(usual);
+  const double own = turns_of(info);
+  const double turns = asked.value_or(own);
+  if (model::repeat(info.poses) || std::abs(turns / own - 1) < 1e-6) return turns;
+  throw Error{Fault::usage,
+              "--turns: " + format_number(turns) + " asked for, but the poses of the stack do not return " +
+                  "to the first one: it is shown once, which takes " + format_number(own) + "; omit the option"};
 }
 
 void orient(Image& image, const std::string& orientation) {
@@ -215,6 +231,14 @@ model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace&
   info.z_start_mm = (upside_down ? place.axis_row - (place.rows - 1) : place.axis_row) * place.pixel_mm;
   info.angle_start_deg = 0;
   info.angle_step_deg = schedule.step_deg;
+  info.poses.clear();
+  for (int n = 0; n < schedule.count && !sinogram.poses.empty(); ++n) {
+    const double frame = (schedule.angle_deg(n) - sinogram.angle_start_deg) / sinogram.angle_step_deg;
+    const double round =
+        model::repeat(sinogram.poses) ? frame - sinogram.height * std::floor(frame / sinogram.height) : frame;
+    model::Pose& pose = info.poses.emplace_back(model::pose_between(sinogram.poses, round));
+    pose.angle_deg = schedule.angle_deg(n);
+  }
   return info;
 }
 

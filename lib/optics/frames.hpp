@@ -1,6 +1,7 @@
 // From sinograms to what a projector shows: slices by angles becomes frame by frame.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,8 @@ struct FramePlace {
 /// x angles x slices x columns.
 class FrameComposer {
  public:
-  /// `subject` begins messages. Throws Fault::data unless the rows of the stack are one turn, its width the projector's
-  /// columns and its pitch the projector's pixel.
+  /// `subject` begins messages. Throws Fault::data unless the rows of the stack are one turn, or have poses, its width
+  /// is the projector's columns and its pitch the projector's pixel.
   FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place);
 
   /// The next slice, at z; columns are moved by the column offset (linear interpolation). Throws Fault::data for values
@@ -56,7 +57,8 @@ class FrameComposer {
 
   /// What the projector must show around one stage angle, over the span that the stage turns meanwhile, in the units of
   /// the stack: interpolated between the sinogram's angles, or averaged over those that the span covers; likewise from
-  /// slices to rows. Many threads may ask at once.
+  /// slices to rows. The stack is repeated turn by turn, but for poses that do not return to the first one: beyond the
+  /// ends the last frame holds. Many threads may ask at once.
   [[nodiscard]] Image frame(double angle_deg, double span_deg) const;
 
  private:
@@ -80,13 +82,22 @@ class FrameComposer {
   std::vector<Slice> slices_;
   std::vector<float> column_peak_;  // largest value on device column index - columns, three times as many columns
   float peak_ = 0;
+  bool repeats_ = true;
 };
+
+/// Turns that a sinogram stack covers: 1 unless it has poses.
+[[nodiscard]] double turns_of(const model::StackInfo& info);
+
+/// Turns for which the stack is shown: `asked`, or else its own where it has poses, or else `usual`. Throws
+/// Fault::usage for any other number than its own where the poses do not return to the first one.
+[[nodiscard]] double turns_to_show(const model::StackInfo& info, std::optional<double> asked, double usual);
 
 /// Flips columns (left-right), rows (up-down) or both, for a projector that is mounted that way: "normal",
 /// "flip-columns", "flip-rows" or "rotate-180".
 void orient(Image& image, const std::string& orientation);
 
-/// The stack that frames make: kind, space, size, pitches, angles; row_mm is negative while row 0 is the uppermost.
+/// The stack that frames make: kind, space, size, pitches, angles, poses; row_mm is negative while row 0 is the
+/// uppermost.
 [[nodiscard]] model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace& place,
                                            const FrameSchedule& schedule, const std::string& orientation);
 

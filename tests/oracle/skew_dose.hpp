@@ -18,12 +18,12 @@ struct SkewPose {
 
 struct SkewDose {
   Bench bench;
-  double pixel = 0;              // pitch in the plane of the axis, across and along z
-  int columns = 0, rows = 0;     // the axis in the middle of the columns
-  double first_row = 0;          // z of row 0 in the plane of the axis, from the lens's axis; rows go up
-  int rays = 0;                  // across and along a pixel
-  double absorption = 0;         // per length
-  int angles = 0;                // over `turns` turns, from 0
+  double pixel = 0;           // pitch in the plane of the axis, across and along z
+  int columns = 0, rows = 0;  // the axis in the middle of the columns
+  double first_row = 0;       // z of row 0 in the plane of the axis, from the lens's axis; rows go up
+  int rays = 0;               // across and along a pixel
+  double absorption = 0;      // per length
+  int angles = 0;             // over `turns` turns, from 0
   double turns = 1;
   std::vector<SkewPose> poses;   // one an angle, or none
   int size = 0, slices = 0;      // voxels: size x size around the axis

@@ -101,8 +101,8 @@ double blur_mm(const Options& options, const model::Printer& printer) {
   return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
 }
 
-Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options,
-               const model::Printer& printer, const Place& place, io::SparseVolume& volume) {
+Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options, const model::Printer& printer,
+               const Place& place, io::SparseVolume& volume) {
   const bool projector = info.space == model::Space::projector;
   if (options.in_plane && !projector) {
     throw Error{Fault::usage, "--in-plane: applies to a projector sinogram; the beams of a virtual one are level"};

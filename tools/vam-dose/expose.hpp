@@ -27,9 +27,9 @@ struct Exposed {
 /// Standard deviation in mm of the blur by beam and resin; 0 if neglected.
 [[nodiscard]] double blur_mm(const Options& options, const model::Printer& printer);
 
-/// `info`: of the stack, with the poses to judge it by. Fills the volume, a batch of slices at a time, in units of intensity times radian. Warns of negative
-/// intensities and of part voxels that are in shadow.
-[[nodiscard]] Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options, const model::Printer& printer,
-                             const Place& place, io::SparseVolume& volume);
+/// `info`: of the stack, with the poses to judge it by. Fills the volume, a batch of slices at a time, in units of
+/// intensity times radian. Warns of negative intensities and of part voxels that are in shadow.
+[[nodiscard]] Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options,
+                             const model::Printer& printer, const Place& place, io::SparseVolume& volume);
 
 }  // namespace vam::dose_tool

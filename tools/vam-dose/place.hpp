@@ -20,8 +20,8 @@ struct Place {
   double judged_mm = 0;  // radius of the resin that is judged
 };
 
-/// The stack with the poses to judge it by: --poses, or its own. Throws Fault::usage where they do not apply, Fault::data
-/// where they are not one a frame.
+/// The stack with the poses to judge it by: --poses, or its own. Throws Fault::usage where they do not apply,
+/// Fault::data where they are not one a frame.
 [[nodiscard]] model::StackInfo posed(model::StackInfo info, const Options& options);
 
 /// The grid of --like, or one around what the light reaches. Throws Fault::data when an exposure is to be planned

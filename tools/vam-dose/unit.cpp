@@ -49,7 +49,9 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
              const model::StackInfo& light) {
   const light::LightSeen& seen = exposed.light;
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
-  report["model"] = light.space != model::Space::projector ? "parallel" : exposed.climbs ? "chief rays" : "level chief rays";
+  report["model"] = light.space != model::Space::projector ? "parallel"
+                    : exposed.climbs                       ? "chief rays"
+                                                           : "level chief rays";
   report["poses"] = light.poses.size();
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["efficiency"] = seen.efficiency.value();

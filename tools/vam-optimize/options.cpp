@@ -172,10 +172,11 @@ void declare(cli::App& app, Options& options) {
              "Number of detector bins of a parallel beam, each one voxel wide.");
   app.default_is("as many as cover the writable circle");
   app.group("Poses of vial and part");
-  app.option("--poses", "FILE", options.poses,
-             "Where vial or part stand in every frame: a table (CSV) with the columns "
-             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame, 360 / --angles degrees apart, for any number of turns. "
-             "Becomes part of the stack.");
+  app.option(
+      "--poses", "FILE", options.poses,
+      "Where vial or part stand in every frame: a table (CSV) with the columns "
+      "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame, 360 / --angles degrees apart, for any number of turns. "
+      "Becomes part of the stack.");
   app.option("--helix", "MM", options.helix_mm, cli::any,
              "For parts taller than the picture: the vial is lifted (below 0: lowered) by so much a turn, in as many "
              "turns as the whole part takes to pass the picture.");

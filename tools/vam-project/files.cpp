@@ -11,7 +11,7 @@ namespace vam::project {
 
 void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
   const model::Projector& projector = printer.projector;
-  const double turns = options.turns.value_or(printer.stage.turns);
+  const double turns = optics::turns_to_show(reader.info(), options.turns, printer.stage.turns);
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   const Light light = read_light(options, reader, projector);
   const double peak = options.peak.value_or(light.peak);

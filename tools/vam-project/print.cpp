@@ -6,6 +6,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
+#include "optics/frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
@@ -37,9 +38,22 @@ int whole_turns(const Options& options, const model::Printer& printer) {
   throw Error{Fault::usage, "--turns: a live print needs whole turns, not " + format_number(turns)};
 }
 
+// A screen shows one turn's frames again and again, and nothing here lifts the vial.
+void require_one_turn(const Options& options, const model::StackInfo& info, int turns) {
+  if (info.poses.empty() ||
+      (std::abs(optics::turns_of(info) - 1) < 1e-6 && (turns == 1 || model::repeat(info.poses)))) {
+    return;
+  }
+  throw Error{Fault::usage, options.input +
+                                ": its poses are not those of one turn that repeats, as a live print does; " +
+                                "write the frames to a file (-o FILE.mkv) for the machine that moves the vial, or give "
+                                "--turns 1 to show a single turn"};
+}
+
 // One turn's frames into the display, then the print: the angle of the stage chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, int turns,
                 io::StackReader& reader, Live& live) {
+  require_one_turn(options, reader.info(), turns);
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.peak.value_or(light.peak);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);

@@ -35,6 +35,9 @@ void declare(cli::App& app, Options& options) {
   app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
   app.was("--no-center");
+  app.flag("--any-height", options.any_height,
+           "The part may be taller than the projector's rows, for vam-optimize --helix and --poses, which lift it past "
+           "them.");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
   app.default_is("1/M_vp of the printer");
   cli::add_printer(app, options.printer);

@@ -25,6 +25,7 @@ struct Options {
   solid::Placement placement;
   std::vector<double> rotate_deg;
   bool no_centre = false;
+  bool any_height = false;
   std::optional<double> stretch_z;
   std::string report;
   cli::PrinterOptions printer;

@@ -55,7 +55,8 @@ WobbleRecord read_wobble(const std::string& path, const model::Printer& printer,
   }
   const std::string scan = record.value("scan", "");
   const auto number = [&](const char* name) {
-    const Json* value = record.contains("values") && record["values"].contains(name) ? &record["values"][name] : nullptr;
+    const Json* value =
+        record.contains("values") && record["values"].contains(name) ? &record["values"][name] : nullptr;
     if (value == nullptr || !value->is_object() || !value->contains("value") || !(*value)["value"].is_number()) {
       throw refuse("knows no " + std::string(name) +
                    "; needed is a record of vam-calibrate axis, or of edges at several stage angles");

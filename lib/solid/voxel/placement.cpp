@@ -145,7 +145,7 @@ void require_writable(const PlacedExtent& part, const Writable& room, double vox
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
                                  format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
                                  format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
-                                 " mm; --fit-writable shrinks it"};
+                                 " mm; --fit-writable shrinks it, --any-height allows it for vam-optimize --helix"};
   }
 }
 

@@ -30,6 +30,9 @@ struct Writable {
   double high_mm = 0;
   bool from_all_sides = true;  // lit so up to the radius; else it is the resin's
 };
+/// As high as no part is.
+inline constexpr double any_height_mm = 1e6;
+
 /// Of that radius (optics::writable_radius_mm), as high as the projector's rows.
 [[nodiscard]] Writable writable(const model::Printer& printer, double radius_mm);
 

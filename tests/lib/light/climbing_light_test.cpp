@@ -152,7 +152,7 @@ TEST_CASE("in every pose of vial and part the dose is that deposited ray by ray"
   for (const Bench& b : {posed(still, model::Moves::part, 0.6, 0.8), posed(short_lens, model::Moves::vial, 0.9, -0.4),
                          posed(bath, model::Moves::vial, 0.9, 0.8)}) {
     const Difference d = compare(b, smooth);
-    CHECK(d.rms < 7e-3);  // the oracle's own grain, as without poses
+    CHECK(d.rms < 7e-3);               // the oracle's own grain, as without poses
     CHECK(std::abs(d.mean) < 2.5e-3);  // 2.0e-3 of them are there without poses, too
   }
 }

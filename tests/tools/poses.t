@@ -1,0 +1,103 @@
+# Poses: vials that wobble, parts that sink, helices; from table and record to light, dose and frames, and every wrong
+# input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+poses="python3 $VAM_SOURCE/tests/tools/poses.py"
+exr="python3 $VAM_SOURCE/tests/tools/exr.py"
+
+$poses wobble 60 0.3 >wobble.csv
+$poses sink 60 1 >sink.csv
+print_of() {  # print_of STACK NAME OPTION...: dose and score of a stack
+  stack=$1; name=$2; shift 2
+  vam-dose "$stack" "$@" --like part.vdb -o "$name.vdb" && vam-score "$name.vdb" --target part.vdb --report "$name.json"
+}
+
+ok "a part" vam-slice --shape gyroid:diameter=8,height=5 --voxel 0.25 -o part.vdb
+quiet "light for nothing displaced" vam-optimize --angles 60 part.vdb -o plain.exr
+quiet "light for a vial that wobbles" vam-optimize --angles 60 --poses wobble.csv part.vdb -o wobble.exr
+quiet "light for a part that sinks" vam-optimize --angles 60 --poses sink.csv part.vdb -o sink.exr
+ok "print" print_of plain.exr plain
+ok "print in the wobbling vial: the stack knows the poses" print_of wobble.exr wobble
+ok "print while sinking" print_of sink.exr sink
+ok "print of light that does not know of the wobble" print_of plain.exr unknown --poses wobble.csv
+ok "print of light that does not know of the sinking" print_of plain.exr unsunk --poses sink.csv
+
+# 0.3 mm of wobble, known: IoU at least 0.999; 1 mm of sinking, known: at most 0.3 voxels of the print's surface.
+holds "a known wobble does no harm" "$(json wobble.json iou) >= 0.999 && $(json wobble.json ver) == 0"
+holds "an unknown one does" "$(json unknown.json iou) < 0.98"
+holds "nor does known sinking" "$(json sink.json iou) >= 0.999 && $(json sink.json ver) == 0"
+holds "unknown sinking does" "$(json unsunk.json iou) < 0.9"
+ok "surface of the print while sinking, against the print without" vam-sdf sink.vdb plain.vdb --isovalue 0.8 \
+  --reference-isovalue 0.8 --align none --report surface.json
+holds "within 0.3 voxels RMS" "$(json surface.json print_to_reference.rms_mm) <= 0.3 * 0.25"
+
+# What the stack holds, and its frames
+is "one line a frame and the header" "$($exr attr sink.exr vam:poses | grep -c ,)" 61
+is "the report counts the poses" "$(vam-dose sink.exr --like part.vdb --report dose.json -o again.vdb && json dose.json poses)" 60
+cmp_dose() { vam-dose "$1" --poses "$2" --size 5 -o a.vdb && vam-dose "$1" --size 5 -o b.vdb && vam-view a.vdb --export a.nrrd && vam-view b.vdb --export b.nrrd && tail -c 8000 a.nrrd >a.raw && tail -c 8000 b.nrrd >b.raw; }
+ok "the same table again" cmp_dose sink.exr sink.csv
+same "gives the same dose" a.raw b.raw
+sixty="--set projector.fps=10 --set stage.speed_deg_s=60"
+quiet "frames of light with poses" vam-project sink.exr $sixty -o frames/ --report frames.json
+is "one turn, whatever stage.turns is" "$(vam-project sink.exr $sixty --set stage.turns=3 -o three/ --report three.json; json three.json frames)" 60
+fails 64 'shown once' vam-project sink.exr $sixty --turns 2 -o two/
+quiet "a wobble repeats" vam-project wobble.exr $sixty --turns 2 -o two/
+fails 64 'not those of one turn that repeats' vam-project sink.exr --turns 2 -o null:
+fails 64 'do not return to the first one' vam-dose sink.exr --like part.vdb --exposure-plan --set resin.absorption_per_mm=0.01 \
+  --set resin.critical_dose_mj_cm3=100 -o plan.vdb
+
+# A helix: three turns for a part that is three pictures high
+picture="--set projector.columns=240 --set projector.rows=40 --set projector.pixel_mm=0.1 --set projector.axis_column=119.5 --set projector.axis_row=19.5 --set projector.lens_distance_mm=120"
+fails 65 'any-height' vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $picture -o tall.vdb
+ok "a tall part" vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $picture --any-height -o tall.vdb
+quiet "light for a helix" vam-optimize --angles 60 --helix 5.2 $picture tall.vdb -o helix.exr
+is "three turns" "$($exr attr helix.exr vam:poses | grep -c ,)" 181
+ok "its dose" vam-dose helix.exr $picture --like tall.vdb -o helix.vdb
+ok "prints without an error" vam-score helix.vdb --target tall.vdb $picture --require 'ver=0,iou>=0.9999'
+vam-view helix.vdb --export helix.nrrd
+holds "without a seam" "$($poses seam helix.nrrd 2.5 0.25) <= 0.01"
+quiet "its frames" vam-project helix.exr $picture $sixty -o helix/ --report helix.json
+is "as many as there are poses" "$(json helix.json frames)" 180
+ok "downwards, too" vam-optimize --angles 60 --helix -5.2 --iterations 1 $picture tall.vdb -o down.exr
+fails 64 'at least half a turn' vam-optimize --helix 9 $picture tall.vdb -o none.exr
+ok "the doses without --like reach as high as the helix lifts" vam-dose helix.exr $picture -o high.vdb
+
+# Records of wobble: the projector's columns see it, or a camera at an azimuth
+record() { printf '{"schema":"vam-calibration/1","scan":"%s","values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":%s}}}' "$1" "$2" >"$3"; }
+record edges 28.6478898 edges.json
+record axis -61.3521102 axis.json
+for scan in edges axis; do
+  ok "wobble from a record of $scan" vam-optimize --method fbp --angles 60 --wobble $scan.json part.vdb -o $scan.exr
+done
+is "is that of the table, to 1e-6 mm" "$($exr attr edges.exr vam:poses | cut -c1-9)" "$($exr attr axis.exr vam:poses | cut -c1-9)"
+vam-optimize --method fbp --angles 60 --poses wobble.csv part.vdb -o table.exr
+for scan in edges axis; do
+  is "the same light from the record of $scan and the table" "$(vam-dose $scan.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)" \
+    "$(vam-dose table.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)"
+done
+printf '{"schema":"vam-calibration/1","scan":"edges","values":{}}' >still.json
+fails 65 'knows no wobble_mm' vam-optimize --wobble still.json part.vdb -o none.exr
+fails 65 'not a record' vam-optimize --wobble wobble.csv part.vdb -o none.exr
+
+# Wrong tables and combinations
+fails 66 'missing.csv' vam-optimize --poses missing.csv part.vdb -o none.exr
+fails 65 'is at 6 degrees, but frame 1 is at 1' vam-optimize --poses wobble.csv part.vdb -o none.exr
+sed 's/vial/lens/' wobble.csv >lens.csv
+fails 65 "lens.csv:2: a pose moves 'lens', not vial or part" vam-optimize --angles 60 --poses lens.csv part.vdb -o none.exr
+sed 's/,0,vial/,nan,vial/' wobble.csv >nan.csv
+fails 65 "nan.csv:2: dz_mm" vam-optimize --angles 60 --poses nan.csv part.vdb -o none.exr
+sed 's/,0,vial/,99999,vial/' wobble.csv >far.csv
+fails 65 'check the unit' vam-optimize --angles 60 --poses far.csv part.vdb -o none.exr
+$poses wobble 60 3 >wide.csv
+fails 65 'align the vial' vam-optimize --angles 60 --poses wide.csv part.vdb -o none.exr
+: >empty.csv
+fails 65 'empty.csv' vam-optimize --angles 60 --poses empty.csv part.vdb -o none.exr
+head -n 31 wobble.csv >half.csv
+fails 65 'one a frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
+fails 64 'give one of them' vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
+fails 64 'no vial to move' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
+fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb
+fails 64 'do not return' vam-optimize --angles 60 --poses sink.csv --turns 3 --set resin.absorption_per_mm=0.01 \
+  --set resin.critical_dose_mj_cm3=100 part.vdb -o none.exr
+ok "a shaft" vam-slice --shape cylinder:diameter=6,height=3 --insert-shape cylinder:diameter=2,height=3 --voxel 0.5 -o shaft.vdb
+fails 65 'insert' vam-optimize --angles 60 --poses wobble.csv shaft.vdb -o none.exr
+done_testing
