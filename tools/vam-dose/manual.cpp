@@ -17,6 +17,9 @@ cli::Manual manual() {
        "Virtual sinograms (vam-sinogram, "
        "vam-optimize --geometry parallel) are back-projected along parallel rays, with absorption if the resin has "
        "any.",
+       "A stack that was made for a vial or part that is displaced while it is shown knows its poses (vam-formats(7), "
+       "Poses), and is judged with them: the dose is then that of all its frames, which may be several turns, and what "
+       "the report says of one turn is said of all frames. --poses judges light with other poses than it was made for.",
        "A grid 'insert' in the volume of --like is an opaque object to print around (overprinting; vam-slice "
        "--insert): every ray ends at the first voxel that is at least half insert, all behind it is in shadow, and "
        "the insert itself absorbs no dose. Voxels of the part that no ray reaches are reported (dark_part_voxels), "
@@ -36,6 +39,12 @@ cli::Manual manual() {
        {"The effect of a telecentric correction on a projector that is not telecentric:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.telecentric=true | "
         "vam-dose --like part.vdb -o wrong.vdb"},
+       {"Light for a vial in its place, in one that wobbles by 0.3 mm:",
+        "seq 0 89 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { t = $1 * 3.14159265 / 45; print 4 * "
+        "$1 "
+        "\",\" 0.3 * cos(t) \",\" -0.3 * sin(t) \",0,vial\" }' >wobble.csv && vam-optimize --angles 90 part.vdb | "
+        "vam-dose "
+        "--poses wobble.csv --like part.vdb -o wobbled.vdb"},
        {"A handle printed around the shaft of a screwdriver:",
         "vam-slice --shape handle --insert-shape screwdriver --voxel 0.8 -o handle.vdb && vam-optimize --angles 60 "
         "handle.vdb | vam-dose --like handle.vdb | vam-score --target handle.vdb"},

@@ -48,6 +48,15 @@ std::vector<std::string> description() {
        "at either end of each tolerance, the tolerance that costs most, and the yield, all at one exposure, judged by "
        "the simulation of vam-dose with the grey levels of --bits. --until and --trace are about the printer as set; "
        "all --iterations are done unless they or --patience are given.",
+       "Vial and part need not stand still: with --poses each frame has a displacement of the vial with its contents "
+       "or "
+       "of the part in it (vam-formats(7), Poses), as of a part that sinks by a known curve; --wobble takes that of a "
+       "vial off the rotation axis from a calibration record; --helix lifts a part that is taller than the picture "
+       "past "
+       "it (vam-slice --any-height). Light for such frames is of no use without them: the table is part of the stack. "
+       "It is computed frame by frame, which takes three to five times as long. Inserts cannot be combined with it, "
+       "nor "
+       "a displaced vial with a part beyond the writable radius.",
        "A grid 'insert' in the same file is an opaque object to print around (overprinting): it casts a "
        "shadow. Part voxels in its shadow from all sides are reported and excluded.",
        "Absorption by the resin (resin.absorption_per_mm) attenuates the beam: e^(-mu s), s the path length from the "
@@ -84,6 +93,15 @@ cli::Manual manual() {
         "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
        {"For printers whose axis and lamp are not quite as set:",
         "vam-optimize --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o robust.exr"},
+       {"A part three times as tall as the picture, in three turns:",
+        "printer='--set projector.rows=40 --set projector.axis_row=19.5 --set projector.pixel_mm=0.1 --set "
+        "projector.columns=240 --set projector.axis_column=119.5' && vam-slice --shape gyroid:diameter=8,height=11 "
+        "--voxel 0.25 $printer --any-height -o tall.vdb && vam-optimize --angles 60 --helix 5.2 $printer tall.vdb -o "
+        "helix.exr"},
+       {"A part that sinks by 1 mm during the turn:",
+        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" -$1 / 59 "
+        "\",part\" }' "
+        ">sinking.csv && vam-optimize --angles 60 --poses sinking.csv part.vdb -o sinking.exr"},
        {"Graded stiffness: a bar whose dose rises from one grey image to the next, each to 0.25:",
         "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
         "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "

@@ -25,6 +25,10 @@ cli::Manual manual() {
        "around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its rows; "
        "otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "
        "angles, averaged over the angles that it spans, so that a turn delivers the same dose.",
+       "A stack with poses (vam-optimize --poses, --helix) is shown for the turns that it has, whatever stage.turns "
+       "is; "
+       "where its poses lead back to the first one, --turns repeats it. Moving the vial is left to the machine: index "
+       "and time of each frame are those of the table. Live, only poses that repeat every turn can be shown.",
        "Rows: z = 0 is at projector.axis_row, counted from the top, and z points upwards. Slices are interpolated "
        "linearly to rows, or averaged where they are finer than rows. Columns are those of vam-resample, which places "
        "the axis at projector.axis_column; --column-offset shifts them. Intensity outside the projector's columns or "
