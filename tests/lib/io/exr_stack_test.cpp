@@ -211,3 +211,17 @@ TEST_CASE("the wrong kind or space is an error that names it") {
   CHECK(status([&] { require("-", info, model::Kind::frames); }, &line) == 65);
   CHECK(line == "stdin: holds sinogram (virtual), but frames is needed");
 }
+
+TEST_CASE("poses travel in the first header, one a row") {
+  const scratch::Folder folder;
+  auto info = sinogram(4, 3, 2);
+  info.poses = {
+      {0, 0.1, 0, 0, model::Moves::vial}, {1, 0, 0.1, 0, model::Moves::vial}, {2, 0, 0, -2, model::Moves::part}};
+  write_stack(folder / "s.exr", info, {});
+  StackReader reader(folder / "s.exr");
+  CHECK(reader.info().poses == info.poses);
+  CHECK(reader.info().extra == info.extra);
+  info.poses.pop_back();
+  write_stack(folder / "short.exr", info, {});
+  CHECK(status([&] { StackReader{folder / "short.exr"}; }) == 65);
+}

@@ -1,0 +1,42 @@
+#include "model/pose.hpp"
+
+#include <doctest/doctest.h>
+
+#include <stdexcept>
+
+using namespace vam::model;
+
+namespace {
+
+const Poses sinking{{0, 0, 0, 0, Moves::part}, {90, 0.1, -0.25, -1.5, Moves::part}, {180, 0.2, 0, -3, Moves::part}};
+
+}  // namespace
+
+TEST_CASE("a table of poses survives as text, and other texts are refused") {
+  CHECK(parse_poses(poses_text(sinking)) == sinking);
+  CHECK(poses_text({}) == "angle_deg,dx_mm,dy_mm,dz_mm,moves");
+  for (const char* wrong :
+       {"", "angle", "angle_deg,dx_mm,dy_mm,dz_mm,moves\n0,0,0,vial", "angle_deg,dx_mm,dy_mm,dz_mm,moves\n0,0,0,x,vial",
+        "angle_deg,dx_mm,dy_mm,dz_mm,moves\n0,0,0,0,lens"}) {
+    CHECK_THROWS_AS(static_cast<void>(parse_poses(wrong)), std::runtime_error);
+  }
+}
+
+TEST_CASE("extent of poses, and whether they can be repeated") {
+  CHECK(lift_mm(sinking).least == -3);
+  CHECK(lift_mm(sinking).most == 0);
+  CHECK(farthest_mm(sinking, Moves::part) == doctest::Approx(0.269258));
+  CHECK(farthest_mm(sinking, Moves::vial) == 0);
+  CHECK(repeat({}));
+  CHECK(repeat({{0, 1, 0, 0, Moves::vial}, {120, 0, 1, 0, Moves::vial}, {240, -1, 0, 0, Moves::vial}}));
+  Poses helix;
+  for (int k = 0; k < 10; ++k) helix.push_back({36.0 * k, 0, 0, 0.5 * k, Moves::vial});
+  CHECK_FALSE(repeat(helix));
+}
+
+TEST_CASE("between two poses, and beyond the ends") {
+  CHECK(pose_between(sinking, 0.5).dz_mm == -0.75);
+  CHECK(pose_between(sinking, 0.5).angle_deg == 45);
+  CHECK(pose_between(sinking, -2) == sinking.front());
+  CHECK(pose_between(sinking, 9) == sinking.back());
+}
