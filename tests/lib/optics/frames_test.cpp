@@ -283,31 +283,3 @@ TEST_CASE("flatland takes the slice nearest to z; a z outside the stack is an er
   CHECK(frame(3, 4) == doctest::Approx(labelled(info, 1)(15, 3)));
   CHECK(has(error_of([&] { fed(0.16).check(); }, vam::Fault::data), "z = 0.16 mm; its slices lie from -0.1 to 0.1 mm"));
 }
-
-TEST_CASE("a stack with poses is shown for the turns that it has, and does not wrap unless it can be repeated") {
-  StackInfo info = sinograms(12, 8, 1, 0.1, 0.1, 0);
-  info.angle_step_deg = 90;
-  FramePlace place;
-  place.columns = 12;
-  place.rows = 1;
-  place.pixel_mm = 0.1;
-  CHECK(fault_of([&] { FrameComposer("part.exr", info, place); }) == vam::Fault::data);  // two turns
-  for (int k = 0; k < 8; ++k) info.poses.push_back({90.0 * k, 0, 0, 0.1 * k, vam::model::Moves::vial});
-  const FrameComposer helix = composed(info, place);
-  CHECK(helix.frame(450, 90)(5, 0) == 506);  // the fifth of all, in the second turn
-  CHECK(helix.frame(675, 45)(5, 0) == 706);  // past the last one: not the first
-  CHECK(turns_of(info) == 2);
-  CHECK(turns_to_show(info, {}, 5) == 2);
-  CHECK(turns_to_show(info, 2.0, 5) == 2);
-  CHECK(fault_of([&] { static_cast<void>(turns_to_show(info, 4.0, 5)); }) == vam::Fault::usage);
-  const StackInfo frames = frames_info(info, place, frame_schedule(8, 360, 2), "normal");
-  REQUIRE(frames.poses.size() == 16);
-  CHECK(frames.poses[3].dz_mm == doctest::Approx(0.15));
-  CHECK(frames.poses[3].angle_deg == 135);
-
-  for (vam::model::Pose& pose : info.poses) pose.dz_mm = 0;
-  CHECK(composed(info, place).frame(675, 45)(5, 0) == doctest::Approx(0.5 * (706 + 6)));
-  CHECK(turns_to_show(info, 4.0, 5) == 4);
-  info.poses.clear();
-  CHECK(turns_to_show(info, {}, 5) == 5);
-}
