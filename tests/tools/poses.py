@@ -28,7 +28,7 @@ def seam(path, radius, voxel):
     inside = [x + nx * y for y in range(ny) for x in range(nx)
               if math.hypot((x - (nx - 1) / 2) * voxel, (y - (ny - 1) / 2) * voxel) < radius]
     means = [sum(dose[k * nx * ny + p] for p in inside) / len(inside) for k in range(nz)]
-    part = [k for k in range(nz) if means[k] > 0.5 * max(means)]
+    part = [k for k in range(nz) if means[k] > 0.8 * max(means)]
     means = means[part[0] + 3:part[-1] - 2]
     print(max(abs(a - b) for a, b in zip(means, means[1:])) / (sum(means) / len(means)))
 
