@@ -6,6 +6,7 @@
 #include "io/stream/stream.hpp"
 #include "printer.hpp"
 #include "vam-project/files.hpp"
+#include "vam-project/match.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/patterns.hpp"
 #include "vam-project/print.hpp"
@@ -16,9 +17,15 @@ namespace {
 using namespace vam;
 using project::Options;
 
+void freeze(const Options& options, const model::Printer& printer) {
+  require_printer(options, io::StackReader(options.input).info(), printer);
+  project::write_frozen(options.freeze, printer);
+}
+
 void run(const cli::App& app, Options& options) {
   const model::Printer printer = settle(options);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  if (!options.freeze.empty()) return freeze(options, printer);
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);
   if (!options.pattern.plan.name.empty()) return show_pattern(app, options, printer.projector);

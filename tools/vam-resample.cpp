@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/exr/stack_batches.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/climb.hpp"
@@ -70,6 +71,7 @@ void run(const cli::App& app, Options& options) {
                                           : optics::stack_to_virtual(printer, options.alignment, in.info(), how,
                                                                      options.voxel_mm, options.columns);
   job.info.history.push_back(app.history());
+  if (projector) job.info.extra["vam:printer"] = io::printer_settings(printer);
   io::StackWriter out(options.output, job.info, options.stack);
   io::transform(in, out, 16, [&](const std::vector<Image>& slices) {
     std::vector<Image> resampled(slices.size());

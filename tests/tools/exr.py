@@ -2,6 +2,7 @@
 reader.
 
     exr.py make FILE [key=value...]   a sinogram stack; keys: count width height pixel row space kind step value reach
+                                      printer (vam:printer; none)
     exr.py sum FILE                   "parts width height sum" of a stack written to a pipe
     exr.py get FILE part column row   one pixel
     exr.py attr FILE name             one attribute of part 0
@@ -23,6 +24,12 @@ def number(name, value):
     return attribute(name, "double", struct.pack("<d", value))
 
 
+def printer(job):
+    """One with the axis in its middle."""
+    return "projector.columns=%d projector.pixel_mm=%g projector.axis_column=%g" % (
+        job["width"], job["pixel"], (job["width"] - 1) / 2)
+
+
 def header(index, job):
     window = struct.pack("<4i", 0, 0, job["width"] - 1, job["height"] - 1)
     channels = b"Y\0" + struct.pack("<i4B2i", 2, 0, 0, 0, 0, 1, 1) + b"\0"
@@ -41,6 +48,7 @@ def header(index, job):
         text("vam:kind", job["kind"]), text("vam:space", job["space"]), text("vam:history", "made by a test"),
         attribute("vam:count", "int", struct.pack("<i", job["count"])),
         attribute("vam:index", "int", struct.pack("<i", index)),
+        b"" if job["printer"] == "none" else text("vam:printer", job["printer"] or printer(job)),
         number("vam:pixel_mm", job["pixel"]), number("vam:row_mm", job["row"]),
         number("vam:z_mm", index * job["row"]), number("vam:angle_start_deg", 0),
         number("vam:angle_step_deg", job["step"] or 360 / job["height"]), b"\0"])
@@ -128,11 +136,11 @@ def read(path):
 def main(verb, path, *rest):
     if verb == "make":
         job = dict(count=3, width=64, height=60, pixel=0.26, row=0.26, space="virtual", kind="sinogram", step=None,
-                   value=None, reach=0.2)
+                   printer=None, value=None, reach=0.2)
         for pair in rest:
-            key, value = pair.split("=")
+            key, value = pair.split("=", 1)
             whole = key in ("count", "width", "height")
-            job[key] = value if key in ("space", "kind") else int(value) if whole else float(value)
+            job[key] = value if key in ("space", "kind", "printer") else int(value) if whole else float(value)
         make(path, job)
     elif verb == "sum":
         parts, rows = read(path)

@@ -30,6 +30,23 @@ print(*[sum(data[512 * n:512 * n + 512]) for n in (0, 1, 35)], end=" ")
 PY
 same "video and images have the same pixels" images.sums video.sums
 
+# The printer that it was computed for.
+fails 65 'part.exr: was computed for another printer: projector.axis_column 31.5, now 32; vial.radius_mm 12.7, now 6; compute it again .* --accept-printer' \
+  vam-project part.exr -o other.exr --set vial.radius_mm=6 --set projector.axis_column=32
+ok "a difference can be accepted" vam-project part.exr -o other.exr --set vial.radius_mm=6 --accept-printer --report other.json
+is "with a warning, and in the report" "$(grep -c 'warning.*vial.radius_mm 12.7, now 6; accepted' .log/err) $(json other.json printer_differences)" "1 ['vial.radius_mm 12.7, now 6']"
+is "frames name the printer that shows them" "$($exr attr other.exr vam:printer | grep -c 'vial.radius_mm=6')" 1
+quiet "a new calibration of the axis makes no other printer" vam-project part.exr -o near.exr --set projector.axis_column=31.6
+$exr make silent.exr space=projector width=64 height=36 count=3 printer=none
+ok "a sinogram that does not say" vam-project silent.exr -o silent/
+is "is warned of" "$(grep -c 'silent.exr: does not say for which printer' .log/err)" 1
+$exr make garbled.exr space=projector width=64 height=36 count=3 'printer=vial.radius_mm=wide'
+fails 65 'garbled.exr: vam:printer:1: not TOML' vam-project garbled.exr -o garbled/
+ok "what vam-optimize writes serves its printer" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-optimize --iterations 1 -o own.exr && vam-project own.exr -o own/"
+fails 65 'own.exr: was computed for another printer: vial.radius_mm 12.7, now 6' vam-project own.exr -o others/ --set vial.radius_mm=6
+ok "and so does vam-resample" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-sinogram --angles 90 --negative clip | vam-resample -o own2.exr"
+fails 65 'own2.exr: was computed for another printer: resin.index 1.53, now 1.5' vam-project own2.exr -o others/ --set resin.index=1.5
+
 # Transposition: row 5 is slice 0, rows go up; the sinogram's row n is frame n.
 brightest=$($exr get pipe.exr 0 44 3)
 unit=$($exr get part.exr 2 44 0)
@@ -90,7 +107,8 @@ same "1 and 2 threads give identical frames" one.raw two.raw
 fails 65 'virtual.*projector' vam-project virtual.exr -o x/
 fails 65 'light on rows' vam-project part.exr --row-offset -4 -o x/
 fails 65 'light on columns .* projector has columns 0 to 63' vam-project part.exr --column-offset 30 -o x/
-fails 65 '64 columns, but the projector has 32' vam-project part.exr --set projector.columns=32 -o x.exr
+$exr make wide.exr space=projector width=64 height=36 count=3 'printer=projector.columns=32 projector.pixel_mm=0.26 projector.axis_column=31.5'
+fails 65 '64 columns, but the projector has 32' vam-project wide.exr --set projector.columns=32 -o x.exr
 head -c 5000 part.exr >cut.exr
 fails 65 'cut|truncated' vam-project cut.exr -o x/
 $exr make dark.exr space=projector width=64 height=36 value=0

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "io/settings/printer_file.hpp"
 #include "optimize/methods/tolerant.hpp"
 #include "score/exposure.hpp"
 #include "vam-optimize/front.hpp"
@@ -18,7 +19,9 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.count = scene.poses.empty() ? scene.grid.nz : scene.rows;
   info.poses = scene.poses;
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
+  info.extra = target.metadata;
   if (options.geometry == "vial") {
+    info.extra["vam:printer"] = io::printer_settings(scene.printer);
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
     info.pixel_mm = scene.printer.projector.pixel_mm;
@@ -28,7 +31,6 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.units = "1/rad";
   info.history = target.history;
   info.history.push_back(app.history());
-  info.extra = target.metadata;
   info.extra["vam:threshold_dose"] = format_number(options.demands.window.threshold());
   return info;
 }

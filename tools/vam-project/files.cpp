@@ -2,8 +2,10 @@
 
 #include "base/json.hpp"
 #include "io/image/frame_sink.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
 #include "optics/frames.hpp"
+#include "vam-project/match.hpp"
 #include "vam-project/show.hpp"
 #include "vam-project/turn.hpp"
 
@@ -12,6 +14,7 @@ namespace vam::project {
 void write_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader) {
   const model::Projector& projector = printer.projector;
   const double turns = optics::turns_to_show(reader.info(), options.turns, printer.stage.turns);
+  const auto differences = require_printer(options, reader.info(), printer);
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   const Light light = read_light(options, reader, projector);
   const double peak = options.peak.value_or(light.peak);
@@ -20,11 +23,14 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
                              projector.bits, options.stack};
   facts.info.units = "fraction of full intensity";
+  facts.info.extra["vam:printer"] = io::printer_settings(printer);
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const Frames frames = frames_of(light, schedule);
   const auto tally = show(frames, static_cast<float>(options.intensity / peak), projector, app.given("--bits"), *sink);
-  io::write_report(options.report, "vam-project/1", figures(frames, projector.bits, peak, tally));
+  Json report = figures(frames, projector.bits, peak, tally);
+  if (!differences.empty()) report["printer_differences"] = differences;
+  io::write_report(options.report, "vam-project/1", report);
 }
 
 void write_slices(const cli::App& app, const Options& options, const model::Printer& printer,

@@ -76,6 +76,12 @@ void declare(cli::App& app, Options& options) {
   add_live(app, options.live);
   add_patterns(app, options.pattern);
   cli::add_printer(app, options.printer);
+  app.flag("--accept-printer", options.accept_printer,
+           "Accept a sinogram that was computed for another printer, with a warning that names the differences.");
+  app.option(
+      "--freeze", "FILE", options.freeze,
+      "Check the sinogram against the printer, write the settings in force to FILE, with calibration records and "
+      "whole paths, and exit; for vam-print.");
   app.group("Output and machine");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_report(app, options.report);

@@ -40,6 +40,8 @@ struct Options {
   double row_offset = 0;
   double intensity = 1;
   cli::PrinterOptions printer;
+  bool accept_printer = false;
+  std::string freeze;
   io::StackOptions stack;
   std::string report;
   LiveOptions live;

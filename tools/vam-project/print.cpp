@@ -8,6 +8,7 @@
 #include "io/settings/report.hpp"
 #include "optics/frames.hpp"
 #include "vam-project/live.hpp"
+#include "vam-project/match.hpp"
 #include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
 
@@ -54,6 +55,7 @@ void require_one_turn(const Options& options, const model::StackInfo& info, int 
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, int turns,
                 io::StackReader& reader, Live& live) {
   require_one_turn(options, reader.info(), turns);
+  const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.peak.value_or(light.peak);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
@@ -64,6 +66,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
       show(shown, static_cast<float>(options.intensity / peak), printer.projector, app.given("--bits"), sink);
   Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
+  if (!differences.empty()) report["printer_differences"] = differences;
   report.erase("fps_hz");
   write_report(options, report, sink.tally);
 }

@@ -1,0 +1,107 @@
+#include "io/settings/printer_match.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/text.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/private/printer_fields.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using model::Printer;
+
+/// What is compared, and by how much two values may differ: a calibration of the next day must not refuse a sinogram
+/// that prints as well as before.
+struct Key {
+  const char* name;
+  double (*value)(const Printer&);
+  double within;     // in the key's unit
+  double share = 0;  // of the larger value
+};
+
+// Infinitely far where it is telecentric, and then like any other: the keys of telecentricity tell these apart.
+double lens_mm(const Printer& p) {
+  const auto columns = columns_lens_mm(p.projector);
+  return columns ? *columns : rows_lens_mm(p.projector).value_or(std::numeric_limits<double>::infinity());
+}
+
+// A quarter of a pixel stays within the box of one; half a per cent of the radius is what a new calibration of the vial
+// may differ by [devices §8]; an index that is 0.002 off moves the writable radius, R / n, by 0.13 %.
+constexpr Key keys[] = {
+    {"projector.columns", [](const Printer& p) { return 1.0 * p.projector.columns; }, 0},
+    {"projector.pixel_mm", [](const Printer& p) { return p.projector.pixel_mm; }, 0, 1e-3},
+    {"projector.lens_distance_mm", lens_mm, 0, 5e-3},
+    {"projector.telecentric_columns", [](const Printer& p) { return columns_lens_mm(p.projector) ? 0.0 : 1.0; }, 0},
+    {"projector.telecentric_rows", [](const Printer& p) { return rows_lens_mm(p.projector) ? 0.0 : 1.0; }, 0},
+    {"projector.axis_column", [](const Printer& p) { return p.projector.axis_column; }, 0.25},
+    {"vial.radius_mm", [](const Printer& p) { return p.vial.radius_mm; }, 0, 5e-3},
+    {"vial.wall_mm", [](const Printer& p) { return p.vial.wall_mm; }, 0.05},
+    {"vial.index_glass", [](const Printer& p) { return (p.vial.wall_mm > 0 ? p.vial : model::Vial{}).index_glass; },
+     0.01},
+    {"bath.index", [](const Printer& p) { return p.bath.index; }, 0.002},
+    {"bath.window_mm", [](const Printer& p) { return p.bath.window_mm; }, 0, 0.02},
+    {"resin.index", [](const Printer& p) { return p.resin.index; }, 0.002},
+    {"resin.absorption_per_mm", [](const Printer& p) { return p.resin.absorption_per_mm; }, 0, 0.05},
+    {"stage.direction", [](const Printer& p) { return 1.0 * p.stage.direction; }, 0},
+};
+
+bool alike(const Key& key, double a, double b) {
+  if (a == b) return true;
+  constexpr double rounding = 1 + 1e-9;
+  return std::abs(a - b) <= rounding * std::max(key.within, key.share * std::max(std::abs(a), std::abs(b)));
+}
+
+/// "a.b=1 c.d=\"two words\"" at its blanks; a text in quotes holds its own.
+std::vector<std::string> settings_in(const std::string& text) {
+  std::vector<std::string> settings(1);
+  char quote = '\0';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == '\0' && c == ' ') {
+      settings.emplace_back();
+      continue;
+    }
+    if (quote == '\0' && (c == '"' || c == '\'')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = '\0';
+    }
+    settings.back() += c;
+    if (quote == '"' && c == '\\' && i + 1 < text.size()) settings.back() += text[++i];
+  }
+  return settings;
+}
+
+bool known(const std::string& setting) {
+  const std::string name = setting.substr(0, setting.find('='));
+  const auto fields = printer_fields();
+  return std::any_of(fields.begin(), fields.end(),
+                     [&](const PrinterField& field) { return dotted_name(field) == name; });
+}
+
+}  // namespace
+
+Printer parse_settings(const std::string& text, const std::string& subject) {
+  std::string toml;
+  for (const std::string& setting : settings_in(text)) {
+    if (known(setting)) toml += setting + "\n";
+  }
+  return parse_printer(toml, subject);
+}
+
+std::vector<std::string> light_differences(const Printer& computed_for, const Printer& now) {
+  std::vector<std::string> differences;
+  for (const Key& key : keys) {
+    const double then = key.value(computed_for);
+    const double here = key.value(now);
+    if (alike(key, then, here)) continue;
+    differences.push_back(std::string(key.name) + " " + format_number(then) + ", now " + format_number(here));
+  }
+  return differences;
+}
+
+}  // namespace vam::io

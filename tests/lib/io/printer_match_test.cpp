@@ -1,0 +1,51 @@
+#include "io/settings/printer_match.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/error.hpp"
+#include "fault_of.hpp"
+#include "io/settings/printer_file.hpp"
+
+using vam::Fault;
+using vam::io::light_differences;
+using vam::io::load_printer;
+using vam::io::parse_settings;
+using vam::io::printer_settings;
+using vam::io::printer_toml;
+
+namespace {
+
+std::string difference(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  std::string all;
+  for (const auto& one : light_differences(load_printer("", a), load_printer("", b))) all += one + "; ";
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("the text of vam:printer gives the printer again") {
+  const auto printer = load_printer("", {"vial.radius_mm=6.1", "resin.name=\"two 'words' = \\\"x\\\" \\\\\"",
+                                         "stage.device=gcs:/dev/a b", "projector.telecentric=true"});
+  CHECK(printer_toml(parse_settings(printer_settings(printer), "s")) == printer_toml(printer));
+  CHECK(printer_toml(parse_settings("default", "s")) == printer_toml({}));
+  CHECK(parse_settings("projector.max_led_current=3 vial.radius_mm=7", "s").vial.radius_mm == 7);
+  error_of([] { (void)parse_settings("vial.radius_mm=round", "s"); }, Fault::data);
+}
+
+TEST_CASE("printers differ where light for one is wrong in the other") {
+  CHECK(difference({}, {}).empty());
+  CHECK(difference({"vial.radius_mm=12"}, {"vial.radius_mm=6"}) == "vial.radius_mm 12, now 6; ");
+  CHECK(difference({"bath.index=1.33", "projector.axis_column=510"}, {}) ==
+        "projector.axis_column 510, now 511.5; bath.index 1.33, now 1; ");
+  CHECK(difference({"stage.direction=-1"}, {}) == "stage.direction -1, now 1; ");
+  CHECK(difference({}, {"projector.throw_ratio=1.9"}) == "projector.lens_distance_mm 119.808, now 126.464; ");
+  CHECK(difference({"projector.telecentric=true"}, {}) ==
+        "projector.telecentric_columns 1, now 0; projector.telecentric_rows 1, now 0; ");
+}
+
+TEST_CASE("what a new calibration changes, and what is applied at the print, is no difference") {
+  CHECK(difference({}, {"projector.axis_column=511.7", "vial.radius_mm=12.75", "resin.index=1.531"}).empty());
+  CHECK(difference({}, {"projector.lens_distance_mm=119.808"}).empty());
+  CHECK(difference({}, {"projector.response=a.csv", "projector.rows=900", "stage.speed_deg_s=20"}).empty());
+  CHECK(difference({}, {"vial.index_glass=1.6"}).empty());  // without a wall there is no glass
+}

@@ -1,0 +1,45 @@
+#include "vam-project/match.hpp"
+
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/settings/printer_match.hpp"
+#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::project {
+
+std::vector<std::string> require_printer(const Options& options, const model::StackInfo& info,
+                                         const model::Printer& printer) {
+  if (info.kind != model::Kind::sinogram || info.space != model::Space::projector) return {};
+  const std::string name = io::input_name(options.input);
+  const auto computed_for = info.extra.find("vam:printer");
+  if (computed_for == info.extra.end()) {
+    if (!options.accept_printer) {
+      warn(name + ": does not say for which printer it was computed (vam:printer), which is not checked");
+    }
+    return {};
+  }
+  const auto differences =
+      io::light_differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer);
+  if (differences.empty()) return {};
+  const std::string what = name + ": was computed for another printer: " + join(differences, "; ");
+  if (!options.accept_printer) {
+    throw Error{Fault::data, what + "; compute it again for this one, or accept it with --accept-printer"};
+  }
+  warn(what + "; accepted");
+  return differences;
+}
+
+void write_frozen(const std::string& path, model::Printer printer) {
+  for (std::string* file : {&printer.projector.response, &printer.camera.flat}) {
+    if (!file->empty()) *file = std::filesystem::absolute(*file).lexically_normal().string();
+  }
+  printer.calibration.folder.clear();
+  io::write_text(path, io::printer_toml(printer));
+}
+
+}  // namespace vam::project

@@ -1,0 +1,22 @@
+// Whether the sinogram was computed for the printer that is to show it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "vam-project/options.hpp"
+
+namespace vam::project {
+
+/// Compares vam:printer of a projector sinogram with the printer. Throws Fault::data where they differ, which with
+/// --accept-printer is a warning; one that does not say is a warning, too. Returns the differences, for the report.
+std::vector<std::string> require_printer(const Options& options, const model::StackInfo& info,
+                                         const model::Printer& printer);
+
+/// Writes the printer's settings as a print needs them, complete by themselves: the records in force are in them,
+/// files are named by their whole paths.
+void write_frozen(const std::string& path, model::Printer printer);
+
+}  // namespace vam::project
