@@ -75,15 +75,31 @@ bool find_output(int card, const std::string& wanted, DrmOutput& output, std::ve
 
 }  // namespace
 
-DrmOutput open_drm_output(const std::string& connector) {
-  std::vector<std::string> seen;
+std::vector<std::string> drm_cards() {
   std::error_code none;
   std::vector<std::string> cards;
   for (const auto& entry : std::filesystem::directory_iterator("/dev/dri", none)) {
     if (entry.path().filename().string().rfind("card", 0) == 0) cards.push_back(entry.path());
   }
   std::sort(cards.begin(), cards.end());
-  for (const auto& path : cards) {
+  return cards;
+}
+
+std::vector<DrmScreen> drm_screens(int card) {
+  std::vector<DrmScreen> screens;
+  const Handle<drmModeRes> resources(drmModeGetResources(card));
+  for (int i = 0; resources && i < resources->count_connectors; ++i) {
+    const Handle<drmModeConnector> connector(drmModeGetConnector(card, resources->connectors[i]));
+    if (!connector || connector->connection != DRM_MODE_CONNECTED || connector->count_modes == 0) continue;
+    const drmModeModeInfo mode = preferred_mode(*connector);
+    screens.push_back({connector_name(*connector), mode.hdisplay, mode.vdisplay, static_cast<double>(mode.vrefresh)});
+  }
+  return screens;
+}
+
+DrmOutput open_drm_output(const std::string& connector) {
+  std::vector<std::string> seen;
+  for (const auto& path : drm_cards()) {
     const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (card < 0) continue;
     DrmOutput output;

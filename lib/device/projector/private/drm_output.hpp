@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace vam::device {
 
@@ -14,6 +15,18 @@ struct DrmOutput {
   std::uint32_t crtc = 0;
   drmModeModeInfo mode{};  // the screen's preferred one
 };
+
+/// The nodes of the graphics cards, in order.
+[[nodiscard]] std::vector<std::string> drm_cards();
+
+struct DrmScreen {
+  std::string connector;  // "HDMI-A-1"
+  int columns = 0;        // of the preferred mode
+  int rows = 0;
+  double hz = 0;
+};
+/// The connectors of an open card that have a screen.
+[[nodiscard]] std::vector<DrmScreen> drm_screens(int card);
 
 /// Opens the card that has the connector of this name, such as "HDMI-A-1", with a screen plugged in. Its CRTC is the
 /// one that drives it already, else one that no other screen has. Throws Fault::absent naming the connectors there are.

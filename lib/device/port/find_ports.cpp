@@ -1,0 +1,139 @@
+#include "device/port/find_ports.hpp"
+
+#include <libusb.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string_view>
+
+#include "base/json.hpp"
+#include "device/port/serial_port.hpp"
+
+namespace vam::device {
+
+namespace {
+
+// Which protocol the maker of a USB serial port points to.
+struct Vendor {
+  std::string_view id;
+  const char* scheme;
+};
+constexpr std::array vendors{Vendor{"1a72", "gcs"}, Vendor{"2341", "grbl"}, Vendor{"2a03", "grbl"},
+                             Vendor{"1a86", "grbl"}};
+
+std::string word(const Json& entry, const char* key) {
+  const auto found = entry.find(key);
+  return found != entry.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+Found serial_stage(const Json& entry) {
+  const std::string path = word(entry, "path");
+  const std::string ids = word(entry, "usb_id");
+  const auto* maker =
+      std::find_if(vendors.begin(), vendors.end(), [&](const Vendor& vendor) { return ids.starts_with(vendor.id); });
+  Found found{"stage", "gcs:" + path, word(entry, "description"), node_obstacle(path)};
+  if (maker != vendors.end()) found.device = maker->scheme + (":" + path);
+  for (const char* key : {"manufacturer", "serial"}) {
+    if (const std::string more = word(entry, key); !more.empty())
+      found.about += (found.about.empty() ? "" : " ") + more;
+  }
+  return found;
+}
+
+struct UsbKind {
+  int vendor;
+  int product;  // -1: any
+  const char* kind;
+  const char* scheme;
+  const char* options;
+};
+constexpr std::array usb_kinds{UsbKind{0x1ffb, -1, "stage", "tic", "?steps_per_deg=N"},
+                               UsbKind{0x0451, 0x6401, "light", "dlpc350", ""},
+                               UsbKind{0x0451, 0xc900, "light", "dlpc900", ""}};
+
+// USB3 Vision: an interface of class 0xEF, subclass 5 (USB3 Vision Specification, table 4-1).
+bool is_vision(libusb_device* device) {
+  libusb_config_descriptor* config = nullptr;
+  if (libusb_get_active_config_descriptor(device, &config) != 0) return false;
+  bool vision = false;
+  for (int i = 0; i < config->bNumInterfaces; ++i) {
+    const libusb_interface& interface = config->interface[i];
+    for (int a = 0; a < interface.num_altsetting; ++a) {
+      vision |= interface.altsetting[a].bInterfaceClass == 0xEF && interface.altsetting[a].bInterfaceSubClass == 5;
+    }
+  }
+  libusb_free_config_descriptor(config);
+  return vision;
+}
+
+std::string hex4(int value) {
+  std::array<char, 8> text{};
+  std::snprintf(text.data(), text.size(), "%04x", static_cast<unsigned>(value));
+  return text.data();
+}
+
+std::string usb_obstacle(int status, int vendor) {
+  if (status == LIBUSB_ERROR_NO_DEVICE) return "is being unplugged";
+  return "not permitted to this user; write SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex4(vendor) +
+         "\", TAG+=\"uaccess\" to /etc/udev/rules.d/70-vam.rules and plug it in again";
+}
+
+std::string string_of(libusb_device_handle* handle, std::uint8_t index) {
+  std::array<unsigned char, 256> text{};
+  if (index == 0 || libusb_get_string_descriptor_ascii(handle, index, text.data(), text.size()) <= 0) return "";
+  return reinterpret_cast<const char*>(text.data());
+}
+
+const UsbKind* kind_of(const libusb_device_descriptor& about) {
+  const auto* found = std::find_if(usb_kinds.begin(), usb_kinds.end(), [&](const UsbKind& kind) {
+    return kind.vendor == about.idVendor && (kind.product < 0 || kind.product == about.idProduct);
+  });
+  return found != usb_kinds.end() ? found : nullptr;
+}
+
+void look_at(libusb_device* device, std::vector<Found>& found) {
+  libusb_device_descriptor about{};
+  if (libusb_get_device_descriptor(device, &about) != 0) return;
+  const UsbKind* kind = kind_of(about);
+  if (kind == nullptr && !is_vision(device)) return;
+  const std::string ids = hex4(about.idVendor) + ":" + hex4(about.idProduct);
+  libusb_device_handle* handle = nullptr;
+  const int status = libusb_open(device, &handle);
+  if (kind == nullptr) {  // one that can be opened is listed with the cameras
+    if (status != 0) found.push_back({"camera", "aravis:", "USB3 Vision " + ids, usb_obstacle(status, about.idVendor)});
+  } else if (status != 0) {
+    found.push_back({kind->kind, kind->scheme + std::string(":") + kind->options, "USB " + ids,
+                     usb_obstacle(status, about.idVendor)});
+  } else {
+    const std::string serial = string_of(handle, about.iSerialNumber);
+    found.push_back({kind->kind, kind->scheme + (":" + serial) + kind->options,
+                     string_of(handle, about.iManufacturer) + " " + string_of(handle, about.iProduct),
+                     lock_obstacle("usb:" + ids + ":" + serial)});
+  }
+  if (handle != nullptr) libusb_close(handle);
+}
+
+}  // namespace
+
+std::vector<Found> find_serial_stages(const std::vector<std::string>& ports) {
+  std::vector<Found> found;
+  for (const Json& entry : list_serial_ports()) found.push_back(serial_stage(entry));
+  for (const std::string& path : ports) found.push_back({"stage", "gcs:" + path, "", node_obstacle(path)});
+  return found;
+}
+
+std::vector<Found> find_usb_devices() {
+  std::vector<Found> found;
+  libusb_context* context = nullptr;
+  if (libusb_init(&context) != 0) return found;
+  libusb_device** list = nullptr;
+  const ssize_t count = libusb_get_device_list(context, &list);
+  for (ssize_t i = 0; i < count; ++i) look_at(list[i], found);
+  if (count >= 0) libusb_free_device_list(list, 1);
+  libusb_exit(context);
+  return found;
+}
+
+}  // namespace vam::device

@@ -1,0 +1,19 @@
+// Stages and light engines on serial ports and on USB, without a word to any of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "device/os/found.hpp"
+
+namespace vam::device {
+
+/// The serial ports of this machine, each as the stage that its USB identity speaks for (gcs: where none does), and
+/// those of `ports` besides.
+[[nodiscard]] std::vector<Found> find_serial_stages(const std::vector<std::string>& ports);
+
+/// Tic stages, DLPC light engines, and USB3 Vision cameras that this user may not open and a camera library therefore
+/// does not see.
+[[nodiscard]] std::vector<Found> find_usb_devices();
+
+}  // namespace vam::device

@@ -1,0 +1,78 @@
+#include "device/projector/find_displays.hpp"
+
+#include <SDL.h>
+#include <fcntl.h>
+#include <unistd.h>
+#include <xf86drm.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "base/text.hpp"
+#include "device/projector/private/drm_output.hpp"
+
+namespace vam::device {
+
+namespace {
+
+std::string size_text(int columns, int rows, double hz) {
+  return std::to_string(columns) + " x " + std::to_string(rows) + " at " + format_number(hz, 4) + " Hz";
+}
+
+// Only the master of a card sets what its screens show; whoever asks first is it, and gives it back here.
+std::string card_obstacle(int card) {
+  if (drmSetMaster(card) == 0) {
+    drmDropMaster(card);
+    return "";
+  }
+  return "another program is master of the graphics card, as a desktop is; log out of it, or use sdl:";
+}
+
+void add_drm(std::vector<Found>& found) {
+  for (const std::string& path : drm_cards()) {
+    const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
+    if (card < 0) {
+      found.push_back({"display", "drm:", path, node_obstacle(path)});
+      continue;
+    }
+    const std::string obstacle = card_obstacle(card);
+    for (const DrmScreen& screen : drm_screens(card)) {
+      found.push_back(
+          {"display", "drm:" + screen.connector, size_text(screen.columns, screen.rows, screen.hz), obstacle});
+    }
+    close(card);
+  }
+}
+
+// Without a desktop SDL would count an invisible screen.
+void add_sdl(std::vector<Found>& found) {
+  if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
+  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  if (SDL_Init(SDL_INIT_VIDEO) != 0) {
+    found.push_back(
+        {"display", "sdl:0", "", std::string("the desktop cannot be reached (") + SDL_GetError() + "); check DISPLAY"});
+    return;
+  }
+  for (int n = 0; n < SDL_GetNumVideoDisplays(); ++n) {
+    SDL_DisplayMode mode{};
+    if (SDL_GetCurrentDisplayMode(n, &mode) != 0) continue;
+    const char* name = SDL_GetDisplayName(n);
+    found.push_back({"display", "sdl:" + std::to_string(n),
+                     size_text(mode.w, mode.h, mode.refresh_rate > 0 ? mode.refresh_rate : 60) +
+                         (name != nullptr ? std::string(", ") + name : ""),
+                     ""});
+  }
+  SDL_Quit();
+}
+
+}  // namespace
+
+std::vector<Found> find_displays() {
+  std::vector<Found> found;
+  add_drm(found);
+  add_sdl(found);
+  return found;
+}
+
+}  // namespace vam::device

@@ -1,0 +1,14 @@
+// The screens that frames can be shown on.
+#pragma once
+
+#include <vector>
+
+#include "device/os/found.hpp"
+
+namespace vam::device {
+
+/// The connectors of the graphics cards that have a screen, and the screens of the desktop, if there is one. Nothing is
+/// shown on them.
+[[nodiscard]] std::vector<Found> find_displays();
+
+}  // namespace vam::device

@@ -1,0 +1,96 @@
+// vam-devices: the devices of this machine, and what stands in their way.
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+#include "device/open/find.hpp"
+#include "device/port/lines.hpp"
+#include "io/settings/report.hpp"
+
+namespace {
+
+using namespace vam;
+
+struct Options {
+  std::vector<std::string> ports;
+  bool ask = false;
+  std::string report;
+};
+
+cli::Manual manual() {
+  return {
+      "vam-devices",
+      "list stages, cameras, displays and light engines",
+      {"Lists the devices that this machine sees, each with the device string for the printer file and for --device, "
+       "--screen and --light, and with what is known of it. A line below a device says what stands in the way of using "
+       "it, and the remedy: no permission (the group to join or the udev rule to write), another program that has it "
+       "(its process), a graphics card whose master is a desktop. A kind of which there is none is listed with what to "
+       "check.",
+       "No device is told anything: nothing moves or shines. A serial port does not tell what is connected to it; it "
+       "is listed as gcs: or, where the maker of its USB converter suggests so, another scheme. --ask asks at each "
+       "port "
+       "by each protocol for the identity of the controller. This does not move the stage, but most GRBL boards are "
+       "reset when their port is opened, and other instruments on such ports receive a question that they do not "
+       "know."},
+      {{"What is there:", "vam-devices"},
+       {"A simulated stage on a pseudo-terminal, asked for its identity:",
+        "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
+        "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --ask"}},
+      {"Duration. About a second, which is the time that cameras on the network have for their answer; with --ask up "
+       "to 4 "
+       "s more a port.",
+       "A camera of another subnet is not found; give its IP address (aravis:192.168.1.7)."},
+      {"vam-stage", "vam-capture", "vam-project", "vam-print"}};
+}
+
+constexpr struct {
+  const char* kind;
+  const char* advice;
+} kinds[] = {{"stage", "check power and cable; sim: is a simulated one"},
+             {"camera", "check power, cable and, on a network, the address; sim: is a simulated one"},
+             {"display", "connect the projector and switch it on; null: is a dry run"},
+             {"light", "check the USB cable, or use a projector without one; sim: is a simulated one"}};
+
+void print(const std::vector<device::Found>& found) {
+  std::size_t width = 0;
+  for (const auto& one : found) width = std::max(width, one.device.size());
+  const auto column = [](std::string text, std::size_t to) { return text.append(to - std::min(to, text.size()), ' '); };
+  for (const auto& [kind, advice] : kinds) {
+    bool any = false;
+    for (const auto& one : found) {
+      if (one.kind != kind) continue;
+      any = true;
+      device::print_line(column(kind, 9) +
+                         (one.about.empty() ? one.device : column(one.device, width) + "  " + one.about));
+      if (!one.obstacle.empty()) device::print_line(column("", 9) + "! " + one.obstacle);
+    }
+    if (!any) device::print_line(column(kind, 9) + "none found; " + advice);
+  }
+}
+
+void run(const Options& options) {
+  std::vector<device::Found> found = device::find_devices(options.ports);
+  for (auto& one : found) {
+    if (options.ask && one.kind == "stage") device::ask_stage(one);
+  }
+  print(found);
+  Json list = Json::array();
+  for (const auto& one : found) {
+    list.push_back({{"kind", one.kind}, {"device", one.device}, {"about", one.about}, {"obstacle", one.obstacle}});
+  }
+  io::write_report(options.report, "vam-devices/1", {{"found", list}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  cli::App app(manual());
+  app.option("--port", "PATH", options.ports, "A serial port besides those that the system lists.");
+  app.flag("--ask", options.ask, "Ask at the serial ports which stage is there.");
+  cli::add_report(app, options.report);
+  return app.run(argc, argv, [&] { run(options); });
+}
