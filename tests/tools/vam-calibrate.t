@@ -85,6 +85,8 @@ ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.to
 ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: warning: vam-capture check is now vam-calibrate check true'
+cp -rL cal copied
+ok 'a folder copied with its links followed' vam-calibrate check --set calibration.folder=copied
 ok 'check' vam-calibrate check --need 'edges, response'
 vam-calibrate check >state
 is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"

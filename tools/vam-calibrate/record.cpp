@@ -78,6 +78,12 @@ std::string stranger(const Json& record, const Json& devices) {
   return "";
 }
 
+/// The file that a link in force names; of a folder that was copied with the links followed, the file itself.
+std::string record_file(const std::string& current) {
+  if (!fs::is_symlink(current)) return current;
+  return (fs::path(current).parent_path() / fs::read_symlink(current)).string();
+}
+
 }  // namespace
 
 void Finding::value(const std::string& name, const stats::Measured& measured, const std::string& unit,
@@ -146,7 +152,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     if (record) {
       why = io::objection(*record, calibration, io::utc_seconds());
       if (why.empty()) why = stranger(*record->json, devices);
-      const std::string path = (fs::path(record->path).parent_path() / fs::read_symlink(record->path)).string();
+      const std::string path = record_file(record->path);
       report[scan] = {{"record", path},
                       {"sha256", io::sha256_of(path)},
                       {"utc", record->json->value("utc", "")},
