@@ -66,8 +66,10 @@ void EventLog::line(const Json& facts) {
   if (fd_ < 0) return;
   // Bytes that a device made up need not be UTF-8.
   const std::string text = facts.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (write(fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size())) {
-    throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
+  for (std::size_t at = 0; at < text.size();) {  // a disk that is just full takes a part, and says why at the rest
+    const ssize_t count = write(fd_, text.data() + at, text.size() - at);
+    if (count < 0) throw Error{Fault::io, path_ + ": write failed (" + std::strerror(errno) + ")"};
+    at += static_cast<std::size_t>(count);
   }
 }
 
