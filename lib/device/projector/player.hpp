@@ -13,8 +13,9 @@ namespace vam::device {
 struct PlayPlan {
   int frames_per_turn = 360;  // frame n belongs to the angle 360 n / frames_per_turn
   int turns = 1;
-  double latency_s = 0;           // from a vertical blank to the light, calibrated
-  double allowed_missed = 0.001;  // part of all vertical blanks
+  double latency_s = 0;              // from a vertical blank to the light, calibrated
+  double allowed_missed = 0.001;     // part of all vertical blanks, by the end of the run-up
+  double allowed_missed_lit = 0.01;  // by the end of the print: a vial is not lost to a few
 };
 
 /// One flip, as it is logged.
@@ -37,9 +38,10 @@ struct PlayTally {
 
 /// Shows black until the predicted angle at the next vertical blank is 0, then for every vertical blank the frame
 /// nearest to the angle in the middle of its showing, then black from 360 * turns on. The light engine (may be null)
-/// goes on a tenth of a second before angle 0 and off right after the last frame. The run-up is a dry run: flips missed
-/// there count, too. Throws Fault::busy when more than the allowed part of flips is missed, before light when that was
-/// in the run-up; and what display, light and source throw. Black and dark whenever it leaves.
+/// goes on a tenth of a second before angle 0 and off right after the last frame. The run-up is a dry run, and judged
+/// more strictly: a frame that stays on for a blank too long costs little of a print, a print that ends costs the vial.
+/// Throws Fault::busy when more than the allowed part of flips is missed, before light when that was in the run-up; and
+/// what display, light and source throw. Black and dark whenever it leaves.
 PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log);
 
