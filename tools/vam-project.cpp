@@ -9,6 +9,7 @@
 #include "vam-project/match.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/patterns.hpp"
+#include "vam-project/plan.hpp"
 #include "vam-project/print.hpp"
 #include "vam-project/slices.hpp"
 
@@ -29,6 +30,7 @@ void run(const cli::App& app, Options& options) {
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);
   if (!options.pattern.plan.name.empty()) return show_pattern(app, options, printer.projector);
+  if (options.only_plan) return print_plan(options, printer);
   if (live) return device::interruptible([&] { print_live(app, options, printer); });
   if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);
   if (project::is_folder(options.input)) {

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
 #include "cli/app.hpp"
 #include "device/open/stage.hpp"
 #include "device/os/event_log.hpp"
@@ -29,6 +30,7 @@ struct Options {
   bool relative = false;
   bool home_first = false;
   bool abrupt = false;
+  bool only_plan = false;
   double timeout_s = 120;
   std::optional<double> seconds;
   double rate_hz = 100;
@@ -125,6 +127,7 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
               "Largest relative speed error before angle 0.");
   spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
   spin.flag("--home", options.home_first, "Find the reference first.");
+  spin.flag("--plan", options.only_plan, "Print travel, limits and duration of this motion, and do not move.");
   auto& stop = app.subcommand("stop", "stop the stage and wait for standstill", chosen);
   add_common(stop, options);
   stop.flag("--abrupt", options.abrupt, "Stop as fast as the controller can, instead of its normal deceleration.");
@@ -145,6 +148,15 @@ void settle(Options& options) {
   options.plan.period_s = 1 / options.rate_hz;
 }
 
+std::string plan_text(device::Stage& stage, const Options& options) {
+  const device::SpinCourse course = plan_spin(stage, options.plan, options.home_first);
+  const int turns = options.plan.turns;
+  return std::to_string(turns) + (turns == 1 ? " turn at " : " turns at ") + format_number(options.plan.speed_deg_s) +
+         " deg/s: from " + format_number(course.start_deg) + " to " + format_number(course.end_deg) + " deg, within " +
+         format_number(course.min_deg) + " to " + format_number(course.max_deg) + "; " +
+         format_number(course.seconds, 4) + " s with ramp and run-up";
+}
+
 void drive(const std::string& command, Options& options) {
   if (command == "ports") return device::print_line(device::list_serial_ports().dump(2));
   if (tool::print_printer(options.printer)) return;
@@ -159,6 +171,7 @@ void drive(const std::string& command, Options& options) {
   Json begin{{"command", command}, {"device", options.device}};
   if (!options.log.empty() && device::describe(*stage).contains("simulated")) begin["simulated"] = true;
   log("begin", begin);
+  if (options.only_plan) return device::print_line(plan_text(*stage, options));
   if (command == "home" || options.home_first) device::home(*stage, clock, options.timeout_s);
   const std::map<std::string, std::function<void()>> actions{
       {"home", [] {}},

@@ -35,6 +35,7 @@ device::PlayTally Live::play(double speed_deg_s, int turns) {
   plan.turns = turns;
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
+  plan.allowed_missed_lit = options_.allowed_missed_lit;
   return ended(device::play(*display_, light_.get(), *angles, clock_, plan, logger()));
 }
 

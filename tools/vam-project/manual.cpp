@@ -20,7 +20,9 @@ cli::Manual manual() {
        "for the stage angle in the middle of its display time is shown. With --follow the angle is predicted from the "
        "lines of vam-stage spin: black before angle 0, black again after the last turn. By default the angle is the "
        "speed times the time since the first frame. The run-up turn is a dry run: if vertical blanks are missed in it, "
-       "the print does not start. Frame size and screen size must be equal.",
+       "the print does not start; missed later, each leaves a frame on for one period too long, is logged, and ends "
+       "the print "
+       "only above --missed-lit. Frame size and screen size must be equal.",
        "Time: frame n is centred on time n / fps, at the stage angle n x speed / fps; it is shown for one frame period "
        "around it. If the sinogram has as many angles as there are frames in a turn, every frame is one of its rows; "
        "otherwise it is interpolated linearly between the two nearest angles, or, where frames are coarser than "

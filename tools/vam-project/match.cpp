@@ -23,8 +23,7 @@ std::vector<std::string> require_printer(const Options& options, const model::St
     }
     return {};
   }
-  const auto differences =
-      io::light_differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer);
+  auto differences = io::light_differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer);
   if (differences.empty()) return {};
   const std::string what = name + ": was computed for another printer: " + join(differences, "; ");
   if (!options.accept_printer) {

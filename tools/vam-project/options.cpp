@@ -8,7 +8,8 @@ namespace vam::project {
 
 namespace {
 
-void add_live(cli::App& app, LiveOptions& options) {
+void add_live(cli::App& app, Options& all) {
+  LiveOptions& options = all.live;
   app.group("Live output");
   app.option("--follow", "FILE", options.follow,
              "Read the stage angle from this output of vam-stage spin, a FIFO or - (then name the sinogram).");
@@ -18,10 +19,14 @@ void add_live(cli::App& app, LiveOptions& options) {
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
       .default_is("projector.latency_ms");
   app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Largest allowed fraction of missed vertical blanks.");
+             "Largest allowed fraction of missed vertical blanks in the run-up.");
+  app.option("--missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
+             "Largest allowed fraction of missed vertical blanks by the end of the print, at least that of --missed.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
+  app.flag("--plan", all.only_plan,
+           "Print frames, memory, duration and dose, ask display and light engine who they are, and show nothing.");
   app.flag("--die-with-parent", options.with_parent, "Blank the screen and exit when the parent process exits.");
 }
 
@@ -73,7 +78,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--gain", "FACTOR", options.intensity, cli::positive,
              "Factor on the intensity; values above full intensity are clipped.")
       .was("--intensity");
-  add_live(app, options.live);
+  add_live(app, options);
   add_patterns(app, options.pattern);
   cli::add_printer(app, options.printer);
   app.flag("--accept-printer", options.accept_printer,
@@ -89,7 +94,8 @@ void declare(cli::App& app, Options& options) {
 }
 
 void refuse_live(const cli::App& app, const std::string& output) {
-  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--latency", "--missed", "--log"}) {
+  for (const char* flag :
+       {"--follow", "--light", "--frames-per-turn", "--latency", "--missed", "--missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;
     throw Error{Fault::usage, std::string(flag) + ": applies to live output, but -o names no screen: " +
                                   (output == "-" ? "standard output" : output)};

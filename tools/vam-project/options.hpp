@@ -20,6 +20,7 @@ struct LiveOptions {
   std::optional<double> latency_ms;
   double max_led_current_percent = 0;
   double allowed_missed = device::PlayPlan{}.allowed_missed;
+  double allowed_missed_lit = device::PlayPlan{}.allowed_missed_lit;
   std::optional<int> frames_per_turn;
   bool with_parent = false;
 };
@@ -41,6 +42,7 @@ struct Options {
   double intensity = 1;
   cli::PrinterOptions printer;
   bool accept_printer = false;
+  bool only_plan = false;
   std::string freeze;
   io::StackOptions stack;
   std::string report;

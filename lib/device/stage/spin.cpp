@@ -76,6 +76,20 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
 
 }  // namespace
 
+SpinCourse plan_spin(Stage& stage, const SpinPlan& plan, bool after_homing) {
+  const StageCaps caps = stage.caps();
+  require_speed_in_range(stage, plan.speed_deg_s);
+  if (!after_homing) require_referenced(stage);
+  const double here_deg = after_homing ? 0 : plan.direction * stage.sample().angle_deg;
+  const Course course = plot(plan, caps, here_deg);
+  const double acceleration = caps.acceleration_deg_s2 > 0 ? caps.acceleration_deg_s2 : assumed_acceleration_deg_s2;
+  const double seconds =
+      (360 * plan.turns - course.start_deg) / plan.speed_deg_s + 1.5 * plan.speed_deg_s / acceleration;
+  const bool turned = plan.direction < 0;
+  return {course.start_deg, course.end_deg, turned ? -caps.max_deg : caps.min_deg,
+          turned ? -caps.min_deg : caps.max_deg, seconds};
+}
+
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report) {
   const StageCaps caps = stage.caps();
   require_speed_in_range(stage, plan.speed_deg_s);

@@ -21,6 +21,18 @@ struct SpinPlan {
   double speed_tolerance = 0.01;  // of the speed reached before angle 0; a slower or faster stage is refused
 };
 
+/// The motion of a spin, in the angles that it reports.
+struct SpinCourse {
+  double start_deg = 0;  // negative: ramp and run-up
+  double end_deg = 0;    // of the order that is given; the stage is stopped before it gets there
+  double min_deg = 0;    // of the controller's travel, turned round for direction -1
+  double max_deg = 0;
+  double seconds = 0;  // until the stage stands again
+};
+
+/// What spin() would do now, or after the reference was found, without motion. Throws as spin() does before it moves.
+[[nodiscard]] SpinCourse plan_spin(Stage& stage, const SpinPlan& plan, bool after_homing);
+
 /// Turns the stage and reports its angle. Angles count from 0 where printing begins: negative during ramp and run-up,
 /// past 360 * turns when it ends. Angle 0 is the stage's own zero (its reference after homing), whatever the number of
 /// runs before. One long motion, inside the controller's limits, re-zeroed before each run.

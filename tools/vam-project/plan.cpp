@@ -1,0 +1,97 @@
+#include "vam-project/plan.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "device/open/display.hpp"
+#include "device/open/light.hpp"
+#include "device/os/clock.hpp"
+#include "device/port/lines.hpp"
+#include "io/exr/stack.hpp"
+#include "score/exposure.hpp"
+#include "vam-project/match.hpp"
+#include "vam-project/turn.hpp"
+
+namespace vam::project {
+
+namespace {
+
+void say(std::string name, const std::string& text) {
+  constexpr std::size_t column = 11;
+  device::print_line(name.append(column - name.size(), ' ') + text);
+}
+
+// The lit columns of the sinogram as floats, and each frame as a screen takes it, at most four bytes a pixel.
+double memory_mb(const model::StackInfo& info, const model::Projector& projector, int frames) {
+  const double sinogram = 4.0 * info.width * info.height * info.count;
+  return 1e-6 * (sinogram + 4.0 * frames * projector.columns * projector.rows);
+}
+
+/// Where the dose of a turn is the threshold that vam-optimize aimed at, the critical dose after so many turns.
+std::string dose_text(const model::StackInfo& info, const model::Printer& printer, double turns, double full_scale) {
+  const auto stated = info.extra.find("vam:threshold_dose");
+  const auto threshold = stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
+  if (!threshold) return "not known: the sinogram states no threshold; see vam-dose --exposure-plan";
+  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  if (!per_radian) return "relative; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
+  const double dose = turns * *per_radian / full_scale * *threshold;
+  const double critical = *printer.resin.critical_dose_mj_cm3;
+  return format_number(dose, 4) + " mJ/cm3 at the threshold of the sinogram, " + format_number(dose / critical, 3) +
+         " of the critical dose of " + format_number(critical) + "; that takes " +
+         format_number(turns * critical / dose, 4) + " turns";
+}
+
+std::string identity_text(const Json& identity) {
+  std::string text;
+  for (const char* key : {"maker", "model", "serial"}) {
+    if (identity.contains(key) && identity[key].is_string()) text += " " + identity[key].get<std::string>();
+  }
+  return text;
+}
+
+void say_devices(const Options& options, const model::Printer& printer) {
+  device::Guardian guardian;
+  const auto display = device::open_display(options.output, {printer.projector.columns, printer.projector.rows, 60},
+                                            device::real_clock(), &guardian);
+  const auto mode = display->mode();
+  if (mode.columns != printer.projector.columns || mode.rows != printer.projector.rows) {
+    throw Error{Fault::data, options.output + ": is " + std::to_string(mode.columns) + " x " +
+                                 std::to_string(mode.rows) + " pixels, the projector of the printer file " +
+                                 std::to_string(printer.projector.columns) + " x " +
+                                 std::to_string(printer.projector.rows) + "; change one of them"};
+  }
+  say("display", options.output + " " + std::to_string(mode.columns) + " x " + std::to_string(mode.rows) + " at " +
+                     format_number(mode.hz, 4) + " Hz");
+  if (options.live.light.empty()) return say("engine", "none is named (--light)");
+  const auto light = device::open_light(options.live.light, options.live.max_led_current_percent, &guardian);
+  say("engine", options.live.light + identity_text(light->identify()));
+}
+
+}  // namespace
+
+void print_plan(const Options& options, const model::Printer& printer) {
+  io::StackReader reader(options.input);
+  const model::StackInfo info = reader.info();
+  require_printer(options, info, printer);
+  const double turns = options.turns.value_or(printer.stage.turns);
+  const double full_scale =
+      options.peak.value_or(read_light(options, reader, printer.projector).peak) / options.intensity;
+  const int frames = options.live.frames_per_turn.value_or(info.height);
+  const model::Projector& projector = printer.projector;
+  say("frames", std::to_string(frames) + " a turn, " + std::to_string(projector.columns) + " x " +
+                    std::to_string(projector.rows) + ", " + std::to_string(projector.bits) + " bits; at most " +
+                    format_number(memory_mb(info, projector, frames), 4) + " MB of memory");
+  say("exposure", format_number(turns) + (turns == 1 ? " turn at " : " turns at ") +
+                      format_number(printer.stage.speed_deg_s) +
+                      " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
+  say("light", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for " +
+                   format_number(full_scale, 4) + " in the sinogram");
+  say("dose", dose_text(info, printer, turns, full_scale));
+  say_devices(options, printer);
+}
+
+}  // namespace vam::project

@@ -1,0 +1,13 @@
+// What a live print would be: for people, before it begins.
+#pragma once
+
+#include "model/printer.hpp"
+#include "vam-project/options.hpp"
+
+namespace vam::project {
+
+/// Reads the sinogram, opens display and light engine, which stay dark, and prints a line each on frames, duration,
+/// light, dose and the two devices. Throws as a live print does before its first frame.
+void print_plan(const Options& options, const model::Printer& printer);
+
+}  // namespace vam::project
