@@ -86,6 +86,33 @@ is 'the tool, too' "$(kill -0 "$stuck" 2>/dev/null && echo there)" ''
 is 'the summary tells how it ended' "$(json stopped/summary.json exit_statuses.lines)" 137
 holds 'and how far it came' "$(json stopped/summary.json reached.lit_flips) > 0 && $(json stopped/summary.json reached.turns) < 50"
 
+# A print that was killed is resumed, and the two give what a whole one gives; vam-dose tells what each gave.
+print --turns 2 --run whole
+(exec vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
+printing=$!
+lit() { [ "$(cat killed/flips.jsonl 2>/dev/null | grep -c '"frame":[0-9]')" -gt 300 ]; }  # a turn has 240
+await lit; kill -KILL $printing; wait $printing 2>/dev/null
+for tool in vam-project vam-stage; do await sh -c "! pgrep -x $tool -f killed/printer.toml >/dev/null"; done
+ok 'a killed print is resumed' print --resume killed --run rest
+is 'for its last turn' "$(grep -o '"turns":[0-9]*,"from_deg":[0-9]*' rest/events.jsonl | cut -d, -f1) $(json rest/summary.json outcome)" '"turns":1 done'
+dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
+ok 'the dose of a run' dose whole.dose '--shown whole'
+ok 'that of a killed one' dose killed.dose '--shown killed'
+ok 'and of both parts' dose both.dose '--shown killed --shown rest/flips.jsonl'
+holds 'a whole print gave its turns' "($(json whole.dose.json shown_turns) - 2) ^ 2 < 0.02 ^ 2"
+holds 'a killed one less' "$(json killed.dose.json shown_turns) > 1.2 && $(json killed.dose.json shown_turns) < 1.9"
+# One image of 480 at each end of either part; a blank of a busy machine is an image more or less.
+holds 'both parts together the whole' "($(json both.dose.json shown_turns) - $(json whole.dose.json shown_turns)) ^ 2 < 0.02 ^ 2"
+holds 'and its dose, everywhere' "($(json both.dose.json dose_shown_max_relative) / $(json whole.dose.json dose_shown_max_relative) - 1) ^ 2 < 0.03 ^ 2"
+fails 65 'rest: is complete, all 1 turns of it; there is nothing to resume' print --resume rest --run none
+fails 66 'nowhere: is not the folder of a print that began' print --resume nowhere --run none
+fails 64 '.--turns: conflicts with --resume' print --resume killed --turns 3 --run none
+python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
+fails 65 'other.exr: is not the sinogram of killed' vam-print other.exr --screen null: --resume killed --run none
+fails 65 'none: no light was shown|no light was shown' sh -c ': >empty; vam-dose frames.exr --shown empty -o x.vdb; status=$?; rm -f empty; exit $status'
+fails 66 'nowhere' vam-dose frames.exr --shown nowhere -o x.vdb
+fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb
+
 # A disk that fills in the print.
 mkdir small
 if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=400k none small 2>/dev/null; then

@@ -13,6 +13,7 @@
 #include "light/dose_grid.hpp"
 #include "light/simulation.hpp"
 #include "vam-dose/insert.hpp"
+#include "vam-dose/shown.hpp"
 #include "vam-dose/sink.hpp"
 
 namespace vam::dose_tool {
@@ -54,12 +55,14 @@ class Blurred {
 
 /// Every slice by its own row, a batch at a time.
 light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& simulation,
-                               const light::DisplayRange& light, int first, Insert& insert, Blurred& sink) {
+                               const light::DisplayRange& light, const std::vector<double>& turns, int first,
+                               Insert& insert, Blurred& sink) {
   light::LightSeen seen;
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   for (std::vector<Image> slices = reader.next(); !slices.empty(); slices = reader.next()) {
     light::shine(light, slices, seen);
+    weigh(turns, slices);
     std::vector<Image> doses(slices.size());
     const std::vector<Image> inserts = insert.slices(first, static_cast<int>(slices.size()));
     simulation.dose(slices, doses, inserts);
@@ -74,13 +77,15 @@ light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& sim
 
 /// Every slice by all rows whose rays come by.
 light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& simulation,
-                               const light::DisplayRange& light, int slices, Insert& insert, Blurred& sink) {
+                               const light::DisplayRange& light, const std::vector<double>& turns, int slices,
+                               Insert& insert, Blurred& sink) {
   light::LightSeen seen;
   Progress progress("dose", in.info().count);
   io::ReadAhead reader(in, batch);
   std::vector<Image> rows;
   for (std::vector<Image> some = reader.next(); !some.empty(); some = reader.next()) {
     light::shine(light, some, seen);
+    weigh(turns, some);
     progress.tick(static_cast<long>(some.size()));
     std::move(some.begin(), some.end(), std::back_inserter(rows));
   }
@@ -112,16 +117,18 @@ Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options&
   const int first = simulation.climbs() ? 0 : light::first_slice(place.grid, info);
   const light::DisplayRange light{projector && options.negative == "clip", options.full_scale,
                                   printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
+  const std::vector<double> turns = shown_turns(options, info, printer);
   std::optional<model::Circle> judged;
   if (options.exposure_plan) judged = model::writable_circle(place.grid, place.judged_mm);
   Insert insert(place.insert, place.target, place.grid, info);
   Sink sink(volume, place, insert, first, judged);
 
   Exposed exposed;
+  for (const double t : turns) exposed.shown_turns += t / static_cast<double>(turns.size());
   Blurred blurred(blur_mm(options, printer) / place.grid.voxel_mm, sink);
   exposed.climbs = simulation.climbs();
-  exposed.light = exposed.climbs ? expose_volume(in, simulation, light, place.grid.nz, insert, blurred)
-                                 : expose_slices(in, simulation, light, first, insert, blurred);
+  exposed.light = exposed.climbs ? expose_volume(in, simulation, light, turns, place.grid.nz, insert, blurred)
+                                 : expose_slices(in, simulation, light, turns, first, insert, blurred);
   exposed.doses = sink.range();
   exposed.metrics = sink.judged();
   if (insert.there() && place.target != nullptr) exposed.dark_part_voxels = insert.dark_part_voxels();

@@ -18,7 +18,8 @@ namespace vam::dose_tool {
 /// Results of the simulation.
 struct Exposed {
   light::LightSeen light;
-  bool climbs = false;  // rays that climb were followed
+  double shown_turns = 0;  // mean over the stage angles, with --shown
+  bool climbs = false;     // rays that climb were followed
   score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides

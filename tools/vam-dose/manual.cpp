@@ -31,6 +31,13 @@ cli::Manual manual() {
        "the minimum number of turns in which the critical dose lies in the middle half of the process window at full "
        "intensity or less, with the intensity reduced to put it in the middle where it can be; the report's "
        "planned_full_scale is the --full-scale for vam-project.",
+       "With --shown the dose is that which a print has given, by its log: every image for as long as it was on, at "
+       "the "
+       "stage angle that it was on at, missed blanks, an abort and a stop by --until included. stage.speed_deg_s and "
+       "the "
+       "other settings are those of the run: give its printer.toml as --printer. The report then has dose_shown "
+       "instead "
+       "of dose_per_turn, and shown_turns, the mean number of turns over the stage angles.",
        "The point spread of the beam (resin.psf_mm) and the diffusion of dose during the print "
        "(resin.diffusion_mm2_s) blur the volume; the dose beyond its faces is taken as 0."},
       {{"Simulate the print of the disc grid and score it:",
@@ -50,7 +57,13 @@ cli::Manual manual() {
         "handle.vdb | vam-dose --like handle.vdb | vam-score --target handle.vdb"},
        {"Duration of a print in an absorbing resin:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
-        "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"}},
+        "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"},
+       {"The dose of a print that was ended before its time, here a dry run:",
+        "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout 9 "
+        "vam-print short.exr --screen null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 --missed "
+        "0.9 "
+        "--run-up 0.1 --turns 20 --run ended; vam-dose short.exr --shown ended --printer ended/printer.toml --like "
+        "part.vdb --report given.json -o given.vdb"}},
       {"Accuracy: chief-ray doses agree with a sum over individual rays to 1e-3. The dose of a voxel is the mean over "
        "its volume, across the beam exactly for pixels of uniform intensity, along the axis linear between rows. "
        "Outside the radius that is lit from all sides, rays form caustics; doses there are accurate to some per cent.",

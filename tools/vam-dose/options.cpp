@@ -33,6 +33,10 @@ void declare(cli::App& app, Options& options) {
            "the "
            "process window, and write the dose of that exposure.")
       .needs({"--like"});
+  app.option(
+      "--shown", "RUN", options.shown,
+      "Dose that this print has truly given: the run folder of vam-print, or the flip log of vam-project. May be "
+      "repeated, for a print and its resumptions.");
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
@@ -56,6 +60,9 @@ void settle(Options& options, const model::Printer& printer) {
     throw Error{Fault::usage,
                 "--exposure-plan: requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm; without them doses "
                 "are relative"};
+  }
+  if (options.exposure_plan && !options.shown.empty()) {
+    throw Error{Fault::usage, "--shown: the exposure is that of the print; omit --exposure-plan"};
   }
   if (!options.like.empty() && options.size_mm) {
     throw Error{Fault::usage, "--size: --like already determines the voxels"};

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/app.hpp"
 #include "cli/common.hpp"
@@ -23,6 +24,7 @@ struct Options {
   bool in_plane = false;
   std::string negative = "clip";
   bool exposure_plan = false;
+  std::vector<std::string> shown;
   double angle_offset_deg = 0;
   optics::AxisAlignment alignment;
   std::string report;

@@ -45,10 +45,26 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
   if (unit.plan) volume.metadata["vam:full_light_turns"] = format_number(turns, 9);
 }
 
+namespace {
+
+/// What is told of one turn is, of a run, its whole dose; how many turns it would take is no question any more.
+Json of_run(const Json& of_turn, double turns) {
+  Json report{{"shown_turns", turns}};
+  for (const auto& [key, value] : of_turn.items()) {
+    if (key.find("_to_critical_") != std::string::npos) continue;
+    const std::size_t at = key.find("dose_per_turn");
+    report[at == std::string::npos ? key : key.substr(0, at) + "dose_shown" + key.substr(at + 13)] = value;
+  }
+  return report;
+}
+
+}  // namespace
+
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
              const model::StackInfo& light) {
   const light::LightSeen& seen = exposed.light;
   Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
+  if (!options.shown.empty()) report = of_run(report, exposed.shown_turns);
   report["model"] = light.space != model::Space::projector ? "parallel"
                     : exposed.climbs                       ? "chief rays"
                                                            : "level chief rays";

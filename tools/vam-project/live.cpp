@@ -33,6 +33,7 @@ device::PlayTally Live::play(double speed_deg_s, int turns) {
   device::PlayPlan plan;
   plan.frames_per_turn = frames_;
   plan.turns = turns;
+  plan.from_deg = options_.from_deg;
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
   plan.allowed_missed_lit = options_.allowed_missed_lit;

@@ -16,6 +16,8 @@ void add_live(cli::App& app, Options& all) {
   app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
       .default_is("one for each angle of the sinogram");
+  app.option("--from", "DEG", options.from_deg, {0, 1e9},
+             "Stay black until this stage angle: the rest of a print that was ended before its time.");
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
       .default_is("projector.latency_ms");
   app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
@@ -94,8 +96,8 @@ void declare(cli::App& app, Options& options) {
 }
 
 void refuse_live(const cli::App& app, const std::string& output) {
-  for (const char* flag :
-       {"--follow", "--light", "--frames-per-turn", "--latency", "--missed", "--missed-lit", "--plan", "--log"}) {
+  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--missed",
+                           "--missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;
     throw Error{Fault::usage, std::string(flag) + ": applies to live output, but -o names no screen: " +
                                   (output == "-" ? "standard output" : output)};

@@ -22,6 +22,7 @@ struct LiveOptions {
   double allowed_missed = device::PlayPlan{}.allowed_missed;
   double allowed_missed_lit = device::PlayPlan{}.allowed_missed_lit;
   std::optional<int> frames_per_turn;
+  double from_deg = 0;
   bool with_parent = false;
 };
 

@@ -144,16 +144,16 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
     const double speed_deg_s = (angles.at(next_s + 1)->angle_deg - angles.at(next_s)->angle_deg);
     const double expected = std::abs(end_deg / std::max(speed_deg_s, 1e-9)) * display.mode().hz;
     if (predicted->angle_deg >= end_deg) break;
-    const bool lit = predicted->angle_deg >= 0;
-    if (!light_is_on && predicted->angle_deg >= -light_lead_s * speed_deg_s && speed_deg_s > 0) {
+    const bool lit = predicted->angle_deg >= plan.from_deg;
+    if (!light_is_on && predicted->angle_deg >= plan.from_deg - light_lead_s * speed_deg_s && speed_deg_s > 0) {
       require_flips(presenter.tally(), expected, plan.allowed_missed, "in the run-up");
       if (light != nullptr) light->on();
       light_is_on = switched = true;
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
-    presenter.show(
-        lit ? static_cast<int>(nearest % plan.frames_per_turn) : -1, *predicted,
-        predicted->angle_deg >= -360 && !switched);  // the engine's answer may take a blank, while all is black
+    presenter.show(lit ? static_cast<int>(nearest % plan.frames_per_turn) : -1, *predicted,
+                   predicted->angle_deg >= plan.from_deg - 360 &&
+                       !switched);  // the engine's answer may take a blank, while all is black
     if (lit)
       require_flips(presenter.tally(), expected, std::max(plan.allowed_missed, plan.allowed_missed_lit),
                     "in the print");

@@ -13,6 +13,7 @@ namespace vam::device {
 struct PlayPlan {
   int frames_per_turn = 360;  // frame n belongs to the angle 360 n / frames_per_turn
   int turns = 1;
+  double from_deg = 0;               // black before this angle: the rest of a print
   double latency_s = 0;              // from a vertical blank to the light, calibrated
   double allowed_missed = 0.001;     // part of all vertical blanks, by the end of the run-up
   double allowed_missed_lit = 0.01;  // by the end of the print: a vial is not lost to a few
@@ -36,12 +37,12 @@ struct PlayTally {
   long missed = 0;  // while lit or in the run-up
 };
 
-/// Shows black until the predicted angle at the next vertical blank is 0, then for every vertical blank the frame
-/// nearest to the angle in the middle of its showing, then black from 360 * turns on. The light engine (may be null)
-/// goes on a tenth of a second before angle 0 and off right after the last frame. The run-up is a dry run, and judged
-/// more strictly: a frame that stays on for a blank too long costs little of a print, a print that ends costs the vial.
-/// Throws Fault::busy when more than the allowed part of flips is missed, before light when that was in the run-up; and
-/// what display, light and source throw. Black and dark whenever it leaves.
+/// Shows black until the predicted angle at the next vertical blank is plan.from_deg, then for every vertical blank the
+/// frame nearest to the angle in the middle of its showing, then black from 360 * turns on. The light engine (may be
+/// null) goes on a tenth of a second before that and off right after the last frame. The run-up is a dry run, and
+/// judged more strictly: a frame that stays on for a blank too long costs little of a print, a print that ends costs
+/// the vial. Throws Fault::busy when more than the allowed part of flips is missed, before light when that was in the
+/// run-up; and what display, light and source throw. Black and dark whenever it leaves.
 PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log);
 

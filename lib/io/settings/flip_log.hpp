@@ -1,0 +1,24 @@
+// The flips of a print, from the log of vam-project: what was shown when, and at which stage angle.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vam::io {
+
+/// An image that was on the screen, with light.
+struct ShownImage {
+  double angle_deg = 0;  // of the stage in the middle of its showing
+  double seconds = 0;    // until the next flip; of the last one of a print that was killed, as long as the one before
+};
+
+/// The lit images in order, of flips.jsonl or of the run folder (vam-print) that holds it. A last line that is cut is
+/// left out. Throws Fault::no_input, Fault::data for another kind of file.
+[[nodiscard]] std::vector<ShownImage> read_shown(const std::string& path);
+
+/// For how many turns of the stage, at this speed, each of `rows` stage angles was shown, rows evenly over one turn
+/// from 0: the sum over images of seconds over the time that the stage spends at a row. A whole print has its turns in
+/// each.
+[[nodiscard]] std::vector<double> turns_shown(const std::vector<ShownImage>& shown, int rows, double speed_deg_s);
+
+}  // namespace vam::io

@@ -1,0 +1,22 @@
+// The light that prints have truly given, instead of one turn of all that the sinogram asks for.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "base/image.hpp"
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "vam-dose/options.hpp"
+
+namespace vam::dose_tool {
+
+/// Turns for which each row of the sinogram was shown, summed over the runs of --shown; empty without. Throws
+/// Fault::data where nothing was shown at all, or the stack is none of a projector.
+[[nodiscard]] std::vector<double> shown_turns(const Options& options, const model::StackInfo& info,
+                                              const model::Printer& printer);
+
+/// Multiplies each row by its turns; nothing when `turns` is empty.
+void weigh(const std::vector<double>& turns, std::span<Image> sinograms);
+
+}  // namespace vam::dose_tool
