@@ -46,13 +46,15 @@ cli::Manual manual() {
       {"vam-stage", "vam-capture", "vam-project", "vam-print"}};
 }
 
-constexpr struct {
-  const char* kind;
+struct Kind {
+  const char* name;
   const char* advice;
-} kinds[] = {{"stage", "check power and cable; sim: is a simulated one"},
-             {"camera", "check power, cable and, on a network, the address; sim: is a simulated one"},
-             {"display", "connect the projector and switch it on; null: is a dry run"},
-             {"light", "check the USB cable, or use a projector without one; sim: is a simulated one"}};
+};
+constexpr Kind kinds[] = {
+    Kind{"stage", "check power and cable; sim: is a simulated one"},
+    Kind{"camera", "check power, cable and, on a network, the address; sim: is a simulated one"},
+    Kind{"display", "connect the projector and switch it on; null: is a dry run"},
+    Kind{"light", "check the USB cable, or use a projector without one; sim: is a simulated one"}};
 
 void print(const std::vector<device::Found>& found) {
   std::size_t width = 0;
