@@ -1,10 +1,9 @@
-#include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <optional>
 
 #include "io/image/private/av_handles.hpp"
+#include "io/image/private/matroska.hpp"
 #include "io/image/private/video.hpp"
 
 namespace vam::io {
@@ -26,37 +25,22 @@ int bits_of(int pixel_format) {
   }
 }
 
-// An EBML size (RFC 8794 section 4): the leading zeros of the first byte tell how many bytes follow. Empty where it is
-// cut, or "unknown", as in a stream.
-std::optional<std::uint64_t> ebml_size(std::istream& in) {
-  const int first = in.get();
-  if (first <= 0) return std::nullopt;
-  const int following = std::countl_zero(static_cast<std::uint8_t>(first));
-  std::uint64_t value = static_cast<std::uint64_t>(first) & (0x7FU >> following);
-  for (int i = 0; i < following; ++i) value = value << 8 | static_cast<std::uint8_t>(in.get());
-  const std::uint64_t unknown = (std::uint64_t{1} << (7 * (following + 1))) - 1;
-  return in && value != unknown ? std::optional(value) : std::nullopt;
-}
+// Of one frame: every slice ends in its size (3 bytes), where it has checksums a status and the CRC-32 by which the
+// whole slice has the remainder 0 (RFC 9043 section 4.9). libav hides a damaged slice behind the last frame's.
+enum class Slices { right, wrong, broken };
 
-// libavformat takes the end of a cut Matroska file for the end of the film; the segment's size knows better.
-void refuse_cut_matroska(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const auto identifier = [&] {
-    std::string four(4, '\0');
-    in.read(four.data(), 4);
-    return four;
-  };
-  if (identifier() != "\x1a\x45\xdf\xa3") return;
-  if (const auto head = ebml_size(in)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
-  if (identifier() != "\x18\x53\x80\x67") throw Error{Fault::data, path + ": the video is truncated in its head"};
-  const auto size = ebml_size(in);
-  if (!size) return;
-  const std::uint64_t whole = static_cast<std::uint64_t>(in.tellg()) + *size;
-  const std::uint64_t there = std::filesystem::file_size(path);
-  if (there < whole) {
-    throw Error{Fault::data, path + ": the video is truncated: " + std::to_string(there) + " of " +
-                                 std::to_string(whole) + " bytes"};
+Slices judged_slices(const std::uint8_t* bytes, std::size_t size, bool checksums) {
+  const std::size_t footer = checksums ? 8 : 3;
+  bool right = true;
+  while (size > 0) {
+    if (size < footer) return Slices::broken;
+    const std::uint8_t* at = bytes + size - footer;
+    const std::size_t slice = (std::size_t{at[0]} << 16 | std::size_t{at[1]} << 8 | at[2]) + footer;
+    if (slice > size) return Slices::broken;
+    size -= slice;
+    right = right && (!checksums || av_crc(av_crc_get_table(AV_CRC_32_IEEE), 0, bytes + size, slice) == 0);
   }
+  return right ? Slices::right : Slices::wrong;
 }
 
 }  // namespace
@@ -69,6 +53,8 @@ struct VideoReader::State {
   av::Codec codec;
   av::AvFrame frame{av_frame_alloc()};
   av::Packet packet{av_packet_alloc()};
+  std::int64_t announced = 0;  // frames; 0: not known
+  std::int64_t packets = 0;
 
   ~State() { avformat_close_input(&container); }
 
@@ -85,6 +71,10 @@ struct VideoReader::State {
     check(avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
     format = {codec->width, codec->height, bits_of(codec->pix_fmt), av_q2d(found.avg_frame_rate), ""};
     if (format.bits == 0) throw Error{Fault::data, path + ": not a grey video of 8, 10 or 16 bits"};
+    const bool steady = container->nb_streams == 1 && av_cmp_q(found.avg_frame_rate, found.r_frame_rate) == 0;
+    if (codec->codec_id == AV_CODEC_ID_FFV1 && steady && container->duration > 0) {
+      announced = std::llround(static_cast<double>(container->duration) / AV_TIME_BASE * format.fps);
+    }
     if (const AVDictionaryEntry* entry = av_dict_get(container->metadata, "comment", nullptr, 0))
       format.comment = entry->value;
   }
@@ -97,7 +87,22 @@ struct VideoReader::State {
       status = av_read_frame(container, packet.get());
     }
     if (status != AVERROR_EOF) check(status, "reading the video");
+    if (status >= 0) check_packet();
+    if (status < 0 && announced > 0 && packets != announced) {
+      throw Error{Fault::data, path + ": the video has " + std::to_string(packets) + " of " +
+                                   std::to_string(announced) + " frames; write it again"};
+    }
     return status >= 0;
+  }
+
+  void check_packet() {
+    ++packets;
+    if (codec->codec_id != AV_CODEC_ID_FFV1 || codec->extradata_size == 0) return;  // before version 3: no slices
+    const auto size = static_cast<std::size_t>(packet->size);
+    Slices judged = judged_slices(packet->data, size, true);
+    if (judged == Slices::broken) judged = judged_slices(packet->data, size, false);
+    if (judged == Slices::right) return;
+    throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
   }
 
   // Feeds packets until the decoder has a frame; false at the end.
@@ -119,7 +124,7 @@ struct VideoReader::State {
 
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
   if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": no such file"};
-  refuse_cut_matroska(path);
+  require_whole_matroska(path);
   av_log_set_level(AV_LOG_QUIET);
   state_->path = path;
   state_->open();

@@ -134,3 +134,70 @@ TEST_CASE("a truncated video is never read as a shorter one") {
     }
   }
 }
+
+TEST_CASE("damage sweep: no flipped bit of a lossless video goes unseen, and no frame is lost or shown twice") {
+  const scratch::Folder folder;
+  write_video(folder / "a.mkv", 12, 8);
+  const std::string whole = slurp(folder / "a.mkv");
+  const auto frames_of = [&](const std::string& bytes) {
+    scratch::spill(folder / "b.mkv", bytes);
+    VideoReader reader(folder / "b.mkv");
+    std::string seen = std::to_string(reader.format().fps) + reader.format().comment;
+    GreyImage image;
+    while (reader.next(image)) {
+      seen.append(reinterpret_cast<const char*>(image.values.data()), image.values.size() * sizeof(image.values[0]));
+    }
+    return seen;
+  };
+  const std::string wanted = frames_of(whole);
+  const char* given = std::getenv("VAM_TRIALS");
+  const int trials = given != nullptr ? std::atoi(given) : 200;
+  unsigned state = 3;
+  int refused = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    state = state * 1664525U + 1013904223U;
+    const std::size_t at = (state >> 4) % whole.size();
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(damaged[at] ^ (1 << (state >> 29)));
+    CAPTURE(at);
+    std::string seen;
+    const int ended = scratch::status([&] { seen = frames_of(damaged); });
+    CHECK((ended == 65 || (ended == 0 && seen == wanted)));
+    refused += ended == 65 ? 1 : 0;
+  }
+  CHECK(refused > trials / 2);
+  MESSAGE(trials << " flips: " << refused << " refused, the rest changes nothing");
+}
+
+TEST_CASE("without the container's checksums the slices' own are held to, and the number of frames") {
+  const scratch::Folder folder;
+  write_video(folder / "a.mkv", 12, 8);
+  // The checksum elements become fillers (Void) of the same size.
+  std::string bare = slurp(folder / "a.mkv");
+  for (std::size_t sum = bare.find("\xbf\x84"); sum != std::string::npos; sum = bare.find("\xbf\x84", sum + 6)) {
+    bare[sum] = '\xec';
+  }
+  const auto read = [&](const std::string& bytes, std::string* line = nullptr) {
+    scratch::spill(folder / "b.mkv", bytes);
+    return scratch::status(
+        [&] {
+          VideoReader reader(folder / "b.mkv");
+          GreyImage image;
+          while (reader.next(image)) CHECK(image.width == 64);
+        },
+        line);
+  };
+  CHECK(read(bare) == 0);
+  std::string line;
+  const std::string first_frame("\xe7\x81\x00\xa3", 4);  // time 0, then a SimpleBlock
+  const std::size_t at = bare.find(first_frame);
+  REQUIRE(at != std::string::npos);
+  std::string damaged = bare;
+  damaged[at + 100] ^= 4;
+  CHECK(read(damaged, &line) == 65);
+  CHECK(line.find("frame 0 is damaged") != std::string::npos);
+  std::string fewer = bare;
+  fewer[at + 3] = '\xec';  // the frame is a filler, too
+  CHECK(read(fewer, &line) == 65);
+  CHECK(line.find("has 11 of 12 frames") != std::string::npos);
+}

@@ -1,0 +1,108 @@
+#include "io/image/private/matroska.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include "base/error.hpp"
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::uint64_t ebml_head = 0x1a45dfa3;
+constexpr std::uint64_t segment = 0x18538067;
+constexpr std::uint64_t filler = 0xec;  // Void
+constexpr std::array<char, 2> checksum_head{'\xbf', '\x84'};
+constexpr std::uint64_t checksum_bytes = 6;  // head and four bytes
+
+// A number of EBML (RFC 8794 section 4): the leading zeros of the first byte tell how many bytes follow. Its first bit
+// belongs to an identifier and not to a size. Empty where it is cut, or "unknown", as in a stream.
+std::optional<std::uint64_t> number(std::istream& in, bool identifier) {
+  const int first = in.get();
+  if (first <= 0) return std::nullopt;
+  const int following = std::countl_zero(static_cast<std::uint8_t>(first));
+  std::uint64_t value = static_cast<std::uint64_t>(first) & (identifier ? 0xffU : 0x7fU >> following);
+  for (int i = 0; i < following; ++i) value = value << 8 | static_cast<std::uint8_t>(in.get());
+  const std::uint64_t unknown = (std::uint64_t{1} << (7 * (following + 1))) - 1;
+  return in && (identifier || value != unknown) ? std::optional(value) : std::nullopt;
+}
+
+std::uint32_t crc32_of(std::istream& in, std::uint64_t size) {
+  std::vector<char> buffer(std::size_t{1} << 16);
+  uLong sum = crc32(0, nullptr, 0);
+  while (size > 0 && in) {
+    const auto step = static_cast<std::streamsize>(std::min<std::uint64_t>(size, buffer.size()));
+    in.read(buffer.data(), step);
+    sum = crc32(sum, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(in.gcount()));
+    size -= static_cast<std::uint64_t>(step);
+  }
+  return static_cast<std::uint32_t>(sum);
+}
+
+enum class Sum { none, right, wrong };
+
+// Of an element's content, at whose begin the stream stands.
+Sum judged(std::istream& in, std::uint64_t size) {
+  if (size < checksum_bytes) return Sum::none;
+  std::array<char, checksum_bytes> head{};
+  in.read(head.data(), checksum_bytes);
+  if (!std::equal(checksum_head.begin(), checksum_head.end(), head.begin())) return Sum::none;
+  std::uint32_t sealed = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    sealed |= static_cast<std::uint32_t>(static_cast<std::uint8_t>(head[2 + i])) << 8 * i;
+  return crc32_of(in, size - checksum_bytes) == sealed ? Sum::right : Sum::wrong;
+}
+
+void check_parts(std::istream& in, const std::string& path, std::uint64_t end) {
+  std::uint64_t first_bare = 0;
+  bool has_sums = false;
+  while (static_cast<std::uint64_t>(in.tellg()) < end) {
+    const auto at = static_cast<std::uint64_t>(in.tellg());
+    const auto identifier = number(in, true);
+    const auto size = number(in, false);
+    const auto content = static_cast<std::uint64_t>(in.tellg());
+    const auto refuse = [&](std::uint64_t where) {
+      throw Error{Fault::data, path + ": the video is damaged near byte " + std::to_string(where) + "; write it again"};
+    };
+    if (!identifier || !size || content > end || *size > end - content) {
+      if (has_sums) refuse(at);
+      return;  // of unknown size: a stream, which bears no checksums
+    }
+    if (*identifier != filler) {
+      const Sum sum = judged(in, *size);
+      if (sum == Sum::wrong) refuse(at);
+      has_sums = has_sums || sum == Sum::right;
+      if (sum == Sum::none && first_bare == 0) first_bare = at;
+      if (has_sums && first_bare > 0) refuse(first_bare);
+    }
+    in.seekg(static_cast<std::streamoff>(content + *size));
+  }
+}
+
+}  // namespace
+
+void require_whole_matroska(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (number(in, true) != ebml_head) return;
+  if (const auto head = number(in, false)) in.seekg(static_cast<std::streamoff>(*head), std::ios::cur);
+  if (number(in, true) != segment) throw Error{Fault::data, path + ": the video is truncated in its head"};
+  const auto size = number(in, false);
+  if (!size) return;
+  const std::uint64_t whole = static_cast<std::uint64_t>(in.tellg()) + *size;
+  const std::uint64_t there = std::filesystem::file_size(path);
+  if (there < whole) {
+    throw Error{Fault::data, path + ": the video is truncated: " + std::to_string(there) + " of " +
+                                 std::to_string(whole) + " bytes"};
+  }
+  check_parts(in, path, whole);
+}
+
+}  // namespace vam::io
