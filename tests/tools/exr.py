@@ -125,7 +125,7 @@ def read(path):
 
     def rows():
         where = at
-        while where < len(data):
+        for _ in range(sum(struct.unpack("<i", head["chunkCount"])[0] for head in parts)):
             part, row, size = struct.unpack_from("<3i", data, where)
             width = struct.unpack("<4i", parts[part]["dataWindow"])[2] + 1
             yield part, row, struct.unpack("<%df" % width, unpacked(data[where + 12:where + 12 + size], 4 * width))

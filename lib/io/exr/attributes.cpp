@@ -13,6 +13,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "io/stream/seal.hpp"
+
 namespace vam::io::exr {
 
 namespace {
@@ -144,7 +146,8 @@ StackInfo stack_info(const Imf::Header& header) {
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
     const bool ours =
-        name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" || name == poses_name;
+        name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
+        name == poses_name || is_seal_key(name);
     const bool standard = name == "name" || name == "type" || name == "view";
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
   }

@@ -28,6 +28,10 @@ class StackReader {
   /// The next image in ascending order; false after the last. Throws Fault::data where the stream is cut, and where a
   /// pixel is not a finite number.
   bool next(Image& image, model::ImageInfo& about);
+  /// The seal of this stack, 16 digits; empty where it has none, on a pipe until its last image. A stack with a seal is
+  /// held to it: what differs ends in Fault::data, at the header, the image or, on a pipe, after the last one.
+  [[nodiscard]] std::string seal() const;
+  [[nodiscard]] bool is_sealed() const;
   /// After the last image: moves on to the stack that follows on the same stream (a live capture sends one per turn).
   /// False at the end of the stream.
   bool next_stack();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "base/error.hpp"
@@ -14,6 +15,7 @@
 #include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
+#include "io/exr/private/seals.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/stream.hpp"
@@ -77,8 +79,9 @@ struct StackWriter::State {
   std::vector<std::uint64_t> offsets;  // of every chunk of every part, from the start of the file
   std::uint64_t position = 0;          // of the next chunk
   std::size_t head_bytes = 0;
-  bool stale_head = false;  // facts came after it was written
-  bool settled = false;     // the first image has decided what the headers hold
+  std::vector<Digest> seals;  // of the values, a part
+  bool trailing = false;      // they follow the pixels
+  bool settled = false;       // the first image has decided what the headers hold
   std::vector<Image> waiting;
   std::size_t done = 0;  // images taken in
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> spool{nullptr, std::fclose};
@@ -117,6 +120,8 @@ std::string StackWriter::State::head() const {
   exr::append(bytes, flags);
   for (int i = 0; i < info.count; ++i) {
     exr::set_own(header, info, i, about[i]);
+    exr::set_seals(header, exr::facts_digest(info, i, about[i]),
+                   trailing ? std::nullopt : std::optional(seals[static_cast<std::size_t>(i)]));
     bytes += exr::serialize(header);
   }
   bytes += '\0';
@@ -136,6 +141,8 @@ void StackWriter::State::settle(const ImageInfo& own) {
   }
   const auto chunks = static_cast<std::size_t>(exr::chunk_count(info.height, compression));
   offsets.resize(chunks * about.size());
+  seals.resize(about.size());
+  trailing = out.is_stream() && !late_facts;
   head_bytes = head().size();
   position = head_bytes;
   if (out.is_stream()) {
@@ -168,7 +175,6 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
       throw Error{Fault::bug, what + " has other facts than announced"};
     }
     about[done] = own;
-    stale_head = true;
   }
   waiting.push_back(image);
   ++done;
@@ -177,11 +183,12 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
 
 void StackWriter::State::flush() {
   std::vector<exr::Chunks> encoded(waiting.size());
+  std::size_t part = done - waiting.size();
   parallel_for(static_cast<int>(waiting.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     encoded[at] = exr::encode(waiting[at], type, compression);
+    seals[part + at] = exr::stored_digest(waiting[at], type, compression, encoded[at]);
   });
-  std::size_t part = done - waiting.size();
   for (const exr::Chunks& image : encoded) {
     std::string bytes;
     bytes.reserve(image.bytes.size() + 4 * image.starts.size());
@@ -195,6 +202,7 @@ void StackWriter::State::flush() {
     ++part;
   }
   waiting.clear();
+  if (trailing && done == about.size()) out.write(exr::trailer(seals));
 }
 
 void StackWriter::State::send(const std::string& bytes) {

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "io/stream/seal.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -68,10 +70,10 @@ CoordBBox box_of(const FloatGrid& sparse) {
   return box;
 }
 
-bool is_written_by_library(const std::string& key) {
+bool is_written_anew(const std::string& key) {
   static const std::array keys = {FloatGrid::META_GRID_NAME, FloatGrid::META_GRID_CLASS, FloatGrid::META_GRID_CREATOR,
                                   FloatGrid::META_VECTOR_TYPE};
-  return key.starts_with("file_") || std::find(keys.begin(), keys.end(), key) != keys.end();
+  return key.starts_with("file_") || is_seal_key(key) || std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
 void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
@@ -83,7 +85,7 @@ void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
       for (std::string line; std::getline(lines, line);) facts.history.push_back(line);
     } else if (it->first == units_key) {
       facts.units = value;
-    } else if (!is_written_by_library(it->first)) {
+    } else if (!is_written_anew(it->first)) {
       facts.metadata[it->first] = value;
     }
   }
@@ -91,16 +93,21 @@ void take_metadata(const FloatGrid& sparse, VolumeFacts& facts) {
 
 }  // namespace
 
-VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
-  const CoordBBox box = box_of(sparse);
+VolumeFacts head_of(const FloatGrid& sparse) {
   VolumeFacts facts;
   facts.name = sparse.getName();
+  facts.level_set = sparse.getGridClass() == openvdb::GRID_LEVEL_SET;
+  take_metadata(sparse, facts);
+  return facts;
+}
+
+VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
+  const CoordBBox box = box_of(sparse);
+  VolumeFacts facts = head_of(sparse);
   facts.grid = {box.dim().x(), box.dim().y(), box.dim().z(), 1.0, {}};
   facts.background = sparse.background();
-  facts.level_set = sparse.getGridClass() == openvdb::GRID_LEVEL_SET;
   first = box.min();
   set_transform(sparse, first, facts.grid);
-  take_metadata(sparse, facts);
   return facts;
 }
 

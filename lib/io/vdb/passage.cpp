@@ -34,6 +34,7 @@ void pass_head(const Pass& pass, GridHead& head) {
   pass(facts.background);
   pass(facts.units);
   pass(facts.level_set);
+  pass(facts.seal);
   pass(head.unique_name);
   pass(head.shares);
   for (int axis = 0; axis < 3; ++axis) pass(head.first[axis]);

@@ -17,6 +17,7 @@
 #include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/passage.hpp"
+#include "io/vdb/private/seals.hpp"
 
 namespace vam::io {
 
@@ -30,25 +31,44 @@ using Leaf = Tree::LeafNodeType;
 
 static_assert(Leaf::SIZE == 512 && Leaf::NodeMaskType::WORD_COUNT == 8, "what a LeafRecord holds");
 
-std::array<std::int32_t, 3> numbers(const Coord& at) { return {at.x(), at.y(), at.z()}; }
-
 // OpenVDB reads name, metadata, transform and topology of a grid before it calls readBuffers().
 class PassingGrid : public FloatGrid {
  public:
   PassingGrid(std::string unique_name, bool shown, Sender& out)
       : unique_name_(std::move(unique_name)), shown_(shown), out_(out) {}
 
+  // A sealed grid is held to its seals, the head before its topology is read.
+  void readTopology(std::istream& stream) override {
+    take_seals();
+    FloatGrid::readTopology(stream);
+  }
+  void send_head_alone(std::istream& stream) {
+    readMeta(stream);
+    readTransform(stream);
+    take_seals();
+    GridHead head;
+    head.facts = head_of(*this);
+    head.unique_name = unique_name_;
+    add_seal(seals_, head.facts);
+    send_head(std::move(head), out_);
+  }
+  void take_seals() { seals_ = judged_seals(*this); }
+
   void readBuffers(std::istream& stream) override {
+    VoxelSealer voxels;
+    if (seals_) voxels.begin(constTree());
     if (shown_) {
       send("");
       send_tiles();
     }
     for (auto leaf = tree().beginLeaf(); leaf; ++leaf) {
       leaf->readBuffers(stream, saveFloatAsHalf());
-      if (shown_) send(*leaf);
+      if (shown_ || seals_) send(*leaf, voxels);
       Leaf::Buffer gone(openvdb::PartialCreate(), 0.0F);
       leaf->swap(gone);
     }
+    values_ = voxels.digest();
+    judge(values_);
   }
   void readBuffers(std::istream& stream, const CoordBBox&) override { readBuffers(stream); }
 
@@ -60,8 +80,16 @@ class PassingGrid : public FloatGrid {
     const openvdb::Vec3d zero = indexToWorld(Coord(0));
     head.zero_mm = {zero.x(), zero.y(), zero.z()};
     check(std::isfinite(head.facts.background));
+    add_seal(seals_, head.facts);
     send_head(std::move(head), out_);
   }
+
+  // A grid that shares the voxels of another has seals of its own.
+  void judge(const Digest& values) const {
+    if (!seals_ || seals_->values == values) return;
+    throw std::runtime_error(mismatch("grid '" + getName() + "'", seals_->values, values));
+  }
+  [[nodiscard]] const Digest& values() const { return values_; }
 
  private:
   void check(bool finite) const {
@@ -69,26 +97,17 @@ class PassingGrid : public FloatGrid {
   }
 
   void send_tiles() const {
-    auto tile = constTree().cbeginValueAll();
-    tile.setMaxDepth(Tree::DEPTH - 2);  // above the leaves
-    for (; tile; ++tile) {
-      if (*tile == background() && !tile.isValueOn()) continue;
-      check(std::isfinite(*tile));
-      CoordBBox box;
-      tile.getBoundingBox(box);
+    for_tiles(constTree(), [this](const TileRecord& tile) {
+      check(std::isfinite(tile.value));
       out_.put(Record::tile);
-      out_.put(TileRecord{numbers(box.min()), static_cast<std::int32_t>(tile.getLevel()), *tile, tile.isValueOn()});
-    }
+      out_.put(tile);
+    });
   }
 
-  void send(const Leaf& leaf) const {
-    LeafRecord record;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled at once
-    record.corner = numbers(leaf.origin());
-    record.padding = 0;
-    for (openvdb::Index word = 0; word < Leaf::NodeMaskType::WORD_COUNT; ++word) {
-      record.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
-    }
-    std::copy_n(leaf.buffer().data(), Leaf::SIZE, record.values.data());
+  void send(const Leaf& leaf, VoxelSealer& voxels) const {
+    const LeafRecord record = record_of(leaf);
+    if (seals_) voxels.add(record);
+    if (!shown_) return;
     check(all_finite(record.values.data(), Leaf::SIZE));
     out_.put(Record::leaf);
     out_.put(record);
@@ -97,12 +116,14 @@ class PassingGrid : public FloatGrid {
   std::string unique_name_;
   bool shown_;
   Sender& out_;
+  std::optional<GridSeals> seals_;
+  Digest values_;
 };
 
 // The grids of one archive after the other.
 class Archive : public openvdb::io::Archive {
  public:
-  Archive(const std::optional<std::string>& wanted, Sender& out) : wanted_(wanted), out_(out) {}
+  Archive(const Wanted& wanted, Sender& out) : wanted_(wanted), out_(out) {}
 
   void pass(std::istream& stream) {
     readHeader(stream);
@@ -130,16 +151,23 @@ class Archive : public openvdb::io::Archive {
  private:
   void pass_floats(const openvdb::io::GridDescriptor& about, std::istream& stream,
                    std::map<std::string, PassingGrid*>& grids) {
-    const bool shown = !wanted_ || (about.gridName() == *wanted_ && !found_);
+    const bool shown = !wanted_.name || (about.gridName() == *wanted_.name && !found_);
     const auto grid = std::make_shared<PassingGrid>(about.uniqueName(), shown, out_);
     kept_.push_back(grid);
     grids[about.uniqueName()] = grid.get();
     grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
-    if (wanted_ && about.isInstance() && about.gridName() == *wanted_) {
-      throw std::runtime_error("grid '" + *wanted_ + "' shares the voxels of '" + about.instanceParentName() +
+    if (wanted_.name && about.isInstance() && about.gridName() == *wanted_.name) {
+      throw std::runtime_error("grid '" + *wanted_.name + "' shares the voxels of '" + about.instanceParentName() +
                                "'; write it as a grid of its own");
     }
     found_ = found_ || shown;
+    const bool new_order = openvdb::io::getFormatVersion(stream) >= openvdb::OPENVDB_FILE_VERSION_GRID_INSTANCING;
+    if (wanted_.heads_alone && new_order && about.getEndPos() > stream.tellg()) {
+      readGridCompression(stream);
+      grid->send_head_alone(stream);
+      stream.seekg(about.getEndPos() - stream.tellg(), std::ios_base::cur);
+      return;
+    }
     readGrid(grid, about, stream);
     if (!shown) {
       out_.put(Record::other);
@@ -148,11 +176,13 @@ class Archive : public openvdb::io::Archive {
       const auto parent = grids.find(about.instanceParentName());
       if (parent == grids.end()) throw std::runtime_error("grid '" + about.gridName() + "' shares unknown voxels");
       grid->setTree(parent->second->treePtr());
+      grid->take_seals();
+      grid->judge(parent->second->values());
       grid->send(about.instanceParentName());
     }
   }
 
-  const std::optional<std::string>& wanted_;
+  const Wanted& wanted_;
   Sender& out_;
   bool found_ = false;
   std::vector<openvdb::GridBase::Ptr>& kept_ = *new std::vector<openvdb::GridBase::Ptr>;  // for ever
@@ -160,7 +190,7 @@ class Archive : public openvdb::io::Archive {
 
 }  // namespace
 
-void send_archives(InputFile& file, const std::optional<std::string>& wanted, Sender& out) {
+void send_archives(InputFile& file, const Wanted& wanted, Sender& out) {
   Archive archive(wanted, out);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);

@@ -51,7 +51,7 @@ class SparseVolume {
 [[nodiscard]] double farthest_mm(const SparseVolume& volume, float above);
 
 /// All float grids of a file or of the archives on stdin ("-"). Throws Error: no_input, data (not VDB, truncated, not
-/// float, non-uniform or rotated transform, NaN values), io.
+/// float, non-uniform or rotated transform, NaN values, other than what was sealed), io.
 std::vector<SparseVolume> read_volumes(const std::string& path);
 
 /// The grid of that name; the only grid when name is empty. Throws Fault::data naming the grids that are there.
@@ -66,6 +66,7 @@ struct VolumeFacts {
   std::string units = "relative";
   std::map<std::string, std::string> metadata;
   bool level_set = false;  // distances, as the file says
+  std::string seal;        // 16 digits; empty: not sealed
 };
 
 /// A cube of voxels as OpenVDB stores them. Its corner is voxel (i, j, k); parts of it may lie beyond the volume's box.
@@ -86,7 +87,12 @@ using BlockTaker = std::function<void(const VoxelBlock&)>;
 void read_blocks(const std::string& path, const std::string& name,
                  const std::function<BlockTaker(const VolumeFacts&)>& begin);
 
-/// Writes one archive. "-" is stdout. A file appears under its final name only when complete.
+/// What the grids of floats are, and whether they are what was written; of a file `fast` looks at their heads alone,
+/// and leaves grid and background out. Throws what read_volumes throws.
+[[nodiscard]] std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast);
+
+/// Writes one archive, with seals: who reads it is told where it differs. "-" is stdout. A file appears under its final
+/// name only when complete.
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes);
 void write_volume(const std::string& path, SparseVolume& volume);
 

@@ -16,6 +16,7 @@
 #include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"
+#include "io/vdb/private/seals.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
@@ -46,6 +47,7 @@ void set_metadata(SparseVolume& volume) {
   sparse.insertMeta(shape_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.nx, grid.ny, grid.nz)));
   const Coord& first = volume.state().first;
   if (first != Coord(0)) sparse.insertMeta(first_key, openvdb::Vec3IMetadata(first.asVec3i()));
+  seal(sparse);
 }
 
 // OpenVDB marks every archive with a random UUID, so that no two runs would give the same bytes. Here it follows from

@@ -104,7 +104,11 @@ TEST_CASE("facts and voxels survive a file and a pipe") {
     CHECK(read[0].grid().nz == grid.nz);
     CHECK(read[0].grid().voxel_mm == grid.voxel_mm);
     CHECK(read[0].grid().origin_mm == grid.origin_mm);
-    CHECK(read[0].history == volumes[0].history);
+    auto history = volumes[0].history;
+    REQUIRE(read[0].history.size() == 3);
+    CHECK(read[0].history[2].size() == std::string("# sealed 0123456789abcdef").size());
+    history.push_back(read[0].history[2]);
+    CHECK(read[0].history == history);
     CHECK(read[0].metadata == volumes[0].metadata);
     CHECK(read[0].units == "relative");
     CHECK(dense(read[0]) == values);

@@ -17,4 +17,7 @@ inline constexpr const char* first_key = "vam:first_index";  // of that box, whe
 /// or empty box.
 [[nodiscard]] VolumeFacts facts_of(const openvdb::FloatGrid& sparse, openvdb::Coord& first);
 
+/// Of these what stands before the topology: name, class and metadata.
+[[nodiscard]] VolumeFacts head_of(const openvdb::FloatGrid& sparse);
+
 }  // namespace vam::io

@@ -45,9 +45,14 @@ struct LeafRecord {
   std::array<float, 512> values;
 };
 
-/// The child's work: sends every archive of the file, of the grids named `wanted` only the first one's voxels where a
-/// name is given. Throws what for_archives() throws.
-void send_archives(InputFile& file, const std::optional<std::string>& wanted, Sender& out);
+/// What is sent of the grids of floats.
+struct Wanted {
+  std::optional<std::string> name;  // the first of that name alone
+  bool heads_alone = false;         // in a file; on a pipe they are read to their ends
+};
+
+/// The child's work: sends every archive of the file. Throws what for_archives() throws.
+void send_archives(InputFile& file, const Wanted& wanted, Sender& out);
 
 void send_head(GridHead head, Sender& out);
 /// After its Record.

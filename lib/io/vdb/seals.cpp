@@ -1,0 +1,85 @@
+#include "io/vdb/private/seals.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "io/vdb/private/facts.hpp"
+
+namespace vam::io {
+
+namespace {
+
+std::string text(const openvdb::FloatGrid& sparse, const char* key) {
+  const auto found = sparse.getMetadata<openvdb::StringMetadata>(key);
+  return found ? found->value() : "";
+}
+
+}  // namespace
+
+Digest facts_digest(const openvdb::FloatGrid& sparse) {
+  Sealer sealer;
+  sealer.add(sparse.getName());
+  sealer.add(static_cast<int>(sparse.getGridClass()));
+  const openvdb::Mat4d matrix = sparse.transform().baseMap()->getAffineMap()->getMat4();
+  sealer.add(matrix.asPointer(), 16 * sizeof(double));
+  for (auto it = sparse.beginMeta(); it != sparse.endMeta(); ++it) {  // in the order of their names
+    if (!is_sealed_name(it->first)) continue;
+    sealer.add(it->first);
+    sealer.add(std::string(it->second->typeName()));
+    sealer.add(it->second->str());
+  }
+  return sealer.digest();
+}
+
+void VoxelSealer::begin(const openvdb::FloatTree& tree) {
+  sealer_.add(tree.background());
+  for_tiles(tree, [this](const TileRecord& tile) { sealer_.add(&tile, sizeof tile); });
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
+    for (openvdb::Index word = 0; word < 8; ++word) sealer_.add(leaf->valueMask().getWord<openvdb::Index64>(word));
+  }
+}
+
+LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf) {
+  LeafRecord record;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled at once
+  record.corner = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
+  record.padding = 0;
+  for (openvdb::Index word = 0; word < record.active.size(); ++word) {
+    record.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
+  }
+  std::copy_n(leaf.buffer().data(), record.values.size(), record.values.data());
+  return record;
+}
+
+void seal(openvdb::FloatGrid& sparse) {
+  VoxelSealer voxels;
+  voxels.begin(sparse.constTree());
+  for (auto leaf = sparse.constTree().cbeginLeaf(); leaf; ++leaf) voxels.add(record_of(*leaf));
+  sparse.insertMeta(facts_seal_key, openvdb::StringMetadata(seal_text(facts_digest(sparse))));
+  sparse.insertMeta(values_seal_key, openvdb::StringMetadata(seal_text(voxels.digest())));
+}
+
+std::optional<GridSeals> judged_seals(const openvdb::FloatGrid& sparse) {
+  const std::string facts = text(sparse, facts_seal_key);
+  const std::string values = text(sparse, values_seal_key);
+  if (facts.empty() && values.empty()) return std::nullopt;
+  const std::string grid = "grid '" + sparse.getName() + "'";
+  GridSeals seals;
+  if (!parse_seal(facts, seals.facts) || !parse_seal(values, seals.values)) {
+    throw std::runtime_error(grid + " has a damaged seal; make the file again");
+  }
+  const Digest read = facts_digest(sparse);
+  if (read != seals.facts) throw std::runtime_error(mismatch("the head of " + grid, seals.facts, read));
+  return seals;
+}
+
+void add_seal(const std::optional<GridSeals>& seals, VolumeFacts& facts) {
+  if (!seals) return;
+  const std::string line = chain_line(seals->facts, seals->values);
+  facts.seal = chained_seal(line);
+  const bool named = !facts.history.empty() && !chained_seal(facts.history.back()).empty();
+  if (!named) facts.history.push_back(line);
+}
+
+}  // namespace vam::io
