@@ -57,6 +57,12 @@ App& App::positional(const std::string& value_name, std::string& target, const s
   return *this;
 }
 
+App& App::positional(const std::string& value_name, std::vector<std::string>& target, const std::string& help) {
+  state_->tool.positionals.push_back({value_name, help, join(target, " ")});
+  state_->parser->add_option(split(value_name, ' ').front(), target)->type_size(1)->expected(-1);
+  return *this;
+}
+
 App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
   return declare(
       {flag, value_name, help, target, "", {}}, [&target](const std::string& text) { target = text; },

@@ -60,6 +60,8 @@ class App {
   /// An empty target: required. former: the option that the operand was, which works with one line on stderr.
   App& positional(const std::string& value_name, std::string& target, const std::string& help,
                   const std::string& former = "");
+  /// The last one: all operands that are left; target holds the one that stands for none.
+  App& positional(const std::string& value_name, std::vector<std::string>& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help);
   App& option(const std::string& flag, const std::string& value_name, double& target, Range range,
               const std::string& help);

@@ -75,10 +75,10 @@ quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure-mode
 ok "its dose" vam-curethrough model layered.exr --target ladder.vdb $light --report layered.json
 is "no undercure layer by layer" "$(json layered.json undercured.voxels)" 0
 is "no cure-through layer by layer" "$(json layered.json cure_through.voxels)" 0
-quiet "one thread" vam-curethrough correct ladder.vdb $light --threads 1 -o same.exr
-quiet "three threads" sh -c "mkdir three && cp ladder.vdb three && cd three && vam-curethrough correct ladder.vdb $light --threads 3 -o same.exr"
-sed 's/--threads 3/--threads 1/' <three/same.exr >three.exr
-same "any number of threads gives the same bytes" same.exr three.exr
+# The history, and so the seal, has the options: one core stands for one thread.
+quiet "one thread" taskset -c 0 vam-curethrough correct ladder.vdb $light -o same.exr
+quiet "all threads" sh -c "mkdir all && cp ladder.vdb all && cd all && vam-curethrough correct ladder.vdb $light -o same.exr"
+same "any number of threads gives the same bytes" same.exr all/same.exr
 quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame --set projector.pixel_mm=0.05 -o full.exr
 
 # ---- a catalogue

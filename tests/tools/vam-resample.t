@@ -11,8 +11,8 @@ is "pitch" "$($exr attr pipe.exr vam:pixel_mm)" 0.065
 is "history" "$($exr attr pipe.exr vam:history | tail -n 1 | cut -d' ' -f1,3-)" "vam-resample virtual.exr"
 vam-resample <virtual.exr >stdin.exr
 is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pipe.exr)"
-vam-resample --threads 1 virtual.exr >one.exr
-vam-resample --threads 2 virtual.exr | sed 's/--threads 2/--threads 1/' >two.exr
+taskset -c 0 vam-resample virtual.exr >one.exr  # the history, and so the seal, has the options
+vam-resample virtual.exr >two.exr
 same "1 and 2 threads give identical bytes" one.exr two.exr
 
 # A constant sinogram shows the weights: J/T of the table in [physics §2] (column at 0.065 * 650 mm).

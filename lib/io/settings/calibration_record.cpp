@@ -14,6 +14,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/private/printer_fields.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -56,13 +57,25 @@ std::string beside(const CalibrationRecord& record, const char* file) {
   return (fs::path(record.path).parent_path() / record.json->at("files").at(file).get<std::string>()).string();
 }
 
+// A table bears no seal of its own.
+std::string table_beside(const CalibrationRecord& record, const char* file) {
+  std::string path = beside(record, file);
+  const Json hashes = record.json->value("sha256", Json::object());
+  const std::string recorded = hashes.value(fs::path(path).filename().string(), "");
+  if (const std::string read = recorded.empty() ? recorded : sha256_of(path); read != recorded) {
+    throw Error{Fault::data, path + ": changed after it was measured (SHA-256 recorded " + recorded.substr(0, 8) +
+                                 ", read " + read.substr(0, 8) + "); run vam-calibrate"};
+  }
+  return path;
+}
+
 void take_over(model::Printer& printer, const CalibrationRecord& record) {
   const std::string scan = record.json->at("scan");
   if (scan == "edges") {
     printer.projector.axis_column = record.value("axis_column");
     printer.vial.radius_mm = record.value("radius");
   } else if (scan == "response") {
-    printer.projector.response = beside(record, "response");
+    printer.projector.response = table_beside(record, "response");
   } else if (scan == "flat") {
     printer.camera.flat = beside(record, "flat");
   } else if (scan == "axis") {
@@ -161,6 +174,7 @@ std::string write_record(const model::Calibration& calibration, const std::strin
               {"instrument", calibration.instrument},
               {"vial", calibration.vial}};
   record.update(facts);
+  seal_json(record);
   OutputFile file(path, Content::text);
   file.write(record.dump(2) + "\n");
   file.commit();
@@ -183,6 +197,7 @@ std::optional<CalibrationRecord> current_record(const model::Calibration& calibr
       record.json->value("scan", "") != scan || !record.json->contains("values")) {
     throw Error{Fault::data, path + ": is not a " + schema + " record of " + scan + "; run vam-calibrate"};
   }
+  require_seal(*record.json, path);
   return record;
 }
 

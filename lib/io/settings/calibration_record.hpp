@@ -42,7 +42,8 @@ struct CalibrationRecord {
   [[nodiscard]] double sigma(const std::string& name) const;
 };
 
-/// The current record of a scan, unjudged; nothing when there is none. Throws Fault::data for a damaged one.
+/// The current record of a scan, unjudged; nothing when there is none. Throws Fault::data for a damaged one, and for
+/// one that its seal is not of.
 [[nodiscard]] std::optional<CalibrationRecord> current_record(const model::Calibration& calibration,
                                                               const std::string& scan);
 

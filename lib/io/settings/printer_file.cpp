@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_fields.hpp"
+#include "io/settings/sealed_text.hpp"
 
 namespace vam::io {
 
@@ -260,6 +261,7 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
   Printer printer;
   if (!path.empty()) {
     const std::string text = slurp(path);
+    require_text_seal(text, path);
     printer = read_settings(text, path);
     warn_of_cut(text, path);
     const auto beside = std::filesystem::path(path).parent_path();

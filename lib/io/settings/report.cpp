@@ -1,6 +1,7 @@
 #include "io/settings/report.hpp"
 
 #include "base/json.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -9,6 +10,7 @@ void write_report(const std::string& path, const std::string& schema, const Json
   if (path.empty()) return;
   Json report{{"schema", schema}};
   report.update(figures);
+  seal_json(report);
   OutputFile file(path, Content::text);
   file.write(report.dump(2) + "\n");
   file.commit();

@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -20,6 +21,7 @@ double gelation_isovalue(const std::string& path) {
     if (record.at("schema") != "vam-resin/1")
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
+    require_seal(record, path);
     isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
   } catch (const Json::exception& error) {
     throw Error{Fault::data, path + ": not a record of vam-calibrate resin (" + error.what() + ")"};

@@ -50,6 +50,11 @@ std::string stdin_head() {
 }
 
 std::string file_head(const std::string& path) {
+  std::error_code ignored;
+  const auto about = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(about) && !std::filesystem::is_regular_file(about)) {  // a look would take its bytes
+    throw Error{Fault::no_input, path + ": is no regular file; give it on standard input"};
+  }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error{Fault::no_input, path + ": cannot open the file (" + std::strerror(errno) + ")"};
   std::string head(look, '\0');
@@ -67,15 +72,22 @@ bool begins_a_volume(const std::string& head) { return head.starts_with(" BDV");
 
 bool is_volume(const std::string& path) { return begins_a_volume(head_of(path)); }
 
-FileType file_type(const std::string& path) {
+std::optional<FileType> known_file_type(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) return FileType::images;
   const std::string head = head_of(path);
   if (begins_a_volume(head)) return FileType::volume;
   if (head.starts_with("\x76\x2f\x31\x01")) return FileType::stack;
   if (head.starts_with("\x1a\x45\xdf\xa3") || (head.size() >= 8 && head.substr(4, 4) == "ftyp")) return FileType::video;
+  return std::nullopt;
+}
+
+FileType file_type(const std::string& path) {
+  if (const auto known = known_file_type(path)) return *known;
   const std::string name = input_name(path);
-  if (head.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
+  if (head_of(path).empty()) {
+    throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
+  }
   throw Error{Fault::data, name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of images"};
 }
 

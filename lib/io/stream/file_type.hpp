@@ -1,6 +1,7 @@
 // What a file is, by its first bytes.
 #pragma once
 
+#include <optional>
 #include <string>
 
 namespace vam::io {
@@ -15,6 +16,9 @@ enum class FileType {
 /// Peeks without consuming, so that the next reader receives every byte; "-" is stdin, a file or a pipe.
 /// Throws Error: no_input, data (none of these).
 [[nodiscard]] FileType file_type(const std::string& path);
+
+/// The same; nothing for a file that is none of these.
+[[nodiscard]] std::optional<FileType> known_file_type(const std::string& path);
 
 /// Where a mesh may stand as well: is it a volume? Throws Fault::no_input.
 [[nodiscard]] bool is_volume(const std::string& path);

@@ -9,6 +9,7 @@
 #include "base/json.hpp"
 #include "fault_of.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/stream/stream.hpp"
 #include "scratch.hpp"
 
 using namespace vam;
@@ -127,4 +128,41 @@ TEST_CASE("records override the printer file and --set overrides records") {
   CHECK(load_printer(file, {}, Records::ignore).projector.axis_column == 400);
   CHECK(load_printer(file, {"calibration.folder="}).projector.axis_column == 400);
   CHECK(has(message_of([&] { (void)load_printer(file, {"calibration.instrument=other"}); }), "is of instrument"));
+}
+
+TEST_CASE("a changed digit in a record, or in its response table, is refused; its layout is free") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  const std::string path = write_record(calibration, "edges", edges(511.3, 12), now_s);
+  const std::string whole = scratch::slurp(path);
+  const auto refusal = [&](const std::string& text) {
+    std::filesystem::remove(path);
+    scratch::spill(path, text);
+    return message_of([&] { (void)current_record(calibration, "edges"); });
+  };
+  CHECK(refusal(Json::parse(whole).dump()).empty());
+  std::string changed = whole;
+  changed.replace(changed.find("511.3"), 5, "591.3");
+  CHECK(has(refusal(changed), "current-edges.json: changed after it was written (sealed "));
+  CHECK(has(refusal(changed), "remove its key seal if the change was meant"));
+  Json bare = Json::parse(changed);
+  bare.erase("seal");
+  CHECK(refusal(bare.dump()).empty());  // as a record of before, or by hand
+  bare["seal"] = 7;
+  CHECK(has(refusal(bare.dump()), "sealed illegibly"));
+
+  const std::string table = (std::filesystem::path(calibration.folder) / "r.csv").string();
+  scratch::spill(table, "grey,intensity\n0,0\n255,3.5\n");
+  write_record(calibration, "response",
+               {{"status", "pass"},
+                {"values", Json::object()},
+                {"files", {{"response", "r.csv"}}},
+                {"sha256", {{"r.csv", sha256_of(table)}}}},
+               now_s);
+  model::Printer printer;
+  std::filesystem::remove(std::filesystem::path(calibration.folder) / "current-edges.json");
+  apply_records(printer, calibration, now_s);
+  CHECK(printer.projector.response == table);
+  scratch::spill(table, "grey,intensity\n0,0\n255,8.5\n");
+  CHECK(has(message_of([&] { apply_records(printer, calibration, now_s); }), "r.csv: changed after it was measured"));
 }

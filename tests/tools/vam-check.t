@@ -1,0 +1,84 @@
+# Files that show that they are what was written, and what they were made from.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH
+
+flip() {  # flip FILE BYTE TO: one bit of it, counted from the end where negative
+  python3 - "$@" <<'PY'
+import sys
+data = bytearray(open(sys.argv[1], 'rb').read())
+data[int(sys.argv[2])] ^= 4
+open(sys.argv[3], 'wb').write(data)
+PY
+}
+
+box 6 6 3 >a.off
+vam-slice a.off --voxel 0.3 -o part.vdb
+vam-sinogram part.vdb -o sino.exr
+ok 'part and sinogram are whole' vam-check part.vdb sino.exr
+cp .log/out chain
+is 'and sealed' "$(grep -c ', sealed [0-9a-f]\{16\}$' chain)" 2
+part=$(sed -n "s/^part.vdb: grid 'target', sealed //p" chain)
+is 'the sinogram names its part' "$(grep "^  $part  vam-slice .*  (part.vdb)\$" chain | sort -u | wc -l)" 1
+is 'and itself' "$(grep -c '^  [0-9a-f]\{16\}  vam-sinogram .*  (sino.exr)$' chain)" 1
+is 'another part has another seal' "$(vam-slice a.off --voxel 0.4 -o b.vdb && vam-check b.vdb | grep -c "$part")" 0
+
+flip sino.exr -500 bad.exr
+fails 65 'bad.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); make it again' vam-check bad.exr
+fails 65 'bad.exr: image [0-9]* changed' vam-resample bad.exr -o frames.exr
+ok 'headers alone do not see it' vam-check --fast bad.exr
+python3 - <<'PY'
+data = open('sino.exr', 'rb').read()
+at = data.find(b'vam:pixel_mm\0double\0') + 24
+open('head.exr', 'wb').write(data[:at + 5] + bytes([data[at + 5] ^ 1]) + data[at + 6:])
+PY
+fails 65 'head.exr: the header of part 0 changed' vam-check --fast head.exr
+flip part.vdb -40 bad.vdb
+fails 65 "bad.vdb: .*(grid 'target' changed|damaged)" vam-check bad.vdb
+ok 'heads of a volume' vam-check --fast part.vdb
+
+vam-check bad.exr part.vdb head.exr >out 2>err
+is 'all files are checked' "$? $(grep -c 'part.vdb' out) $(wc -l <err) $(grep -c 'warning: head.exr' err)" '65 2 2 1'
+vam-sinogram part.vdb | vam-check >out
+is 'a pipe is held to its seals' "$? $(grep -c '^stdin: stack of [0-9]* images, sealed [0-9a-f]\{16\}$' out)" '0 1'
+vam-sinogram part.vdb >pipe.exr
+flip pipe.exr -2000 cut.exr
+fails 65 'stdin: image [0-9]* changed|stdin: the seals' sh -c 'vam-check <cut.exr'
+head -c -16 pipe.exr >cut.exr
+fails 65 'is cut off' vam-check cut.exr
+
+python3 "$VAM_SOURCE/tests/tools/exr.py" make foreign.exr
+is 'a file of another program is read, and said to be unsealed' "$(vam-check foreign.exr | head -n 1) $?" \
+  'foreign.exr: stack of 3 images, unsealed 0'
+ok 'by the check alone' vam-resample foreign.exr -o r.exr
+is 'a mesh, too' "$(vam-check a.off)" 'a.off: file of another kind, unsealed'
+
+# ---- records, reports, printer files -------------------------------------------------------------------------------
+vam-slice --print-printer --set vial.radius_mm=11.5 -o printer.toml
+is 'a printer file is for people to edit' "$(vam-check printer.toml)" 'printer.toml: file of another kind, unsealed'
+vam-check --seal printer.toml && vam-check --seal printer.toml
+is 'until it is sealed, once' "$(grep -c '^# sealed xxh3:' printer.toml) $(vam-check printer.toml)" \
+  '1 printer.toml: file of another kind, sealed'
+ok 'it is read' vam-slice --print-printer --printer printer.toml -o again.toml
+sed 's/^radius_mm = 11.5/radius_mm = 17.5/' printer.toml >changed.toml
+fails 65 "changed.toml: changed after it was written .* remove its last line '# sealed" vam-slice --print-printer --printer changed.toml -o x.toml
+fails 65 'changed.toml: changed' vam-check changed.toml
+head -c -9 printer.toml >cut.toml
+fails 65 'cut.toml: changed' vam-slice --print-printer --printer cut.toml -o x.toml
+
+vam-slice a.off --voxel 0.3 --report r.json -o part.vdb
+is 'a report is sealed' "$(vam-check r.json)" 'r.json: "vam-slice/1", sealed'
+sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8/' r.json >s.json
+fails 65 's.json: changed after it was written' vam-check s.json
+python3 -c 'import json; json.dump(json.load(open("r.json")), open("t.json", "w"))'
+ok 'but not its layout' vam-check t.json
+
+fails 66 'none.exr: cannot open' vam-check none.exr
+fails 64 -- vam-check --slow
+: >empty
+is 'an empty file' "$(vam-check empty)" 'empty: file of another kind, unsealed'
+fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
+fails 65 'a.off' vam-check --seal a.off
+mkfifo fifo
+fails 66 'fifo: is no regular file; give it on standard input' vam-check fifo
+
+done_testing

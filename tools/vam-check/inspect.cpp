@@ -1,0 +1,91 @@
+#include "vam-check/inspect.hpp"
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/exr/stack.hpp"
+#include "io/image/any_frames.hpp"
+#include "io/settings/sealed_text.hpp"
+#include "io/stream/file_type.hpp"
+#include "io/stream/input_name.hpp"
+#include "io/stream/seal.hpp"
+#include "io/stream/stream.hpp"
+#include "io/vdb/vdb.hpp"
+
+namespace vam::check_tool {
+
+namespace {
+
+std::vector<Finding> inspect_stacks(const std::string& path, bool fast) {
+  std::vector<Finding> findings;
+  io::StackReader reader(path);
+  do {
+    Image image;
+    model::ImageInfo about;
+    while (!fast && reader.next(image, about)) continue;
+    findings.push_back({"stack of " + std::to_string(reader.info().count) + " images", reader.is_sealed(),
+                        reader.seal(), reader.info().history});
+  } while (!fast && reader.next_stack());
+  return findings;
+}
+
+std::vector<Finding> inspect_volumes(const std::string& path, bool fast) {
+  std::vector<Finding> findings;
+  for (const auto& facts : io::check_volumes(path, fast)) {
+    findings.push_back({"grid '" + facts.name + "'", !facts.seal.empty(), facts.seal, facts.history});
+  }
+  return findings;
+}
+
+// A lossless video has checksums throughout, which opening it and reading its frames hold it to.
+std::vector<Finding> inspect_images(const std::string& path, io::FileType type, bool fast) {
+  const auto source = io::open_images(path, type);
+  Image image;
+  model::ImageInfo about;
+  while (!fast && source->next(image, about)) continue;
+  const bool lossless = type == io::FileType::video && path.ends_with(".mkv");
+  return {{type == io::FileType::video ? "video" : "folder of images", lossless, "", source->info().history}};
+}
+
+std::vector<Finding> inspect_text(const std::string& path) {
+  constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
+  const std::string name = io::input_name(path);
+  const std::string text = io::read_all(path, io::Content::text, most_bytes);
+  if (const Json json = Json::parse(text, nullptr, false); json.is_object()) {
+    Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", io::require_seal(json, name), "", {}};
+    if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
+    return {finding};
+  }
+  return {{"file of another kind", io::require_text_seal(text, name), "", {}}};
+}
+
+}  // namespace
+
+std::vector<Finding> inspect(const std::string& path, bool fast) {
+  const auto type = io::known_file_type(path);
+  if (!type) return inspect_text(path);
+  switch (*type) {
+    case io::FileType::volume:
+      return inspect_volumes(path, fast);
+    case io::FileType::stack:
+      return inspect_stacks(path, fast);
+    default:
+      return inspect_images(path, *type, fast);
+  }
+}
+
+std::vector<Step> chain_of(const Finding& finding) {
+  std::vector<Step> chain;
+  for (const std::string& line : finding.history) {
+    const std::string seal = io::chained_seal(line);
+    if (seal.empty()) {
+      chain.push_back({line, ""});
+    } else if (!chain.empty()) {
+      chain.back().seal = seal;
+    }
+  }
+  if (!chain.empty()) chain.back().seal = finding.seal;
+  return chain;
+}
+
+}  // namespace vam::check_tool
