@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <new>
 
+#include "base/simd.hpp"
+#include "io/stream/private/hash_kernel.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -52,7 +55,23 @@ void Sealer::add(const std::string& text) {
 
 Digest Sealer::digest() const { return digest_from(XXH3_128bits_digest(state_->hash.get())); }
 
-Digest digest_of(const void* bytes, std::size_t size) { return digest_from(XXH3_128bits(bytes, size)); }
+// The library itself is compiled for the oldest machines.
+Digest digest_of(const void* bytes, std::size_t size) {
+  HashHalves hash{};
+  switch (simd_level()) {
+#ifdef __x86_64__
+    case Simd::avx512:
+      hash = avx512::hash_bytes(bytes, size);
+      break;
+    case Simd::avx2:
+      hash = avx2::hash_bytes(bytes, size);
+      break;
+#endif
+    default:
+      hash = baseline::hash_bytes(bytes, size);
+  }
+  return {hash.high, hash.low};
+}
 
 std::string seal_text(const Digest& digest) {
   return std::string(seal_head) + hexadecimal(digest.high) + hexadecimal(digest.low);
