@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "model/conditions.hpp"
+#include "model/figures.hpp"
 
 using namespace vam::model;
 
@@ -145,4 +146,13 @@ TEST_CASE("conditions") {
   CHECK_THROWS_WITH_AS(parse_conditions("ver<=nan", known), doctest::Contains("not a number"), vam::Error);
   CHECK(!holds({"ver", "<", 1}, 1));
   CHECK(!holds({"ver", ">=", 1}, std::nan("")));
+}
+
+TEST_CASE("a figure of merit is found by its name, any other is none") {
+  DoseMetrics metrics;
+  metrics.ver = 0.25;
+  metrics.pw = -0.5;
+  CHECK(figure(metrics, "ver") == 0.25);
+  CHECK(figure(metrics, "pw") == -0.5);
+  CHECK(std::isnan(figure(metrics, "no figure")));
 }

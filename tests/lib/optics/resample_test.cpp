@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "optics/resample_stack.hpp"
 
 using namespace vam;
 using namespace vam::optics;
@@ -242,4 +243,18 @@ TEST_CASE("half a turn and mixed shapes are refused") {
   CHECK_THROWS_AS(apply(plan, Image(3, s.turn.rows)), Error);
   s.turn.step_rad /= 2;
   CHECK_THROWS_AS(static_cast<void>(plan_to_projector(vial, s.virtual_, s.projector, s.turn, {})), Error);
+}
+
+TEST_CASE("a stack without a column pitch is refused") {
+  model::StackInfo info;
+  info.width = 64;
+  info.height = 36;
+  info.count = 1;
+  info.row_mm = 0.1;
+  info.angle_step_deg = 10;
+  for (const double pitch : {0.0, -0.1, std::nan("")}) {
+    info.pixel_mm = pitch;
+    CHECK_THROWS_WITH_AS((void)stack_to_projector(model::Printer(), {}, info, {}),
+                         doctest::Contains("its column pitch is"), Error);
+  }
 }

@@ -59,6 +59,21 @@ TEST_CASE("absolute figures keep the dose's unit, and the critical dose is judge
   CHECK(score.table().find("cured_wrong") != std::string::npos);
 }
 
+TEST_CASE("a dose without light has no exposure: its figures are unknown, not an error") {
+  auto o = options();
+  o.exposure = vam::score::Exposure{};
+  o.exposure->printer.resin.critical_dose_mj_cm3 = 90;
+  Score dark(o, 3, 3);
+  const std::vector<float> nothing(9, 0.0F);
+  dark.add(nothing.data(), target.data(), 1);
+  for (const char* name : {"turns", "seconds", "multiplier", "peak_irradiance"}) CHECK(std::isnan(dark.figure(name)));
+  Score lit(o, 3, 3);
+  lit.add(dose.data(), target.data(), 1);
+  // Doses of a turn: part 0.8 and 1, void 0.1 and 0.2; 90 / (middle 0.5 + quarter 0.15) = 138.5 turns.
+  CHECK(lit.figure("turns") == 139);
+  CHECK(lit.figure("multiplier") == doctest::Approx(1.0));
+}
+
 TEST_CASE("empty parts and non-finite doses are errors") {
   Score empty(options(), 3, 3);
   const std::vector<float> nothing(9, 0.0F);
