@@ -65,7 +65,7 @@ TEST_CASE("blocks of other programs: half floats, all octants, tiles of any size
   CHECK(by_blocks(folder / "a.vdb", "surface") == whole);
   std::string line;
   CHECK(status([&] { by_blocks(folder / "a.vdb", "velocity"); }, &line) == 65);
-  CHECK(line.ends_with("but velocity (vec3s), surface"));
+  CHECK(line.ends_with("choose one of velocity (vec3s), surface"));
   const auto twin = sphere->copy();  // shares the tree
   twin->setName("twin");
   write_by_openvdb(folder / "twins.vdb", {sphere, twin});
