@@ -18,7 +18,7 @@ std::size_t fullest_slice(const Problem& problem) {
   parallel_for(static_cast<int>(problem.labels.size()), [&](int s) {
     const auto& labels = problem.labels[s];
     for (std::size_t i = 0; i < labels.size(); ++i)
-      voxels[s * lanes + i % lanes] += labels[i] != Label::outside ? 1 : 0;
+      voxels[static_cast<std::size_t>(s) * lanes + i % lanes] += labels[i] != Label::outside ? 1 : 0;
   });
   return static_cast<std::size_t>(std::max_element(voxels.begin(), voxels.end()) - voxels.begin());
 }
