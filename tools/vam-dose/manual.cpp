@@ -49,7 +49,7 @@ cli::Manual manual() {
        {"Light for a vial in its place, in one that wobbles by 0.3 mm:",
         "seq 0 89 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { t = $1 * 3.14159265 / 45; print 4 * "
         "$1 "
-        "\",\" 0.3 * cos(t) \",\" -0.3 * sin(t) \",0,vial\" }' >wobble.csv && vam-optimize --angles 90 part.vdb | "
+        "\",\" 0.3 * cos(t) \",\" (-0.3 * sin(t)) \",0,vial\" }' >wobble.csv && vam-optimize --angles 90 part.vdb | "
         "vam-dose "
         "--poses wobble.csv --like part.vdb -o wobbled.vdb"},
        {"A handle printed around the shaft of a screwdriver:",

@@ -99,7 +99,7 @@ cli::Manual manual() {
         "--voxel 0.25 $printer --any-height -o tall.vdb && vam-optimize --angles 60 --helix 5.2 $printer tall.vdb -o "
         "helix.exr"},
        {"A part that sinks by 1 mm during the turn:",
-        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" -$1 / 59 "
+        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" (-$1 / 59) "
         "\",part\" }' "
         ">sinking.csv && vam-optimize --angles 60 --poses sinking.csv part.vdb -o sinking.exr"},
        {"Graded stiffness: a bar whose dose rises from one grey image to the next, each to 0.25:",
