@@ -59,6 +59,8 @@ void declare(cli::App& app, Options& options) {
   app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
              "Isovalue of a reference volume's surface.");
   app.was("--reference-level");
+  app.option("--pieces", "MM3", options.pieces_mm3, cli::non_negative,
+             "Smallest body of a print volume that belongs to the print. Default: 1 % of the largest body's volume.");
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the reference.");
   app.flag("--fit-scale", options.scale, "Fit a uniform scale too.").was("--scale");

@@ -97,7 +97,12 @@ void deviation(const cli::App& app, const Options& options) {
     if (!options.output.empty()) io::refuse_same_file(input, options.output);
   }
   const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_isovalue);
-  model::TriangleSoup print = read_surface(options.print, isovalue);
+  std::optional<metrology::BodyCount> bodies;
+  model::TriangleSoup print = read_print(options.print, isovalue, options.pieces_mm3, bodies);
+  if (bodies && bodies->dropped > 0) {
+    note("dropped " + std::to_string(bodies->dropped) + " bodies of " + format_number(bodies->dropped_mm3, 3) +
+         " mm3, the largest " + format_number(bodies->largest_dropped_mm3, 3) + " mm3");
+  }
 
   const solid::Surface reference(reference_mesh);
   const solid::Alignment alignment = align(options, print, reference_mesh, reference);
@@ -116,6 +121,7 @@ void deviation(const cli::App& app, const Options& options) {
                           {"scale", alignment.transform.scale},
                           {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
                           {"matrix", alignment.transform.matrix()}};
+  if (bodies) figures["bodies"] = metrology::to_json(*bodies);
   io::write_report(options.report, "vam-sdf/1", figures);
   for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
     note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +

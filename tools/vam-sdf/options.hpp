@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/app.hpp"
+#include "metrology/ost/bodies.hpp"
 #include "model/mesh.hpp"
 
 namespace vam::sdf_tool {
@@ -19,6 +20,7 @@ struct Options {
   bool scale = false;
   std::optional<double> isovalue;
   std::string resin_record;
+  std::optional<double> pieces_mm3;
   double reference_isovalue = 0.5;
   int samples = 200000;
   std::string histogram;
@@ -47,6 +49,12 @@ struct HeightOptions {
 /// A mesh as it is, or the surface of a volume at `isovalue`, in the frame of the part: vam-slice's stretch in z
 /// undone.
 [[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
+
+/// The same for a print: without the bodies that are too small to belong to it (metrology::keep_bodies), which are
+/// counted in `bodies`; a mesh stays as it is.
+[[nodiscard]] model::TriangleSoup read_print(const std::string& path, std::optional<double> isovalue,
+                                             std::optional<double> least_mm3,
+                                             std::optional<metrology::BodyCount>& bodies);
 
 /// Print against reference.
 void deviation(const cli::App& app, const Options& options);

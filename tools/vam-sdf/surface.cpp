@@ -1,3 +1,5 @@
+#include <functional>
+
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
@@ -9,21 +11,39 @@
 
 namespace vam::sdf_tool {
 
-model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
+namespace {
+
+model::TriangleSoup surface_of(const std::string& path, std::optional<double> isovalue,
+                               const std::function<void(model::Volume&, double)>& prepare) {
   if (!io::is_volume(path)) return io::read_mesh(path);
   const std::string name = io::input_name(path);
   if (!isovalue)
     throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
-  const io::SparseVolume volume = io::read_volume(path, "");
-  model::TriangleSoup mesh = solid::isosurface(
-      volume.grid(), [&](int k, int count, float* out) { volume.read_slices(k, count, out); }, *isovalue);
+  const io::SparseVolume sparse = io::read_volume(path, "");
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  prepare(volume, *isovalue);
+  model::TriangleSoup mesh = solid::isosurface(volume, *isovalue);
   if (mesh.triangles.empty()) {
     throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*isovalue)};
   }
-  const auto stretch = volume.metadata.find("vam:stretch_z");
-  const double factor = stretch == volume.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
+  const auto stretch = sparse.metadata.find("vam:stretch_z");
+  const double factor = stretch == sparse.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
   for (auto& point : mesh.points) point[2] /= factor;
   return mesh;
+}
+
+}  // namespace
+
+model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
+  return surface_of(path, isovalue, [](model::Volume&, double) {});
+}
+
+model::TriangleSoup read_print(const std::string& path, std::optional<double> isovalue, std::optional<double> least_mm3,
+                               std::optional<metrology::BodyCount>& bodies) {
+  return surface_of(path, isovalue, [&](model::Volume& volume, double level) {
+    bodies = metrology::keep_bodies(volume, level, {least_mm3, {}});
+  });
 }
 
 }  // namespace vam::sdf_tool

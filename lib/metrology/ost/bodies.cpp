@@ -1,0 +1,196 @@
+#include "metrology/ost/bodies.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/parallel.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+/// Voxels first...last - 1 of row (j, k), all on one side of the level.
+struct Run {
+  int first;
+  int last;
+};
+
+/// Runs of all rows, those of row (j, k) from starts[k * ny + j] on, and the component of each.
+class Runs {
+ public:
+  /// reach: 1 where runs touch by corners, 0 where they need a common face.
+  Runs(const model::Volume& volume, double level, bool above, int reach) : grid_(volume.grid), reach_(reach) {
+    const auto rows = static_cast<std::size_t>(grid_.ny) * static_cast<std::size_t>(grid_.nz);
+    std::vector<std::vector<Run>> found(rows);
+    parallel_for(grid_.nz, [&](int k) {
+      for (int j = 0; j < grid_.ny; ++j) {
+        const float* in = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * grid_.nx;
+        auto& row = found[row_at(j, k)];
+        for (int i = 0; i < grid_.nx; ++i) {
+          if ((static_cast<double>(in[i]) >= level) != above) continue;
+          const int first = i;
+          while (i < grid_.nx && (static_cast<double>(in[i]) >= level) == above) ++i;
+          row.push_back({first, i});
+        }
+      }
+    });
+    starts_.push_back(0);
+    for (const auto& row : found) {
+      runs_.insert(runs_.end(), row.begin(), row.end());
+      starts_.push_back(runs_.size());
+    }
+    parent_.resize(runs_.size());
+    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+    for (int k = 0; k < grid_.nz; ++k) {
+      for (int j = 0; j < grid_.ny; ++j) join_row(j, k);
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return runs_.size(); }
+  [[nodiscard]] std::size_t root(std::size_t run) {
+    while (parent_[run] != run) run = parent_[run] = parent_[parent_[run]];
+    return run;
+  }
+  /// work(run index, run, j, k) for all.
+  template <class Work>
+  void each(const Work& work) const {
+    for (int k = 0; k < grid_.nz; ++k) {
+      for (int j = 0; j < grid_.ny; ++j) {
+        for (std::size_t r = starts_[row_at(j, k)]; r < starts_[row_at(j, k) + 1]; ++r) work(r, runs_[r], j, k);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] std::size_t row_at(int j, int k) const {
+    return static_cast<std::size_t>(k) * static_cast<std::size_t>(grid_.ny) + static_cast<std::size_t>(j);
+  }
+
+  // With the rows before it that it touches.
+  void join_row(int j, int k) {
+    if (j > 0) join(row_at(j, k), row_at(j - 1, k));
+    if (k == 0) return;
+    for (int dj = -reach_; dj <= reach_; ++dj) {
+      if (j + dj >= 0 && j + dj < grid_.ny) join(row_at(j, k), row_at(j + dj, k - 1));
+    }
+  }
+
+  void join(std::size_t row_a, std::size_t row_b) {
+    std::size_t a = starts_[row_a];
+    std::size_t b = starts_[row_b];
+    while (a < starts_[row_a + 1] && b < starts_[row_b + 1]) {
+      if (runs_[a].first < runs_[b].last + reach_ && runs_[b].first < runs_[a].last + reach_) {
+        const std::size_t low = root(a);
+        const std::size_t high = root(b);
+        parent_[std::max(low, high)] = std::min(low, high);
+      }
+      runs_[a].last < runs_[b].last ? ++a : ++b;
+    }
+  }
+
+  model::Grid grid_;
+  int reach_;
+  std::vector<Run> runs_;
+  std::vector<std::size_t> starts_;
+  std::vector<std::size_t> parent_;
+};
+
+struct Body {
+  long voxels = 0;
+  bool near = false;    // some of it lies in the neighbourhood
+  bool border = false;  // it reaches the volume's border
+};
+
+std::vector<Body> measured(Runs& runs, const model::Grid& g, const std::optional<Neighbourhood>& inside) {
+  std::vector<Body> bodies(runs.size());
+  runs.each([&](std::size_t r, const Run& run, int j, int k) {
+    Body& body = bodies[runs.root(r)];
+    body.voxels += run.last - run.first;
+    body.border =
+        body.border || j == 0 || k == 0 || j + 1 == g.ny || k + 1 == g.nz || run.first == 0 || run.last == g.nx;
+    if (inside && !body.near) {
+      const auto& [low, high] = *inside;
+      body.near = g.x_mm(run.last - 1) >= low[0] && g.x_mm(run.first) <= high[0] && g.y_mm(j) >= low[1] &&
+                  g.y_mm(j) <= high[1] && g.z_mm(k) >= low[2] && g.z_mm(k) <= high[2];
+    }
+  });
+  return bodies;
+}
+
+int fill_cavities(model::Volume& volume, double level) {
+  constexpr long resolved = 27;
+  Runs voids(volume, level, false, 0);
+  const std::vector<Body> cavities = measured(voids, volume.grid, {});
+  const auto small = [&](const Body& body) { return body.voxels > 0 && body.voxels < resolved && !body.border; };
+  voids.each([&](std::size_t r, const Run& run, int j, int k) {
+    if (!small(cavities[voids.root(r)])) return;
+    float* row = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * volume.grid.nx;
+    std::fill(row + run.first, row + run.last, std::nextafter(static_cast<float>(level), 1e30F));
+  });
+  return static_cast<int>(std::count_if(cavities.begin(), cavities.end(), small));
+}
+
+}  // namespace
+
+Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm) {
+  const model::Grid& g = reference.grid;
+  Neighbourhood box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+  Runs runs(reference, 0.5, true, 1);
+  if (runs.size() == 0) throw Error{Fault::data, "reference: no voxel is covered by a half or more"};
+  runs.each([&](std::size_t, const Run& run, int j, int k) {
+    const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k)};
+    const double high[3] = {g.x_mm(run.last - 1), low[1], low[2]};
+    for (std::size_t d = 0; d < 3; ++d) {
+      box.low[d] = std::min(box.low[d], low[d] - margin_mm);
+      box.high[d] = std::max(box.high[d], high[d] + margin_mm);
+    }
+  });
+  return box;
+}
+
+BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rules) {
+  const model::Grid& g = volume.grid;
+  BodyCount count;
+  Runs runs(volume, level, true, 1);
+  const std::vector<Body> bodies = measured(runs, g, rules.inside);
+  const double voxel_mm3 = g.voxel_mm * g.voxel_mm * g.voxel_mm;
+  const auto elsewhere = [&](const Body& body) { return rules.inside && !body.near; };
+  long largest = 0;
+  for (const Body& body : bodies) {
+    if (!elsewhere(body)) largest = std::max(largest, body.voxels);
+  }
+  const double least_mm3 = rules.least_mm3.value_or(0.01 * static_cast<double>(largest) * voxel_mm3);
+  const auto dropped = [&](const Body& body) {
+    return elsewhere(body) || static_cast<double>(body.voxels) * voxel_mm3 < least_mm3;
+  };
+  for (const Body& body : bodies) {
+    if (body.voxels == 0) continue;
+    const double mm3 = static_cast<double>(body.voxels) * voxel_mm3;
+    const bool drop = dropped(body);
+    ++(drop ? count.dropped : count.kept);
+    (drop ? count.dropped_mm3 : count.kept_mm3) += mm3;
+    if (drop) count.largest_dropped_mm3 = std::max(count.largest_dropped_mm3, mm3);
+  }
+  runs.each([&](std::size_t r, const Run& run, int j, int k) {
+    if (!dropped(bodies[runs.root(r)])) return;
+    float* row = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * g.nx;
+    std::fill(row + run.first, row + run.last, 0.0F);
+  });
+  count.filled = fill_cavities(volume, level);
+  return count;
+}
+
+Json to_json(const BodyCount& count) {
+  return {{"kept", count.kept},
+          {"kept_mm3", count.kept_mm3},
+          {"dropped", count.dropped},
+          {"dropped_mm3", count.dropped_mm3},
+          {"largest_dropped_mm3", count.largest_dropped_mm3},
+          {"cavities_filled", count.filled}};
+}
+
+}  // namespace vam::metrology

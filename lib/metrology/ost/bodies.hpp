@@ -1,0 +1,43 @@
+// The print as a body: what hangs together at the gelation threshold, and what is noise, bubbles or dirt beside it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "base/json_fwd.hpp"
+#include "model/grid.hpp"
+
+namespace vam::metrology {
+
+/// A box in mm; bodies wholly outside it are dropped.
+struct Neighbourhood {
+  std::array<double, 3> low{};
+  std::array<double, 3> high{};
+};
+
+/// The box around all voxels of a reference that are covered by a half or more, grown by margin_mm on all sides.
+/// Throws Fault::data when there is none.
+[[nodiscard]] Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm);
+
+struct BodyRules {
+  std::optional<double> least_mm3;      // smallest body that is kept; 1 % of the largest by default
+  std::optional<Neighbourhood> inside;  // none: the whole volume
+};
+
+/// What was kept and what was not.
+struct BodyCount {
+  int kept = 0;
+  int dropped = 0;         // bodies too small or elsewhere
+  double kept_mm3 = 0;     // of all kept bodies
+  double dropped_mm3 = 0;  // of all dropped bodies
+  double largest_dropped_mm3 = 0;
+  int filled = 0;  // cavities below resolution, 27 voxels
+};
+
+/// Lowers the voxels of dropped bodies of { volume >= level } to 0 and raises those of cavities smaller than a cube of
+/// three voxels to the level. Bodies touch by faces, edges or corners, cavities by faces [physics §8].
+BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rules);
+
+[[nodiscard]] Json to_json(const BodyCount& count);
+
+}  // namespace vam::metrology
