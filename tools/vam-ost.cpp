@@ -18,16 +18,20 @@ cli::Manual manual() {
       "reconstruct the scattering volume of a print from camera views of the rotating vial",
       {"Liquid resin is clear; the solidifying part scatters light. A camera beside the vial records the scattered "
        "light; the views of a full turn determine the whole volume. vam-ost corrects the views (dark, flat field, "
-       "binning), finds the rotation axis in them, compensates refraction and perspective by the exact ray map, and "
+       "binning), finds the rotation axis in them, compensates refraction and perspective by exact rays in three "
+       "dimensions, and "
        "reconstructs the scattering density by filtered back-projection into a volume 'scatter', in view units per "
        "mm.",
        "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; the latter two need "
        "--angle-step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are "
        "weighted, and "
-       "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the middle row is z = "
-       "0.",
+       "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the row level with the "
+       "lens, "
+       "camera.axis_row or the middle one, is z = 0.",
        "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
-       "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator.",
+       "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator. Bodies of less than "
+       "1 % of the largest body's volume (--pieces) and, with --target, bodies farther than 1 mm from the design are "
+       "no part of the print; they stay in the volume, and --report counts them.",
        "--live reads frames as they arrive, keeps the last full turn, and for every turn (or every --every degrees) "
        "writes a volume into the folder -o, a line of JSON to --log, and updates --projections and --page. With "
        "--target it reports how much of the design is cured, missing and overcured; with --until it prints one line "
@@ -92,6 +96,8 @@ void declare(cli::App& app, Options& o) {
   app.group("Print");
   app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
+  app.option("--pieces", "MM3", o.pieces_mm3, cli::non_negative,
+             "Smallest body that belongs to the print. Default: 1 % of the largest body's volume.");
   app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.").writes();
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
   app.option("--target", "FILE.vdb", o.reference,
@@ -122,9 +128,11 @@ void once(const cli::App& app, const Options& options) {
     views.push_back(session.take(frame));
   }
   metrology::require_alike(views);
-  const model::Volume volume = session.reconstruct(views, source.pixel_mm());
-  session.write_print(volume, true);
+  model::Volume volume = session.reconstruct(views, source.pixel_mm());
+  session.require_print(volume);
   session.write(volume, options.output, source.history());
+  session.keep_print(volume);
+  session.write_print(volume);
   io::write_report(options.report, "vam-ost/1", session.figures(volume));
 }
 

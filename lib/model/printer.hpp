@@ -60,6 +60,7 @@ struct PrinterStage {
 struct PrinterCamera {
   std::string device;        // empty: none is named
   double distance_mm = 200;  // entrance pupil to rotation axis
+  bool telecentric = false;  // its chief rays are parallel; the distance is without effect
   double pixel_mm = 0.039;   // at the axis
   double azimuth_deg = 90;
   int binning = 1;
@@ -67,7 +68,9 @@ struct PrinterCamera {
   double fps = 10;
   double latency_ms = 0;              // from the end of an exposure to its time stamp, as it arrives
   double index_resin = 1.53;          // at the camera's wavelength
+  double absorption_per_mm = 0;       // of the resin there, natural logarithm of intensity lost per mm
   std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent
+  std::optional<double> axis_row;     // level with the lens, z = 0; the middle row if absent
   std::optional<double> tilt_deg;     // of the axis in the image, its lower end towards higher columns
   std::string flat;                   // flat field (EXR); empty = none
 };

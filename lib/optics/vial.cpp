@@ -98,7 +98,8 @@ View projector_view(const model::Printer& printer) {
 }
 
 View camera_view(const model::Printer& printer) {
-  return make_view(printer, printer.camera.distance_mm, printer.camera.distance_mm, printer.camera.index_resin);
+  const auto lens_mm = printer.camera.telecentric ? std::nullopt : std::optional(printer.camera.distance_mm);
+  return make_view(printer, lens_mm, lens_mm, printer.camera.index_resin);
 }
 
 ChiefRay chief_ray(const View& view, double x_p_mm) {

@@ -46,14 +46,16 @@ class Turns {
     if (options.output != "-") std::filesystem::create_directories(options.output);
   }
 
-  bool finish(const model::Volume& volume, Json line, const std::vector<std::string>& history) {
+  bool finish(model::Volume& volume, Json line, const std::vector<std::string>& history) {
     char name[32];
     std::snprintf(name, sizeof name, "scatter-%04d.vdb", index_++);
     if (options_.output != "-")
       session_.write(volume, (std::filesystem::path(options_.output) / name).string(), history);
-    session_.write_print(volume, false);
+    session_.keep_print(volume);
+    session_.write_print(volume);
     const auto state = session_.state(volume);
     if (state) line.update(metrology::to_json(*state));
+    if (!session_.bodies().is_null()) line["bodies"] = session_.bodies();
     write_page(options_, index_, line);
     say(line);
     if (conditions_.empty()) return false;
@@ -105,7 +107,7 @@ void live(const cli::App& app, const Options& options) {
       turns.say(line);
       continue;
     }
-    const model::Volume volume = session.reconstruct(views, pixel_mm);
+    model::Volume volume = session.reconstruct(views, pixel_mm);
     line["frames_waiting"] = frames.waiting();
     if (turns.finish(volume, std::move(line), history)) return;
   }

@@ -20,6 +20,7 @@ struct Options {
   bool no_refraction = false;
   std::string negative = "clip";
   std::optional<double> isovalue;
+  std::optional<double> pieces_mm3;
   std::string resin_record;
   std::string mesh, projections;
   bool live = false;

@@ -1,5 +1,7 @@
 #include "vam-ost/session.hpp"
 
+#include <algorithm>
+
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -90,12 +92,30 @@ void Session::write(const model::Volume& volume, const std::string& path,
   io::write_volume(path, sparse);
 }
 
-void Session::write_print(const model::Volume& volume, bool must) const {
+void Session::require_print(const model::Volume& volume) const {
+  if (options_.mesh.empty()) return;
+  const float most = *std::max_element(volume.values.begin(), volume.values.end());
+  if (static_cast<double>(most) >= *isovalue_) return;
+  throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
+                               " everywhere; check --isovalue"};
+}
+
+void Session::keep_print(model::Volume& volume) {
+  if (!isovalue_) return;
+  metrology::BodyRules rules{options_.pieces_mm3, {}};
+  constexpr double margin_mm = 1;
+  if (reference_) rules.inside = metrology::neighbourhood(*reference_, margin_mm);
+  bodies_ = metrology::keep_bodies(volume, *isovalue_, rules);
+  if (bodies_.dropped > 0) {
+    note("dropped " + std::to_string(bodies_.dropped) + " bodies of " + format_number(bodies_.dropped_mm3, 3) +
+         " mm3, the largest " + format_number(bodies_.largest_dropped_mm3, 3) + " mm3; kept " +
+         std::to_string(bodies_.kept) + " of " + format_number(bodies_.kept_mm3, 4) + " mm3");
+  }
+}
+
+void Session::write_print(const model::Volume& volume) const {
   if (!options_.mesh.empty()) {
     const auto mesh = solid::isosurface(volume, *isovalue_);
-    if (mesh.triangles.empty() && must)
-      throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
-                                   " everywhere; check --isovalue"};
     if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
   }
   if (options_.projections.empty()) return;
@@ -112,6 +132,8 @@ void Session::write_print(const model::Volume& volume, bool must) const {
   io::write_png(options_.projections, plot::draw(figure));
 }
 
+Json Session::bodies() const { return isovalue_ ? metrology::to_json(bodies_) : Json(); }
+
 Json Session::figures(const model::Volume& volume) const {
   const auto& a = axis_;
   Json json{{"axis_column_px", a.pose.column},
@@ -121,6 +143,7 @@ Json Session::figures(const model::Volume& volume) const {
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
   if (isovalue_) json["isovalue"] = *isovalue_;
+  if (isovalue_) json["bodies"] = bodies();
   if (isovalue_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *isovalue_, *reference_));
   return json;
 }
@@ -150,6 +173,7 @@ void Session::set_up(std::span<const metrology::CameraView> views, double stack_
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
   how.refraction = !options_.no_refraction;
+  if (printer_.camera.axis_row) how.axis_row = (*printer_.camera.axis_row + 0.5) / options_.binning - 0.5;
   how.non_negative = options_.negative == "clip";
   rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
                                                        axis_.pose, how);

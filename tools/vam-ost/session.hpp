@@ -11,6 +11,7 @@
 #include "cli/app.hpp"
 #include "io/image/view_source.hpp"
 #include "io/vdb/vdb.hpp"
+#include "metrology/ost/bodies.hpp"
 #include "metrology/ost/cured.hpp"
 #include "metrology/ost/ost.hpp"
 #include "model/printer.hpp"
@@ -30,8 +31,14 @@ class Session {
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
-  /// --mesh and --projections. Throws Fault::data when there is no print but must be one.
-  void write_print(const model::Volume& volume, bool must) const;
+  /// Throws Fault::data when --mesh is wanted and no voxel reaches the isovalue.
+  void require_print(const model::Volume& volume) const;
+  /// With an isovalue: drops the bodies that are not the print, for all that follows. Says what was dropped.
+  void keep_print(model::Volume& volume);
+  /// --mesh and --projections.
+  void write_print(const model::Volume& volume) const;
+  /// What the last call of keep_print() kept and dropped; null without an isovalue.
+  [[nodiscard]] Json bodies() const;
   [[nodiscard]] Json figures(const model::Volume& volume) const;
   /// Nothing without isovalue and reference.
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
@@ -48,6 +55,7 @@ class Session {
   metrology::CameraFields fields_;
   std::optional<model::Volume> reference_;
   metrology::AxisEstimate axis_;
+  metrology::BodyCount bodies_;
   std::unique_ptr<metrology::OstReconstructor> rig_;
   int width_ = 0;
   int height_ = 0;

@@ -63,6 +63,7 @@ const std::vector<PrinterField> fields{
     {"stage", "direction", at<&Printer::stage, &PrinterStage::direction>, "1: clockwise seen from above, theta increases; -1: the other way", -1, 1, false, {"1", "-1"}},
     {"camera", "device", at<&Printer::camera, &PrinterCamera::device>, comment_on(model::camera_schemes), 0, 0, false, {}, schemes_of(model::camera_schemes)},
     {"camera", "distance_mm", at<&Printer::camera, &PrinterCamera::distance_mm>, "entrance pupil to rotation axis", 0, 1e9, true},
+    {"camera", "telecentric", at<&Printer::camera, &PrinterCamera::telecentric>, "in both directions; distance_mm is without effect"},
     {"camera", "pixel_mm", at<&Printer::camera, &PrinterCamera::pixel_mm>, "pitch at the rotation axis", 0, 100, true},
     {"camera", "azimuth_deg", at<&Printer::camera, &PrinterCamera::azimuth_deg>, "from the projector", -360, 360},
     {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "pixels per axis", 1, 64},
@@ -70,7 +71,9 @@ const std::vector<PrinterField> fields{
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
     {"camera", "latency_ms", at<&Printer::camera, &PrinterCamera::latency_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
     {"camera", "index_resin", at<&Printer::camera, &PrinterCamera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
+    {"camera", "absorption_per_mm", at<&Printer::camera, &PrinterCamera::absorption_per_mm>, "of the resin at the camera's wavelength, natural logarithm", 0, 1e3},
     {"camera", "axis_column", at<&Printer::camera, &PrinterCamera::axis_column>, "of the rotation axis at the middle row of its images; found in the views if absent", -65536, 131072},
+    {"camera", "axis_row", at<&Printer::camera, &PrinterCamera::axis_row>, "level with the lens, where z is 0; the middle row if absent", -65536, 131072},
     {"camera", "tilt_deg", at<&Printer::camera, &PrinterCamera::tilt_deg>, "of the axis in the images, its lower end towards higher columns", -180, 180},
     {"camera", "flat", at<&Printer::camera, &PrinterCamera::flat>, "flat field (EXR), relative to this file; empty: none"},
     {"calibration", "folder", at<&Printer::calibration, &Calibration::folder>, "of the records, relative to this file; empty: none are used"},
@@ -155,7 +158,7 @@ std::string contradiction(const Printer& printer) {
     return "the projector's lens, " + mm(*lens_mm) + " from the axis, is not outside " +
            (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm(obstacle_mm);
   }
-  if (camera.distance_mm <= vial.radius_mm) {
+  if (!camera.telecentric && camera.distance_mm <= vial.radius_mm) {
     return "camera.distance_mm " + mm(camera.distance_mm) + " is not outside vial.radius_mm " + mm(vial.radius_mm);
   }
   return "";

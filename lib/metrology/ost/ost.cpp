@@ -10,6 +10,8 @@
 #include "base/per_slice.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
+#include "metrology/ost/private/back_projection.hpp"
+#include "metrology/ost/private/heights.hpp"
 #include "optics/resample.hpp"
 #include "optics/vial.hpp"
 #include "tomo/filter.hpp"
@@ -19,27 +21,26 @@ namespace vam::metrology {
 
 namespace {
 
-constexpr int slices_a_pass = 4 * lanes;  // tomo shares its weights among four slabs
+constexpr int slices_a_pass = 128;  // so that memory beside views and volume is that of a part of them
 
-// Camera sinograms of all z slices, k = 0 lowest: columns x angles.
+// Camera sinograms at these heights: columns x angles.
 std::vector<Image> camera_sinograms(std::span<const CameraView> views, const AngleGrid& turn, const AxisPose& axis,
-                                    double row_stretch, int slices) {
-  std::vector<Image> straight(views.size());
+                                    const LevelRows& rows, std::size_t heights) {
+  std::vector<Image> level(views.size());
   parallel_for(static_cast<int>(views.size()), [&](int i) {
     const auto v = static_cast<std::size_t>(i);
-    straight[v] = straightened(views[v].image, axis, row_stretch);
+    level[v] = rows.of(views[v].image, axis);
   });
   const int columns = views.front().image.width;
   const int angles = turn.summary().angles;
-  std::vector<Image> sinograms(static_cast<std::size_t>(slices));
-  parallel_for(slices, [&](int k) {
+  std::vector<Image> sinograms(heights);
+  parallel_for(static_cast<int>(heights), [&](int k) {
     Image& sinogram = sinograms[k];
     sinogram = Image(columns, angles);
     for (int a = 0; a < angles; ++a) {
       float* out = sinogram.row(a);
       for (const auto& tap : turn.taps(a)) {
-        const Image& image = straight[tap.frame];
-        const float* in = image.row(image.height - 1 - k);
+        const float* in = level[tap.frame].row(k);
         for (int x = 0; x < columns; ++x) out[x] += tap.weight * in[x];
       }
     }
@@ -70,12 +71,11 @@ void scale(std::vector<Slab>& slabs, float factor) {
 struct OstReconstructor::State {
   OstOptions options;
   AxisPose axis;
-  optics::View view;
-  optics::Detector camera;
+  Eye eye;
   optics::Detector detector;  // virtual, pitch = voxel
+  double absorption_per_mm = 0;
   double azimuth_rad = 0;
   int direction = 1;
-  double row_stretch = 1;
   model::Grid grid;
 
   [[nodiscard]] tomo::ParallelGeometry geometry(int angles) const {
@@ -89,11 +89,14 @@ struct OstReconstructor::State {
             .angle_step_rad = 2 * std::numbers::pi / angles};
   }
 
-  [[nodiscard]] std::vector<Image> virtual_sinograms(const std::vector<Image>& sinograms) const;
+  [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
+  [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
+                                                     std::span<const double> heights_mm) const;
+  [[nodiscard]] ClimbingRays rays(int angles) const;
+  void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
   void refine(const tomo::ParallelGeometry& geometry, const std::vector<Slab>& sinograms,
               std::vector<Slab>& images) const;
-  [[nodiscard]] std::vector<Slab> densities(const tomo::ParallelGeometry& geometry, const tomo::Filter& filter,
-                                            const std::vector<Slab>& sinograms) const;
+  void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
 };
 
 OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows,
@@ -102,14 +105,18 @@ OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_m
   State& s = *state_;
   s.options = options;
   s.axis = axis;
-  s.view = optics::camera_view(printer);
-  s.camera = {columns, pixel_mm, axis.column};
+  s.eye = {optics::camera_view(printer),
+           {columns, pixel_mm, axis.column},
+           options.axis_row.value_or(0.5 * (rows - 1)),
+           rows};
+  s.absorption_per_mm = printer.camera.absorption_per_mm;
   s.azimuth_rad = printer.camera.azimuth_deg * rad_per_deg;
   s.direction = printer.stage.direction;
   const double voxel_mm = options.voxel_mm > 0 ? options.voxel_mm : pixel_mm;
-  const double seen_mm = std::min(s.camera.x_mm(columns - 1), -s.camera.x_mm(0));  // the nearer edge of the frame
-  const auto edge = optics::chief_ray(s.view, std::max(0.0, seen_mm));
-  const double through_vial = options.refraction ? (edge.hits ? edge.x_v_mm : optics::reach_mm(s.view)) : seen_mm;
+  const double seen_mm =
+      std::min(s.eye.camera.x_mm(columns - 1), -s.eye.camera.x_mm(0));  // the nearer edge of the frame
+  const auto edge = optics::chief_ray(s.eye.view, std::max(0.0, seen_mm));
+  const double through_vial = options.refraction ? (edge.hits ? edge.x_v_mm : optics::reach_mm(s.eye.view)) : seen_mm;
   const double radius_mm = options.radius_mm > 0 ? std::min(options.radius_mm, through_vial) : through_vial;
   const int half = static_cast<int>(std::floor(radius_mm / voxel_mm));
   if (half < 2) {
@@ -118,21 +125,29 @@ OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_m
                                  std::to_string(columns) + "); check camera.pixel_mm and the axis"};
   }
   s.detector = optics::centred_detector(2 * half + 1, voxel_mm);
-  s.row_stretch = pixel_mm / (image_magnification(printer) * voxel_mm);
-  const int slices = std::max(1, static_cast<int>(std::floor(rows * s.row_stretch)));
-  s.grid = model::centred_grid(2 * half + 1, 2 * half + 1, slices, voxel_mm, -0.5 * (slices - 1) * voxel_mm);
+  const double row_mm = pixel_mm / image_magnification(printer);
+  const int slices = std::max(1, static_cast<int>(std::floor(rows * row_mm / voxel_mm)));
+  const double middle_mm = (s.eye.axis_row - 0.5 * (rows - 1)) * row_mm;
+  s.grid = model::centred_grid(2 * half + 1, 2 * half + 1, slices, voxel_mm, middle_mm - 0.5 * (slices - 1) * voxel_mm);
 }
 
 OstReconstructor::~OstReconstructor() = default;
 
 const model::Grid& OstReconstructor::grid() const { return state_->grid; }
 
-std::vector<Image> OstReconstructor::State::virtual_sinograms(const std::vector<Image>& sinograms) const {
+std::vector<double> OstReconstructor::State::heights_mm(int first, int count) const {
+  std::vector<double> heights;
+  for (int k = first; k < first + count; ++k) heights.push_back(grid.z_mm(k));
+  return heights;
+}
+
+std::vector<Image> OstReconstructor::State::virtual_sinograms(std::span<const Image> sinograms,
+                                                              std::span<const double> heights_mm) const {
   std::vector<Image> out(sinograms.size());
   if (!options.refraction) {
     parallel_for(static_cast<int>(out.size()), [&](int k) {
       const auto i = static_cast<std::size_t>(k);
-      rescale_columns(sinograms[i], camera, detector, out[i]);
+      rescale_columns(sinograms[i], eye.camera, detector, out[i]);
     });
     return out;
   }
@@ -140,9 +155,35 @@ std::vector<Image> OstReconstructor::State::virtual_sinograms(const std::vector<
   // A camera weighs a ray's light by what leaves the glass, T, and each pixel sees a beam as wide as J.
   const optics::ResampleOptions how{
       .fresnel = true, .jacobian = false, .angle_offset_rad = azimuth_rad, .direction = direction};
-  const auto plan = optics::plan_to_virtual(view, camera, detector, {angles, 0, 2 * std::numbers::pi / angles}, how);
-  optics::resample(plan, sinograms, out);
+  for (std::size_t first = 0; first < sinograms.size(); first += lanes) {
+    const std::size_t count = std::min<std::size_t>(lanes, sinograms.size() - first);
+    const optics::View plan = plan_view(eye.view, heights_mm[first + count / 2]);
+    optics::resample(
+        optics::plan_to_virtual(plan, eye.camera, detector, {angles, 0, 2 * std::numbers::pi / angles}, how),
+        sinograms.subspan(first, count), std::span(out).subspan(first, count));
+  }
   return out;
+}
+
+ClimbingRays OstReconstructor::State::rays(int angles) const {
+  ClimbingRays rays{detector.columns, angles, {}, absorption_per_mm, std::numbers::pi / angles / grid.voxel_mm};
+  for (int t = 0; t < detector.columns; ++t) rays.rate_per_mm.push_back(climb_rate_per_mm(eye, detector.x_mm(t)));
+  return rays;
+}
+
+// A ray that climbs is longer than its plan by 1 / cos; light from the axis plane has the way to the wall before it.
+void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const {
+  const double radius_mm = optics::resin_radius_mm(eye.view);
+  const double rate = climb_rate_per_mm(eye, 0);
+  for (std::size_t k = 0; k < sinograms.size(); ++k) {
+    const double cosine = 1 / std::hypot(1, rate * heights_mm[k]);
+    for (int t = 0; t < detector.columns; ++t) {
+      const double x_mm = detector.x_mm(t);
+      const double way_mm = std::sqrt(std::max(0.0, (radius_mm - x_mm) * (radius_mm + x_mm)));
+      const auto weight = static_cast<float>(cosine * std::exp(absorption_per_mm * way_mm));
+      for (int a = 0; a < sinograms[k].height; ++a) sinograms[k](t, a) *= weight;
+    }
+  }
 }
 
 // MLEM: x <- x * A*(g / A x) / A* 1 [SV82]; keeps x >= 0 and the counts.
@@ -178,26 +219,21 @@ void OstReconstructor::State::refine(const tomo::ParallelGeometry& geometry, con
   }
 }
 
-// Filtered back-projection, where asked for the start of MLEM; densities in 1/mm.
-std::vector<Slab> OstReconstructor::State::densities(const tomo::ParallelGeometry& geometry, const tomo::Filter& filter,
-                                                     const std::vector<Slab>& sinograms) const {
-  std::vector<Slab> filtered = sinograms;
-  for (auto& slab : filtered) filter.apply(slab);
-  std::vector<Slab> images(sinograms.size(), Slab(geometry.nx, geometry.ny));
-  tomo::adjoint(geometry, filtered, images);
-  const float to_density = static_cast<float>(0.5 * geometry.angle_step_rad / grid.voxel_mm);
-  const bool statistical = options.statistical > 0;
-  scale(images, statistical ? to_density * static_cast<float>(grid.voxel_mm) : to_density);
-  if (options.non_negative) {
-    for (auto& image : images) {
-      for (float& x : image.values) x = std::max(x, 0.0F);
-    }
+// MLEM for a stretch of slices that filtered back-projection has begun, as if rays stayed level.
+void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const {
+  const auto geo = geometry(sinograms.front().height);
+  const auto voxel = static_cast<float>(grid.voxel_mm);
+  for (int k = 0; k < static_cast<int>(sinograms.size()); k += lanes) {
+    const int count = std::min(lanes, static_cast<int>(sinograms.size()) - k);
+    std::vector<Slab> images(1, Slab(grid.nx, grid.ny));
+    pack(volume.slice(first + k), count, images[0]);
+    scale(images, voxel);
+    const auto measured = packed(sinograms.subspan(static_cast<std::size_t>(k), static_cast<std::size_t>(count)),
+                                 geo.columns, geo.angles);
+    refine(geo, measured, images);
+    scale(images, 1 / voxel);
+    unpack(images[0], count, volume.slice(first + k));
   }
-  if (statistical) {
-    refine(geometry, sinograms, images);
-    scale(images, static_cast<float>(1 / grid.voxel_mm));
-  }
-  return images;
 }
 
 model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) const {
@@ -205,24 +241,35 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) c
   std::vector<double> angles_deg;
   for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
   const AngleGrid turn(angles_deg, 0);
-  const auto sinograms = s.virtual_sinograms(camera_sinograms(views, turn, s.axis, s.row_stretch, s.grid.nz));
-
-  const auto geometry = s.geometry(turn.summary().angles);
-  const tomo::Filter filter(geometry.columns, {.window = tomo::window_from_name(s.options.window)});
+  const int angles = turn.summary().angles;
+  const ClimbingRays rays = s.rays(angles);
+  const int beyond = heights_beyond(rays, s.grid);
+  const HeightMap map(s.eye);
+  const tomo::Filter filter(s.detector.columns, {.window = tomo::window_from_name(s.options.window),
+                                                 .alpha_per_px = s.absorption_per_mm * s.grid.voxel_mm});
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
     const int count = std::min(slices_a_pass, s.grid.nz - first);
-    const auto slices = std::span(sinograms).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    const auto images = s.densities(geometry, filter, packed(slices, slices.front().width, slices.front().height));
-    for (int k = 0; k < count; k += lanes) {
-      const auto& image = images[k / lanes];
-      unpack(image, std::min(lanes, count - k), volume.slice(first + k));
+    const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
+    const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
+    auto sinograms = s.virtual_sinograms(camera_sinograms(views, turn, s.axis, rows, heights_mm.size()), heights_mm);
+    s.weigh(sinograms, heights_mm);
+    auto filtered = packed(sinograms, s.detector.columns, angles);
+    for (auto& slab : filtered) filter.apply(slab);
+    back_project(rays, filtered, beyond, first, count, volume);
+    if (s.options.non_negative) {
+      for (float* v = volume.slice(first); v != volume.slice(first + count); ++v) *v = std::max(*v, 0.0F);
+    }
+    if (s.options.statistical > 0) {
+      s.refine_slices(std::span(sinograms).subspan(static_cast<std::size_t>(beyond), static_cast<std::size_t>(count)),
+                      first, volume);
     }
   }
   return volume;
 }
 
 double image_magnification(const model::Printer& printer) {
+  if (printer.camera.telecentric) return 1;
   return 1 / (1 - model::shortening_mm(printer, printer.camera.index_resin) / printer.camera.distance_mm);
 }
 

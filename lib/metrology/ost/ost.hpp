@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,16 +15,18 @@
 namespace vam::metrology {
 
 struct OstOptions {
-  double voxel_mm = 0;            // 0: the binned camera pixel
-  std::string window = "cosine";  // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
-  bool refraction = true;         // false: columns taken as parallel rays (for comparison)
-  bool non_negative = true;       // negative densities become 0
-  int statistical = 0;            // iterations of MLEM [SV82] after FBP, for noisy views
-  double radius_mm = 0;           // of the reconstructed cylinder; 0: all that the camera sees through the vial
+  double voxel_mm = 0;             // 0: the binned camera pixel
+  std::string window = "cosine";   // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
+  bool refraction = true;          // false: columns taken as parallel rays (for comparison)
+  bool non_negative = true;        // negative densities become 0
+  int statistical = 0;             // iterations of MLEM [SV82] after FBP, for noisy views
+  std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
+  double radius_mm = 0;            // of the reconstructed cylinder; 0: all that the camera sees through the vial
 };
 
 /// Everything that depends on the rig and not on the data of a turn, made once and used for every turn. Frames are
-/// corrected and binned; image rows run downwards, z upwards; the middle row is z = 0.
+/// corrected and binned; image rows run downwards, z upwards. Rays are those of [physics §2, §11], exactly; those
+/// of a camera that is not telecentric climb [FDK84; physics §8].
 class OstReconstructor {
  public:
   /// `pixel_mm` is the pitch of the binned frames at the axis. Throws Fault::data where camera, vial and frames cannot
@@ -43,7 +46,8 @@ class OstReconstructor {
   std::unique_ptr<State> state_;
 };
 
-/// M_vi = 1 / (1 - shortening / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis.
+/// M_vi = 1 / (1 - shortening / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis;
+/// 1 when it is telecentric.
 [[nodiscard]] double image_magnification(const model::Printer& printer);
 
 /// The mean over even angles of one turn: what find_axis wants.

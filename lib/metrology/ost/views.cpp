@@ -1,13 +1,13 @@
 #include "metrology/ost/views.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
+#include "metrology/ost/private/cubic.hpp"
 
 namespace vam::metrology {
 
@@ -31,31 +31,6 @@ Image binned(const Image& image, int binning) {
     for (int x = 0; x < small.width * binning; ++x) out[x / binning] += share * in[x];
   }
   return small;
-}
-
-// Keys' cubic convolution with a = -1/2: weights of the pixels -1, 0, 1, 2 about the fraction f.
-std::array<float, 4> cubic_weights(float f) {
-  const float g = 1 - f;
-  return {-0.5F * f * g * g, 1 - 2.5F * f * f + 1.5F * f * f * f, 1 - 2.5F * g * g + 1.5F * g * g * g,
-          -0.5F * g * f * f};
-}
-
-float cubic_at(const Image& image, double x, double y) {
-  const double fx = std::floor(x);
-  const double fy = std::floor(y);
-  const auto wx = cubic_weights(static_cast<float>(x - fx));
-  const auto wy = cubic_weights(static_cast<float>(y - fy));
-  float sum = 0;
-  for (int j = 0; j < 4; ++j) {
-    const int row = std::clamp(static_cast<int>(fy) + j - 1, 0, image.height - 1);
-    float line = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int column = std::clamp(static_cast<int>(fx) + i - 1, 0, image.width - 1);
-      line += wx[i] * image(column, row);
-    }
-    sum += wy[j] * line;
-  }
-  return sum;
 }
 
 }  // namespace

@@ -1,0 +1,82 @@
+#include "metrology/ost/private/climb_kernel.hpp"
+
+#include "base/kernel_vector.hpp"
+
+namespace vam::metrology::VAM_SIMD {
+
+using namespace vam::VAM_SIMD;
+
+void climb_columns(const Climb& job) {
+  Vector lane;
+  for (int i = 0; i < vector_floats; ++i) lane[i] = static_cast<float>(i);
+  const auto drift = static_cast<float>(job.slope - 1);
+  // In fixed point of 32 bits below one, so far below that no lane's fraction is negative; none is above 2.
+  constexpr double one = 4294967296.0;
+  const double lowest = job.slope < 1 ? job.first + (job.slope - 1) * (vector_floats - 1) : job.first;
+  const Vector spare = (drift < 0 ? -drift * static_cast<float>(vector_floats - 1) : 0.0F) + drift * lane;
+  auto at = static_cast<long long>(lowest * one);
+  const auto step = static_cast<long long>(job.slope * vector_floats * one);
+  Vector weights[climb_heights / vector_floats][3];
+  long base[climb_heights / vector_floats];
+  const int vectors = job.heights / vector_floats;
+  for (int v = 0; v < vectors; ++v, at += step) {
+    const Vector part = static_cast<float>(static_cast<unsigned>(at)) * static_cast<float>(1 / one) + spare;
+    const Vector none = part - part;
+    const Vector above = part - 1.0F > none ? part - 1.0F : none;
+    base[v] = at >> 32;
+    weights[v][0] = 1.0F - part + above;
+    weights[v][1] = part - 2 * above;
+    weights[v][2] = above;
+  }
+  for (int c = 0; c < job.columns; ++c) {
+    const float* column = job.in + c * job.in_stride;
+    float* out = job.out + c * climb_heights;
+    for (int v = 0; v < vectors; ++v) {
+      const float* in = column + base[v];
+      store(out + v * vector_floats,
+            weights[v][0] * load(in) + weights[v][1] * load(in + 1) + weights[v][2] * load(in + 2));
+    }
+  }
+}
+
+void place_tile(const TilePlace& job) {
+  int q = 0;
+  for (int j = 0; j < job.edge; ++j) {
+    const float row = job.t + static_cast<float>(j) * job.step_y;
+    for (int i = 0; i < job.edge; ++i, ++q) {
+      const float t = row + static_cast<float>(i) * job.step_x;
+      const float inside = t < 0 ? 0.0F : t > job.last ? job.last : t;
+      const int base = static_cast<int>(inside);
+      const float part = t - static_cast<float>(base);
+      job.base[q] = base;
+      job.low[q] = job.gain[q] * (1 - part);
+      job.high[q] = job.gain[q] * part;
+    }
+  }
+}
+
+void add_tile(const TileSum& job) {
+  constexpr int together = 2;
+  for (int q = 0; q < job.columns; ++q) {
+    float* sums = job.sums + static_cast<long>(q) * climb_heights;
+    for (int z = 0; z < job.heights; z += together * vector_floats) {
+      Vector sum[together];
+#pragma GCC unroll 2
+      for (int v = 0; v < together; ++v) sum[v] = load(sums + z + v * vector_floats);
+      for (int m = 0; m < job.angles; ++m) {
+        const int entry = m * job.columns + q;
+        const float* from = job.shifted + m * job.angle_stride + static_cast<long>(job.base[entry]) * climb_heights + z;
+        const float low = job.low[entry];
+        const float high = job.high[entry];
+#pragma GCC unroll 2
+        for (int v = 0; v < together; ++v) {
+          sum[v] += low * load(from + v * vector_floats) + high * load(from + climb_heights + v * vector_floats);
+        }
+      }
+#pragma GCC unroll 2
+      for (int v = 0; v < together; ++v) store(sums + z + v * vector_floats, sum[v]);
+    }
+  }
+}
+
+}  // namespace vam::metrology::VAM_SIMD

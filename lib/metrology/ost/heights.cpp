@@ -1,0 +1,108 @@
+#include "metrology/ost/private/heights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "metrology/ost/private/cubic.hpp"
+#include "optics/skew_ray.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+double tallest_mm(const Eye& eye) { return std::max(std::abs(eye.z_mm(0)), std::abs(eye.z_mm(eye.rows - 1))); }
+
+}  // namespace
+
+HeightMap::HeightMap(const Eye& eye) : eye_(eye), columns_(static_cast<std::size_t>(eye.camera.columns)) {
+  const double high = std::max(tallest_mm(eye), 1e-3);
+  const double low = 0.5 * high;
+  std::vector<bool> hit(columns_.size());
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    const double x = eye.camera.x_mm(static_cast<double>(c));
+    const auto one = optics::skew_ray(eye.view, x, low);
+    const auto two = optics::skew_ray(eye.view, x, high);
+    hit[c] = one.hits && two.hits;
+    if (!hit[c]) continue;
+    const double cubic = (two.height_mm / high - one.height_mm / low) / (high * high - low * low);
+    columns_[c] = {one.height_mm / low - cubic * low * low, cubic};
+  }
+  const auto first = static_cast<std::size_t>(std::find(hit.begin(), hit.end(), true) - hit.begin());
+  if (first == hit.size()) {
+    std::fill(columns_.begin(), columns_.end(), Column{1, 0});
+    return;
+  }
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (!hit[c]) columns_[c] = c < first ? columns_[first] : columns_[c - 1];
+  }
+}
+
+double HeightMap::row(int column, double height_mm) const {
+  const auto& [linear, cubic] = columns_[static_cast<std::size_t>(column)];
+  double z = height_mm / linear;
+  for (int step = 0; step < 3; ++step) z -= (z * (linear + cubic * z * z) - height_mm) / (linear + 3 * cubic * z * z);
+  return eye_.axis_row - z / eye_.camera.pixel_mm;
+}
+
+double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
+  if (!eye.view.rows_lens_mm) return 0;
+  const double most = optics::reach_mm(eye.view) * (1 - 1e-3);  // beyond, as at the rim
+  const double z_p = std::max(0.5 * tallest_mm(eye), 1e-3);
+  const auto x_p = optics::column_of(eye.view, std::clamp(x_v_mm, -most, most));
+  const auto ray = x_p ? optics::skew_ray(eye.view, *x_p, z_p) : optics::SkewRay{};
+  return ray.hits ? ray.climb / ray.height_mm : 0.0;
+}
+
+optics::View plan_view(const optics::View& view, double z_p_mm) {
+  if (!view.rows_lens_mm) return view;
+  const double sine = z_p_mm / std::hypot(*view.rows_lens_mm, z_p_mm);
+  const double s2 = sine * sine;
+  const auto level = [s2](double index) { return std::sqrt((index * index - s2) / (1 - s2)); };
+  optics::View plan = view;
+  if (plan.bath_index != 1.0) plan.bath_index = level(plan.bath_index);
+  for (auto& shell : plan.shells) shell.index = level(shell.index);
+  return plan;
+}
+
+LevelRows::LevelRows(const HeightMap& map, int columns, int rows, std::span<const double> heights_mm)
+    : columns_(columns), heights_(static_cast<int>(heights_mm.size())) {
+  for (const double height : heights_mm) {
+    for (int x = 0; x < columns; ++x) {
+      const double row = std::clamp(map.row(x, height), 0.0, rows - 1.0);
+      const double whole = std::floor(row);
+      const auto weights = cubic_weights(static_cast<float>(row - whole));
+      Taps taps{static_cast<float>(row), std::clamp(static_cast<int>(whole) - 1, 0, std::max(0, rows - 4)), {}};
+      for (int j = 0; j < 4; ++j) {
+        const int at = std::clamp(static_cast<int>(whole) + j - 1, 0, rows - 1) - taps.first;
+        taps.weights[static_cast<std::size_t>(at)] += weights[static_cast<std::size_t>(j)];
+      }
+      taps_.push_back(taps);
+    }
+  }
+}
+
+Image LevelRows::of(const Image& image, const AxisPose& axis) const {
+  Image out(columns_, heights_);
+  const double middle = 0.5 * (image.height - 1);
+  const double c = std::cos(axis.tilt_rad);
+  const double s = std::sin(axis.tilt_rad);
+  const auto pitch = static_cast<std::ptrdiff_t>(image.width);
+  for (int k = 0; k < heights_; ++k) {
+    float* to = out.row(k);
+    const Taps* taps = taps_.data() + static_cast<std::ptrdiff_t>(k) * columns_;
+    for (int x = 0; x < columns_; ++x, ++taps) {
+      if (axis.tilt_rad == 0) {
+        const float* from = image.row(taps->first) + x;
+        const auto& w = taps->weights;
+        to[x] = w[0] * from[0] + w[1] * from[pitch] + w[2] * from[2 * pitch] + w[3] * from[3 * pitch];
+        continue;
+      }
+      const double across = x - axis.column;
+      const double along = static_cast<double>(taps->row) - middle;
+      to[x] = cubic_at(image, axis.column + c * across + s * along, middle - s * across + c * along);
+    }
+  }
+  return out;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,67 @@
+// Camera rows to heights in the resin, by exact rays that climb.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "metrology/ost/views.hpp"
+#include "optics/resample.hpp"
+
+namespace vam::metrology {
+
+/// Where the camera stands and which of its rows is level with the lens, that is at z = 0.
+struct Eye {
+  optics::View view;
+  optics::Detector camera;
+  double axis_row = 0;
+  int rows = 0;
+
+  /// Height of a row in the plane of the axis, mm.
+  [[nodiscard]] double z_mm(double row) const { return (axis_row - row) * camera.pixel_mm; }
+};
+
+/// For every camera column the row whose ray passes the axis at a height: to second order in the height's square from
+/// exact rays.
+class HeightMap {
+ public:
+  explicit HeightMap(const Eye& eye);
+  /// Columns whose rays miss the resin are as their nearest neighbours.
+  [[nodiscard]] double row(int column, double height_mm) const;
+
+ private:
+  struct Column {
+    double linear;
+    double cubic;  // height = z (linear + cubic z^2), z that of the row in the plane of the axis
+  };
+  Eye eye_;
+  std::vector<Column> columns_;
+};
+
+/// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
+[[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);
+
+/// The same bench for rays that pass the axis plane at z_p: in plan they are level rays with other indices
+/// [physics §2].
+[[nodiscard]] optics::View plan_view(const optics::View& view, double z_p_mm);
+
+/// The rows of a camera image that see these heights, lowest first.
+class LevelRows {
+ public:
+  LevelRows(const HeightMap& map, int columns, int rows, std::span<const double> heights_mm);
+  /// The image at those heights, turned about the axis by its tilt: cubic between pixels [KEYS81]; rows beyond the
+  /// image repeat its last.
+  [[nodiscard]] Image of(const Image& image, const AxisPose& axis) const;
+
+ private:
+  struct Taps {
+    float row;
+    int first;  // of four rows, all in the image
+    std::array<float, 4> weights;
+  };
+  int columns_;
+  int heights_;
+  std::vector<Taps> taps_;  // [height][column]
+};
+
+}  // namespace vam::metrology
