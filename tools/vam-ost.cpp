@@ -25,7 +25,10 @@ cli::Manual manual() {
        "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; the latter two need "
        "--angle-step. Each frame is placed by its own angle: missing, repeated and unevenly spaced frames are "
        "weighted, and "
-       "a gap of more than 15 degrees is an error. Image rows run downwards along the axis; the row level with the "
+       "a gap of more than 15 degrees is an error. An even background is fitted and "
+       "subtracted; specks on window or lens, which stay where they are, and bubbles, which pass, are told from the "
+       "print by lines that look different from their two ends, and replaced by the other end; --report has their "
+       "shares. Image rows run downwards along the axis; the row level with the "
        "lens, "
        "camera.axis_row or the middle one, is z = 0.",
        "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "

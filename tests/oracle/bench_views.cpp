@@ -234,8 +234,8 @@ void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<floa
   }
 }
 
-std::vector<Bubble> bubbles(int count, double reach_mm) {
-  std::mt19937 random(7);
+std::vector<Bubble> bubbles(int count, double reach_mm, unsigned seed) {
+  std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<Bubble> all;
   for (int n = 0; n < count; ++n) {

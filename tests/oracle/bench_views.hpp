@@ -60,7 +60,7 @@ struct Dirt {
 void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views);
 
 /// So many bubbles of 0.15 to 0.4 mm that rise by 3 to 10 mm a turn, as bright as a print of 2 to 10 mm.
-std::vector<Bubble> bubbles(int count, double reach_mm);
+std::vector<Bubble> bubbles(int count, double reach_mm, unsigned seed);
 
 /// Distance to the surface of what bodies of density 1 make, less those of -1; positive outside. Exact but near edges
 /// where a hole cuts a face.

@@ -55,6 +55,7 @@ class Turns {
     session_.write_print(volume);
     const auto state = session_.state(volume);
     if (state) line.update(metrology::to_json(*state));
+    line["dirt"] = session_.dirt();
     if (!session_.bodies().is_null()) line["bodies"] = session_.bodies();
     write_page(options_, index_, line);
     say(line);

@@ -78,7 +78,9 @@ bool Session::certain() const { return axis_.column_sigma < 0.1 && axis_.tilt_si
 
 model::Volume Session::reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
   if (!rig_) set_up(views, stack_pixel_mm);
-  return rig_->reconstruct(views);
+  model::Volume volume = rig_->reconstruct(views, &dirt_);
+  say_dirt();
+  return volume;
 }
 
 void Session::write(const model::Volume& volume, const std::string& path,
@@ -90,6 +92,22 @@ void Session::write(const model::Volume& volume, const std::string& path,
   sparse.units = "view units per mm";
   sparse.write_slices(0, volume.grid.nz, volume.values.data());
   io::write_volume(path, sparse);
+}
+
+void Session::say_dirt() const {
+  std::string words;
+  const auto add = [&](double percent, const char* what) {
+    if (percent > 0)
+      words += (words.empty() ? "" : ", ") + format_number(percent, 2) + " % of the rays through " + what;
+  };
+  add(dirt_.speck_percent, "specks");
+  if (!dirt_.contradicts) add(dirt_.bubble_percent, "bubbles");
+  if (!words.empty()) note("replaced by the same lines from their other ends: " + words);
+  if (dirt_.contradicts) {
+    note("views contradict each other in " + format_number(dirt_.bubble_percent, 2) +
+         " % of the rays: the print changes or wobbles, the axis is elsewhere, or the resin absorbs this light "
+         "(camera.absorption_per_mm)");
+  }
 }
 
 void Session::require_print(const model::Volume& volume) const {
@@ -106,6 +124,12 @@ void Session::keep_print(model::Volume& volume) {
   constexpr double margin_mm = 1;
   if (reference_) rules.inside = metrology::neighbourhood(*reference_, margin_mm);
   bodies_ = metrology::keep_bodies(volume, *isovalue_, rules);
+  constexpr double within = 0.75;  // a level on the edge is about half of what is inside
+  if (bodies_.inside > 0 && *isovalue_ > within * bodies_.inside) {
+    warn("isovalue " + format_number(*isovalue_, 3) + " cuts the inside of the print, of which half is below " +
+         format_number(bodies_.inside, 3) + ": parts of it are missing; calibrate the isovalue again" +
+         (printer_.camera.absorption_per_mm > 0 ? "" : ", or set camera.absorption_per_mm"));
+  }
   if (bodies_.dropped > 0) {
     note("dropped " + std::to_string(bodies_.dropped) + " bodies of " + format_number(bodies_.dropped_mm3, 3) +
          " mm3, the largest " + format_number(bodies_.largest_dropped_mm3, 3) + " mm3; kept " +
@@ -142,6 +166,7 @@ Json Session::figures(const model::Volume& volume) const {
             {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
+  json["dirt"] = dirt();
   if (isovalue_) json["isovalue"] = *isovalue_;
   if (isovalue_) json["bodies"] = bodies();
   if (isovalue_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *isovalue_, *reference_));

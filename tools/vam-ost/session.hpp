@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/json_fwd.hpp"
+#include "base/json.hpp"
 #include "cli/app.hpp"
 #include "io/image/view_source.hpp"
 #include "io/vdb/vdb.hpp"
@@ -39,11 +39,14 @@ class Session {
   void write_print(const model::Volume& volume) const;
   /// What the last call of keep_print() kept and dropped; null without an isovalue.
   [[nodiscard]] Json bodies() const;
+  /// What was taken out of the views of the last volume.
+  [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
   [[nodiscard]] Json figures(const model::Volume& volume) const;
   /// Nothing without isovalue and reference.
   [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
 
  private:
+  void say_dirt() const;
   void place_axis(std::span<const metrology::CameraView> views);
   [[nodiscard]] bool certain() const;
   void set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm);
@@ -56,6 +59,7 @@ class Session {
   std::optional<model::Volume> reference_;
   metrology::AxisEstimate axis_;
   metrology::BodyCount bodies_;
+  metrology::Dirt dirt_;
   std::unique_ptr<metrology::OstReconstructor> rig_;
   int width_ = 0;
   int height_ = 0;

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
+#include "base/stats/median.hpp"
 
 namespace vam::metrology {
 
@@ -134,6 +135,15 @@ int fill_cavities(model::Volume& volume, double level) {
   return static_cast<int>(std::count_if(cavities.begin(), cavities.end(), small));
 }
 
+// Of every seventh voxel above half the level, those at a surface included.
+double median_inside(const model::Volume& volume, double level) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < volume.values.size(); i += 7) {
+    if (static_cast<double>(volume.values[i]) > 0.5 * level) values.push_back(volume.values[i]);
+  }
+  return values.empty() ? 0.0 : stats::median(std::move(values));
+}
+
 }  // namespace
 
 Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm) {
@@ -155,6 +165,7 @@ Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm) {
 BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rules) {
   const model::Grid& g = volume.grid;
   BodyCount count;
+  count.inside = median_inside(volume, level);
   Runs runs(volume, level, true, 1);
   const std::vector<Body> bodies = measured(runs, g, rules.inside);
   const double voxel_mm3 = g.voxel_mm * g.voxel_mm * g.voxel_mm;
@@ -190,7 +201,8 @@ Json to_json(const BodyCount& count) {
           {"dropped", count.dropped},
           {"dropped_mm3", count.dropped_mm3},
           {"largest_dropped_mm3", count.largest_dropped_mm3},
-          {"cavities_filled", count.filled}};
+          {"cavities_filled", count.filled},
+          {"median_inside", count.inside}};
 }
 
 }  // namespace vam::metrology

@@ -31,7 +31,8 @@ struct BodyCount {
   double kept_mm3 = 0;     // of all kept bodies
   double dropped_mm3 = 0;  // of all dropped bodies
   double largest_dropped_mm3 = 0;
-  int filled = 0;  // cavities below resolution, 27 voxels
+  int filled = 0;     // cavities below resolution, 27 voxels
+  double inside = 0;  // median of the values above half the level
 };
 
 /// Lowers the voxels of dropped bodies of { volume >= level } to 0 and raises those of cavities smaller than a cube of

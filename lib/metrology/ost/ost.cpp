@@ -60,6 +60,13 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
   }
 }
 
+void subtract(std::vector<Image>& images, double level) {
+  const auto value = static_cast<float>(level);
+  parallel_for(static_cast<int>(images.size()), [&](int i) {
+    for (float& v : images[static_cast<std::size_t>(i)].values) v -= value;
+  });
+}
+
 void scale(std::vector<Slab>& slabs, float factor) {
   for (auto& slab : slabs) {
     for (float& value : slab.values) value *= factor;
@@ -93,6 +100,7 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
+  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, Dirt& found) const;
   void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
   void refine(const tomo::ParallelGeometry& geometry, const std::vector<Slab>& sinograms,
               std::vector<Slab>& images) const;
@@ -171,6 +179,24 @@ ClimbingRays OstReconstructor::State::rays(int angles) const {
   return rays;
 }
 
+// Specks and bubbles; their shares are added to `found` by that of the heights.
+void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm,
+                                    Dirt& found) const {
+  const double part = 100.0 * static_cast<double>(heights_mm.size()) / grid.nz;
+  found.speck_percent += part * remove_specks(sinograms);
+  // The same line from the other end climbs the other way.
+  const double rate = climb_rate_per_mm(eye, 0);
+  std::vector<int> rows;
+  for (const double height : heights_mm) {
+    rows.push_back(1 + static_cast<int>(std::ceil(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) /
+                                                  grid.voxel_mm)));
+  }
+  if (absorption_per_mm > 0) return;  // a line is not the same from its other end
+  const double share = remove_bubbles(sinograms, rows);
+  found.contradicts = found.contradicts || share > most_bubbles;
+  found.bubble_percent += part * share;
+}
+
 // A ray that climbs is longer than its plan by 1 / cos; light from the axis plane has the way to the wall before it.
 void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const {
   const double radius_mm = optics::resin_radius_mm(eye.view);
@@ -236,7 +262,7 @@ void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, in
   }
 }
 
-model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) const {
+model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, Dirt* found) const {
   const State& s = *state_;
   std::vector<double> angles_deg;
   for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
@@ -247,12 +273,18 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) c
   const HeightMap map(s.eye);
   const tomo::Filter filter(s.detector.columns, {.window = tomo::window_from_name(s.options.window),
                                                  .alpha_per_px = s.absorption_per_mm * s.grid.voxel_mm});
+  Dirt dirt;
+  if (s.options.clean) dirt = even_background(mean_view(views));
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
     const int count = std::min(slices_a_pass, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
     const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
-    auto sinograms = s.virtual_sinograms(camera_sinograms(views, turn, s.axis, rows, heights_mm.size()), heights_mm);
+    auto seen = camera_sinograms(views, turn, s.axis, rows, heights_mm.size());
+    if (dirt.has_background) subtract(seen, dirt.background);
+    auto sinograms = s.virtual_sinograms(seen, heights_mm);
+    seen.clear();
+    if (s.options.clean) s.clean(sinograms, heights_mm, dirt);
     s.weigh(sinograms, heights_mm);
     auto filtered = packed(sinograms, s.detector.columns, angles);
     for (auto& slab : filtered) filter.apply(slab);
@@ -265,6 +297,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views) c
                       first, volume);
     }
   }
+  if (found != nullptr) *found = dirt;
   return volume;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "metrology/ost/axis.hpp"
+#include "metrology/ost/dirt.hpp"
 #include "metrology/ost/views.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
@@ -18,6 +19,7 @@ struct OstOptions {
   double voxel_mm = 0;             // 0: the binned camera pixel
   std::string window = "cosine";   // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
   bool refraction = true;          // false: columns taken as parallel rays (for comparison)
+  bool clean = true;               // take out background, specks and bubbles
   bool non_negative = true;        // negative densities become 0
   int statistical = 0;             // iterations of MLEM [SV82] after FBP, for noisy views
   std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
@@ -39,7 +41,8 @@ class OstReconstructor {
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
   /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.
-  [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views) const;
+  /// An even background, specks and bubbles are taken out; `found` says what.
+  [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views, Dirt* found = nullptr) const;
 
  private:
   struct State;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/surface.hpp"
@@ -22,6 +23,7 @@ model::Printer printer_of(const oracle::ViewBench& bench) {
   printer.bath = {.index = bench.bath_index, .window_mm = bench.window_mm};
   printer.camera.telecentric = bench.lens_mm == 0;
   if (!printer.camera.telecentric) printer.camera.distance_mm = bench.lens_mm;
+  printer.camera.absorption_per_mm = bench.absorption_per_mm;
   printer.camera.index_resin = bench.resin_index;
   printer.camera.azimuth_deg = bench.azimuth_deg;
   return printer;
@@ -30,7 +32,7 @@ model::Printer printer_of(const oracle::ViewBench& bench) {
 // A post with an eye, a foot beside the axis: flat faces at +-6.2 mm.
 std::vector<oracle::Body> post() {
   return {{Kind::cylinder, {0, 0, 0}, {4.5, 0, 6.2}, 1},
-          {Kind::cylinder, {1.5, 1, 0}, {1.2, 0, 7}, -1},
+          {Kind::cylinder, {1.5, 1, 0}, {1.2, 0, 6.2}, -1},
           {Kind::block, {5.2, 0.5, -3}, {0.9, 1.2, 1.5}, 1}};
 }
 
@@ -84,7 +86,13 @@ Figures reconstructed(const oracle::ViewBench& bench, const std::vector<CameraVi
                       const std::vector<oracle::Body>& bodies, double level = 0.5) {
   const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                              {.axis_row = bench.axis_row});
-  return measure(solid::isosurface(rig.reconstruct(views), level), bodies);
+  Dirt dirt;
+  model::Volume volume = rig.reconstruct(views, &dirt);
+  const BodyCount count = keep_bodies(volume, level, {});
+  MESSAGE("contradicts ", dirt.contradicts, " background ", dirt.background, ", specks ", dirt.speck_percent,
+          " %, bubbles ", dirt.bubble_percent, " %, ", count.dropped, " bodies dropped, the largest of ",
+          count.largest_dropped_mm3, " mm3");
+  return measure(solid::isosurface(volume, level), bodies);
 }
 
 void say(double what, const Figures& f) {
@@ -143,4 +151,43 @@ TEST_CASE("heights behind the window of a bath") {
   say(1.4, f);
   CHECK(std::abs(f.face) <= 5 * micrometres);
   CHECK(f.rms <= 10 * micrometres);
+}
+
+TEST_CASE("noise, background, specks and bubbles") {
+  const auto bodies = post();
+  const oracle::ViewBench bench;
+  const auto clean = oracle::bench_views(bench, bodies, {}, 180);
+  const auto soiled = [&](const oracle::Dirt& dirt) {
+    auto views = clean;
+    oracle::soil(bench, dirt, views);
+    return reconstructed(bench, views_of(bench, views), bodies);
+  };
+  const auto judge = [](const char* what, const Figures& f, double bar_mm) {
+    CAPTURE(what);
+    say(bar_mm, f);
+    CHECK(f.rms <= bar_mm);
+  };
+  judge("noise of 5 %", soiled({.noise = 0.05}), 0.037);
+  judge("background of 5 %", soiled({.background = 0.05}), 0.014);
+  judge("background of 20 %", soiled({.background = 0.2}), 0.014);
+  judge("25 specks", soiled({.specks = 25}), 0.05);
+  // Where a line passes one bubble from either end neither is known: the few such lines of other draws leave 0.04 to
+  // 0.09 mm.
+  const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, 1), 180);
+  judge("15 bubbles", reconstructed(bench, views_of(bench, bubbly), bodies), 0.05);
+}
+
+TEST_CASE("scattered light that the resin absorbs is restored when its absorption is known") {
+  const auto bodies = post();
+  oracle::ViewBench bench;
+  bench.absorption_per_mm = 0.1;
+  const Figures f = reconstructed(bench, views_of(bench, oracle::bench_views(bench, bodies, {}, 180)), bodies);
+  say(0.1, f);
+  CHECK(f.rms <= 10 * micrometres);
+  // Unknown, it leaves a third of the density, of which a level made for clear resin cuts the inside.
+  model::Printer clear = printer_of(bench);
+  clear.camera.absorption_per_mm = 0;
+  const OstReconstructor rig(clear, bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0}, {});
+  model::Volume volume = rig.reconstruct(views_of(bench, oracle::bench_views(bench, bodies, {}, 180)));
+  CHECK(0.5 > 0.75 * keep_bodies(volume, 0.5, {}).inside);
 }
