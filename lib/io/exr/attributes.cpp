@@ -145,9 +145,8 @@ StackInfo stack_info(const Imf::Header& header) {
   if (const auto poses = text(header, poses_name)) info.poses = model::parse_poses(*poses);
   for (auto it = header.begin(); it != header.end(); ++it) {
     const std::string name = it.name();
-    const bool ours =
-        name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
-        name == poses_name || is_seal_key(name);
+    const bool ours = name == "vam:kind" || name == "vam:space" || name == "vam:units" || name == "vam:history" ||
+                      name == poses_name || is_seal_key(name);
     const bool standard = name == "name" || name == "type" || name == "view";
     if (const auto value = text(header, it.name()); value && !ours && !standard) info.extra[name] = *value;
   }
