@@ -171,10 +171,12 @@ TEST_CASE("noise, background, specks and bubbles") {
   judge("background of 5 %", soiled({.background = 0.05}), 0.014);
   judge("background of 20 %", soiled({.background = 0.2}), 0.014);
   judge("25 specks", soiled({.specks = 25}), 0.05);
-  // Where a line passes one bubble from either end neither is known: the few such lines of other draws leave 0.04 to
-  // 0.09 mm.
-  const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, 1), 180);
-  judge("15 bubbles", reconstructed(bench, views_of(bench, bubbly), bodies), 0.05);
+  // Where a line passes one bubble from either end neither is known, and a streak of it stays: 0.02 to 0.09 mm in five
+  // draws, 1 mm where nothing is removed.
+  for (const unsigned draw : {1U, 7U}) {
+    const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, draw), 180);
+    judge("15 bubbles", reconstructed(bench, views_of(bench, bubbly), bodies), 0.1);
+  }
 }
 
 TEST_CASE("scattered light that the resin absorbs is restored when its absorption is known") {
