@@ -73,6 +73,8 @@ python3 -c 'import json; json.dump(json.load(open("r.json")), open("t.json", "w"
 ok 'but not its layout' vam-check t.json
 
 fails 66 'none.exr: cannot open' vam-check none.exr
+: >empty.vdb
+fails 65 'empty.vdb: is empty' vam-check empty.vdb
 fails 64 -- vam-check --slow
 : >empty
 is 'an empty file' "$(vam-check empty)" 'empty: file of another kind, unsealed'

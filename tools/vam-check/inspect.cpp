@@ -51,6 +51,7 @@ std::vector<Finding> inspect_text(const std::string& path) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = io::input_name(path);
   const std::string text = io::read_all(path, io::Content::text, most_bytes);
+  if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   if (const Json json = Json::parse(text, nullptr, false); json.is_object()) {
     Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", io::require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
