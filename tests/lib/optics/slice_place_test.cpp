@@ -1,0 +1,86 @@
+#include "optics/slice_place.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/error.hpp"
+#include "fault_of.hpp"
+
+using namespace vam;
+using optics::SlicePlace;
+
+namespace {
+
+model::Projector projector() {
+  model::Projector projector;
+  projector.columns = 10;
+  projector.rows = 8;
+  projector.pixel_mm = 0.1;
+  projector.axis_column = 5;
+  projector.axis_row = 2.5;
+  return projector;
+}
+
+model::StackInfo slice(int width, int height, double pixel_mm = 0.1) {
+  model::StackInfo info;
+  info.width = width;
+  info.height = height;
+  info.pixel_mm = pixel_mm;
+  info.row_mm = 0.1;
+  info.z_start_mm = 1;
+  return info;
+}
+
+Image numbered(int width, int height) {
+  Image image(width, height);
+  for (std::size_t i = 0; i < image.size(); ++i) image.values[i] = static_cast<float>(i + 1);
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("a slice is placed with its middle on the axis, moved right and down by the offsets") {
+  for (const auto& [right, down] : {std::pair{0, 0}, {2, 1}, {-4, -2}}) {
+    const SlicePlace place("part", projector(), slice(3, 2), right, down);
+    Image buffer;
+    const Image& placed = place.place(numbered(3, 2), 0.25F, buffer);
+    REQUIRE(placed.width == 10);
+    REQUIRE(placed.height == 8);
+    for (int y = 0; y < 8; ++y) {
+      for (int x = 0; x < 10; ++x) {
+        const int column = x - 4 - right;  // the middle one is column 5, the axis
+        const int row = y - 2 - down;      // the rows 2 and 3 have it between them
+        const bool within = column >= 0 && column < 3 && row >= 0 && row < 2;
+        CHECK(placed(x, y) == (within ? static_cast<float>(1 + column + 3 * row) : 0.25F));
+      }
+    }
+    model::StackInfo info = slice(3, 2);
+    place.apply(info);
+    CHECK(info.width == 10);
+    CHECK(info.height == 8);
+    CHECK(info.z_start_mm == doctest::Approx(1 - 0.1 * (2 + down)));
+    GreyImage grey(3, 2, 8);
+    for (std::size_t i = 0; i < grey.values.size(); ++i) grey.values[i] = static_cast<std::uint16_t>(i + 1);
+    const GreyImage shown = place.place(grey);
+    CHECK(shown(4 + right, 2 + down) == 1);
+    CHECK(shown(6 + right, 3 + down) == 6);
+    CHECK(shown(7 + right, 2 + down) == 0);
+  }
+}
+
+TEST_CASE("a slice of the image's size stays, one of other pixels or beyond the image is refused") {
+  const SlicePlace whole("part", projector(), slice(10, 8));
+  Image buffer;
+  const Image image = numbered(10, 8);
+  CHECK(&whole.place(image, 0, buffer) == &image);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(10, 8), 1); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), 3); }) == std::nullopt);  // to the last column
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), 4); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), -4); }) == std::nullopt);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), -5); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), 0, 4); }) == std::nullopt);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), 0, 5); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2), 0, -3); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2, 0.10005)); }) == std::nullopt);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2, 0.1003)); }) == Fault::data);
+  CHECK(fault_of([] { SlicePlace("part", projector(), slice(3, 2, 0)); }) == std::nullopt);  // not known
+}
