@@ -141,8 +141,10 @@ class Job {
     } else {
       const double rate = rays_.gain_per_mm * grid_.voxel_mm;
       for (int q = 0; q < tile_columns; ++q) {
+        const int right = q % tile;
+        const int up = q / tile;
         scratch.gain[static_cast<std::size_t>(q)] =
-            static_cast<float>(rays_.scale * std::exp(rate * (-(x + q % tile) * s + (y + q / tile) * c)));
+            static_cast<float>(rays_.scale * std::exp(rate * (-(x + right) * s + (y + up) * c)));
       }
     }
     const auto entry = static_cast<std::size_t>(m) * tile_columns;
