@@ -2,6 +2,8 @@
 # section 7 are clean, and what they refer to is there.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
+PATH=$VAM_SOURCE/scripts:$PATH  # vam-print
+
 examples() {  # the commands of the EXAMPLES section of a page
   awk '/^\.Sh /{inside = ($2 == "EXAMPLES")} inside && /^\.Ed/{code = 0} inside && code{print} inside && /^\.Bd/{code = 1}' "$1" |
     sed -e 's/^\\&//' -e 's/\\e/\\/g'
@@ -32,7 +34,7 @@ done
 
 # Their other examples name real devices.
 examples "$VAM_SOURCE/man/vam-print.1" | sed '/drm:/,$d' >print.sh
-ok 'vam-print: the dry run of its page' env PATH="$VAM_SOURCE/scripts:$PATH" sh -e print.sh
+ok 'vam-print: the dry run of its page' sh -e print.sh
 
 for script in vam-print vam-calibrate-all; do
   page=$VAM_SOURCE/man/$script.1

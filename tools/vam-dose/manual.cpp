@@ -59,10 +59,10 @@ cli::Manual manual() {
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
         "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"},
        {"The dose of a print that was ended before its time, here a dry run:",
-        "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout 9 "
+        "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout 15 "
         "vam-print short.exr --screen null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 --missed "
-        "0.9 "
-        "--run-up 0.1 --turns 20 --run ended; vam-dose short.exr --shown ended --printer ended/printer.toml --like "
+        "0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer ended/printer.toml "
+        "--like "
         "part.vdb --report given.json -o given.vdb"}},
       {"Accuracy: chief-ray doses agree with a sum over individual rays to 1e-3. The dose of a voxel is the mean over "
        "its volume, across the beam exactly for pixels of uniform intensity, along the axis linear between rows. "

@@ -35,8 +35,8 @@ void declare(cli::App& app, Options& options) {
       .needs({"--like"});
   app.option(
       "--shown", "RUN", options.shown,
-      "Dose that this print has truly given: the run folder of vam-print, or the flip log of vam-project. May be "
-      "repeated, for a print and its resumptions.");
+      "Dose that this print has truly given: the run folder of vam-print, or the flip log of vam-project; all of a "
+      "print and its resumptions.");
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");
