@@ -5,12 +5,13 @@ box 4 4 1 >box.off
 ok 'a part' vam-slice box.off --voxel 0.2 -o part.vdb
 small_printer >printer.toml
 ok 'its light' vam-optimize part.vdb --method fbp --angles 24 -o light.exr
-# The one value 1 of a tile in the file becomes another: a float of the archive that stands for solid.
+# The one value 1 of a tile in the file becomes another: a float of the archive that stands for solid. Another program
+# would have written it, so it has no seal.
 bad() {  # bad FILE VALUE
   python3 - part.vdb "$1" "$2" <<'PY'
 import struct, sys
 source, to, value = sys.argv[1:]
-data = open(source, 'rb').read()
+data = open(source, 'rb').read().replace(b'vam:seal', b'was:seal').replace(b'vam:facts_seal', b'was:facts_seal')
 one, other = struct.pack('<f', 1), struct.pack('<f', float(value))
 open(to, 'wb').write(data.replace(one, other))
 PY
