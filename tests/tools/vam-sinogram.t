@@ -52,8 +52,8 @@ vam-sinogram --columns 31 --angles 7 part.vdb | $exr sum - | cut -d' ' -f2,3 >si
 is "number of columns and angles" "$(cat size)" "31 7"
 vam-sinogram <part.vdb >stdin.exr
 is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pipe.exr)"
-vam-sinogram --threads 1 --filter hann part.vdb >one.exr
-vam-sinogram --threads 2 --filter hann part.vdb | sed 's/--threads 2/--threads 1/' >two.exr
+taskset -c 0 vam-sinogram --filter hann part.vdb >one.exr  # the history, and so the seal, has the options
+vam-sinogram --filter hann part.vdb >two.exr
 same "1 and 2 threads give identical bytes" one.exr two.exr
 ok "half floats in a file" vam-sinogram --half --compression zip part.vdb -o half.exr
 quiet "success is silent" vam-sinogram part.vdb -o silent.exr
