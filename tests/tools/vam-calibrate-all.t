@@ -116,9 +116,12 @@ is 'flat: the shape of the light' "$(cut -d' ' -f1 judged)" good
 sed 's/^/# flat: /' judged
 ok 'all are in force' vam-calibrate check --need latency --need response --need axis --need beam --need edges --need flat
 
-# A print takes them up, and freezes them.
+# A print takes them up, and freezes them; its sinogram was computed with them.
+vam-slice --print-printer -o now.toml
+column=$(awk '/^\[/ { here = $0 == "[projector]" } here && $1 == "axis_column" { print $3 }' now.toml)
+near 'the axis in force is that of the bench' "$column" 106.7 0.1
 python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
-  "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=103.5 projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
+  "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=$column projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
 quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 \
   --views 90 --run run
 camera_down
