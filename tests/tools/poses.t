@@ -76,7 +76,16 @@ for scan in edges axis; do
 done
 printf '{"schema":"vam-calibration/1","scan":"edges","values":{}}' >still.json
 fails 65 'knows no wobble_mm' vam-optimize --wobble still.json part.vdb -o none.exr
-fails 65 'not a record' vam-optimize --wobble wobble.csv part.vdb -o none.exr
+wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble wrong.json part.vdb -o none.exr; }
+head='{"schema":"vam-calibration/1","scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
+wrong 'changed after it was written' "$head,$values,\"seal\":\"xxh3:00000000000000000000000000000000\"}"
+wrong 'of a scan that failed' "$head,$values,\"status\":\"fail\"}"
+wrong 'a wobble of -0.3 mm' "$head,\"values\":{\"wobble_mm\":{\"value\":-0.3},\"wobble_phase\":{\"value\":20}}}"
+wrong 'knows no wobble_mm' "$head,\"values\":{\"wobble_mm\":{\"value\":\"x\"},\"wobble_phase\":{\"value\":20}}}"
+for other in '' '[]' '{"schema":5}' "$head" "$head,\"values\":4}" '{"schema":"vam-calibration/1","scan":3,"values":{}}'; do
+  wrong 'is not a vam-calibration/1 record' "$other"
+done
+fails 65 'is not a vam-calibration/1 record' vam-optimize --wobble wobble.csv part.vdb -o none.exr
 
 # Wrong tables and combinations
 fails 66 'missing.csv' vam-optimize --poses missing.csv part.vdb -o none.exr

@@ -186,18 +186,30 @@ std::string write_record(const model::Calibration& calibration, const std::strin
 double CalibrationRecord::value(const std::string& name) const { return json->at("values").at(name).at("value"); }
 double CalibrationRecord::sigma(const std::string& name) const { return json->at("values").at(name).at("sigma"); }
 
+CalibrationRecord read_record(const std::string& path) {
+  constexpr std::uint64_t limit = 1U << 20U;
+  CalibrationRecord record{
+      path, std::make_shared<const Json>(Json::parse(read_all(path, Content::text, limit), nullptr, false))};
+  const Json& json = *record.json;
+  const auto is_text = [&](const char* key) { return !json.contains(key) || json[key].is_string(); };
+  const bool whole = json.is_object() && json.contains("scan") && json.contains("values") &&
+                     json["values"].is_object() && json.value("schema", Json()) == schema;
+  const auto texts = {"scan", "utc", "valid_until", "instrument", "vial", "status"};
+  if (!whole || !std::all_of(texts.begin(), texts.end(), is_text)) {
+    throw Error{Fault::data, path + ": is not a " + schema + " record; run vam-calibrate"};
+  }
+  require_seal(json, path);
+  return record;
+}
+
 std::optional<CalibrationRecord> current_record(const model::Calibration& calibration, const std::string& scan) {
   const std::string path = current_path(calibration, scan);
   std::error_code ignored;
   if (calibration.folder.empty() || !fs::exists(path, ignored)) return std::nullopt;
-  constexpr std::uint64_t limit = 1U << 20U;
-  CalibrationRecord record{
-      path, std::make_shared<const Json>(Json::parse(read_all(path, Content::text, limit), nullptr, false))};
-  if (!record.json->is_object() || record.json->value("schema", "") != schema ||
-      record.json->value("scan", "") != scan || !record.json->contains("values")) {
-    throw Error{Fault::data, path + ": is not a " + schema + " record of " + scan + "; run vam-calibrate"};
+  CalibrationRecord record = read_record(path);
+  if (const std::string made = (*record.json)["scan"]; made != scan) {
+    throw Error{Fault::data, path + ": is a record of " + made + ", not of " + scan + "; run vam-calibrate"};
   }
-  require_seal(*record.json, path);
   return record;
 }
 

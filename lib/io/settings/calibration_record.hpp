@@ -42,6 +42,9 @@ struct CalibrationRecord {
   [[nodiscard]] double sigma(const std::string& name) const;
 };
 
+/// A record, unjudged. Throws Error: no_input, data (another file, or changed after it was written).
+[[nodiscard]] CalibrationRecord read_record(const std::string& path);
+
 /// The current record of a scan, unjudged; nothing when there is none. Throws Fault::data for a damaged one, and for
 /// one that its seal is not of.
 [[nodiscard]] std::optional<CalibrationRecord> current_record(const model::Calibration& calibration,

@@ -6,8 +6,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "io/settings/calibration_record.hpp"
 #include "io/settings/csv_table.hpp"
-#include "io/stream/stream.hpp"
 
 namespace vam::io {
 
@@ -47,26 +47,23 @@ void require_angles(const std::string& path, const model::Poses& poses, int fram
 }
 
 WobbleRecord read_wobble(const std::string& path, const model::Printer& printer, int direction) {
-  constexpr std::uint64_t size_limit = std::uint64_t{1} << 20;
-  const Json record = Json::parse(read_all(path, Content::text, size_limit), nullptr, false);
+  const CalibrationRecord record = read_record(path);
+  const std::string scan = (*record.json)["scan"];
   const auto refuse = [&](const std::string& why) { return Error{Fault::data, path + ": " + why}; };
-  if (!record.is_object() || record.value("schema", "") != "vam-calibration/1") {
-    throw refuse("is not a record of vam-calibrate");
-  }
-  const std::string scan = record.value("scan", "");
-  const auto number = [&](const char* name) {
-    const Json* value =
-        record.contains("values") && record["values"].contains(name) ? &record["values"][name] : nullptr;
-    if (value == nullptr || !value->is_object() || !value->contains("value") || !(*value)["value"].is_number()) {
-      throw refuse("knows no " + std::string(name) +
-                   "; needed is a record of vam-calibrate axis, or of edges at several stage angles");
-    }
-    return (*value)["value"].get<double>();
-  };
   if (scan != "edges" && scan != "axis") throw refuse("is a record of " + scan + ", not of edges or axis");
+  if (record.json->value("status", "") == "fail") throw refuse("is of a scan that failed; run vam-calibrate");
+  WobbleRecord wobble;
+  try {
+    wobble = {record.value("wobble_mm"), record.value("wobble_phase")};
+  } catch (const Json::exception&) {
+    throw refuse(
+        "knows no wobble_mm and wobble_phase; needed is a record of axis, or of edges at several stage angles");
+  }
+  if (!(wobble.radius_mm >= 0)) throw refuse("has a wobble of " + format_number(wobble.radius_mm) + " mm");
   // At the phase the vial is furthest along the columns, which lie along +x turned by the azimuth.
   const double azimuth_deg = scan == "axis" ? printer.camera.azimuth_deg : 0;
-  return {number("wobble_mm"), azimuth_deg + direction * number("wobble_phase")};
+  wobble.lab_angle_deg = azimuth_deg + direction * wobble.lab_angle_deg;
+  return wobble;
 }
 
 }  // namespace vam::io

@@ -78,7 +78,7 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   other.vial = "vial 7";
   CHECK(refusal(other, now_s).empty());  // a latency is of no vial
   std::ofstream(folder / "records/current-beam.json") << "{}";
-  CHECK(has(refusal(calibration, now_s), "current-beam.json: is not a vam-calibration/1 record of beam"));
+  CHECK(has(refusal(calibration, now_s), "current-beam.json: is not a vam-calibration/1 record"));
   std::ofstream(folder / "records/current-beam.json") << "not JSON";
   CHECK(has(refusal(calibration, now_s), "current-beam.json: is no"));
   std::filesystem::remove(folder / "records/current-beam.json");
