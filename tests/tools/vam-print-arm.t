@@ -108,6 +108,7 @@ fails 65 'rest: is complete, all 1 turns of it; there is nothing to resume' prin
 fails 66 'nowhere: is not the folder of a print that began' print --resume nowhere --run none
 fails 64 '.--turns: conflicts with --resume' print --resume killed --turns 3 --run none
 python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
+fails 65 'other.exr: is not the sinogram of whole, whose SHA-256 begins' vam-dose other.exr --printer whole/printer.toml --shown whole -o none.vdb
 fails 65 'other.exr: is not the sinogram of killed' vam-print other.exr --screen null: --resume killed --run none
 fails 65 'none: no light was shown|no light was shown' sh -c ': >empty; vam-dose frames.exr --shown empty -o x.vdb; status=$?; rm -f empty; exit $status'
 fails 66 'nowhere' vam-dose frames.exr --shown nowhere -o x.vdb

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "io/settings/flip_log.hpp"
+#include "io/stream/stream.hpp"
 
 namespace vam::dose_tool {
 
@@ -15,7 +16,13 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   }
   std::vector<double> turns(static_cast<std::size_t>(info.height));
   const auto from = static_cast<int>(std::lround(info.angle_start_deg / info.angle_step_deg));
+  const std::string sinogram = options.input == "-" ? "" : io::sha256_of(options.input);
   for (const std::string& run : options.shown) {
+    const std::string armed = io::armed_sinogram(run);
+    if (!armed.empty() && !sinogram.empty() && armed != sinogram) {
+      throw Error{Fault::data, options.input + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
+                                   armed.substr(0, 8) + "; give the one that was shown"};
+    }
     const auto of_run = io::turns_shown(io::read_shown(run), info.height, printer.stage.speed_deg_s);
     for (int row = 0; row < info.height; ++row) {
       turns[row] += of_run[static_cast<std::size_t>(((row + from) % info.height + info.height) % info.height)];

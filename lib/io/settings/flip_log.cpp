@@ -52,6 +52,17 @@ std::vector<ShownImage> read_shown(const std::string& path) {
   return shown;
 }
 
+std::string armed_sinogram(const std::string& run) {
+  if (!std::filesystem::is_directory(run)) return "";
+  std::ifstream events((std::filesystem::path(run) / "events.jsonl").string());
+  for (std::string text; std::getline(events, text);) {
+    const Json event = Json::parse(text, nullptr, false);
+    if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
+    if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
+  }
+  return "";
+}
+
 std::vector<double> turns_shown(const std::vector<ShownImage>& shown, int rows, double speed_deg_s) {
   std::vector<double> turns(static_cast<std::size_t>(rows));
   const double row_s = 360.0 / rows / speed_deg_s;

@@ -16,6 +16,10 @@ struct ShownImage {
 /// left out. Throws Fault::no_input, Fault::data for another kind of file.
 [[nodiscard]] std::vector<ShownImage> read_shown(const std::string& path);
 
+/// SHA-256 of the sinogram file that a run folder's print was armed with; empty where it is not known, as for a log
+/// alone.
+[[nodiscard]] std::string armed_sinogram(const std::string& run);
+
 /// For how many turns of the stage, at this speed, each of `rows` stage angles was shown, rows evenly over one turn
 /// from 0: the sum over images of seconds over the time that the stage spends at a row. A whole print has its turns in
 /// each.
