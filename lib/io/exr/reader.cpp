@@ -9,6 +9,7 @@
 #include <cmath>
 #include <deque>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -16,7 +17,7 @@
 #include "base/parallel.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
-#include "io/exr/private/seals.hpp"
+#include "io/exr/private/seal_check.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
 #include "io/stream/input_name.hpp"
@@ -111,10 +112,6 @@ struct StackReader::State {
   void open();
   void read_head();
   void add_part(const Imf::Header& header);
-  void check_seals(const Imf::Header& header, const StackInfo& own, const std::string& part);
-  void judge(std::size_t index) const;
-  void finish_seals();
-  [[nodiscard]] std::string chained() const;
   void refill();
   Arriving complete_part();
   void take_chunk();
@@ -137,14 +134,11 @@ struct StackReader::State {
   std::vector<std::size_t> layout_of;  // of every part
   std::map<std::size_t, Arriving> arriving;
   std::size_t waiting_bytes = 0;
-  std::vector<exr::PartSeals> seals;  // of every part, or none
-  std::vector<Digest> read_seals;     // of the values that were read, where those sealed follow
-  std::uint64_t begin = 0;            // of the stack on the stream
-  std::unique_ptr<Sealer> table;      // the offsets announced
-  std::unique_ptr<Sealer> places;     // the chunks' own; none where they come in another order
-  std::size_t complete = 0;           // parts taken off the stream
-  std::deque<Image> ready;            // decoded images
-  std::size_t done = 0;               // images handed out
+  std::optional<exr::SealCheck> seals;  // of this stack
+  std::uint64_t begin = 0;              // of the stack on the stream
+  std::size_t complete = 0;             // parts taken off the stream
+  std::deque<Image> ready;              // decoded images
+  std::size_t done = 0;                 // images handed out
 };
 
 // What OpenEXR and the checks throw becomes an Error that names the file.
@@ -177,10 +171,7 @@ void StackReader::State::open() {
   layouts.clear();
   layout_of.clear();
   arriving.clear();
-  seals.clear();
-  read_seals.clear();
-  table = std::make_unique<Sealer>();
-  places = std::make_unique<Sealer>();
+  seals.emplace();
   waiting_bytes = 0;
   complete = done = 0;
   begin = in.position();
@@ -212,69 +203,11 @@ void StackReader::State::read_head() {
 
   // The offset tables serve those who seek; here the chunks say themselves what they are.
   for (const std::size_t layout : layout_of) {
-    for (int i = 0; i < layouts[layout].chunks; ++i) table->add(take_number<std::uint64_t>());
+    for (int i = 0; i < layouts[layout].chunks; ++i) seals->note_offset(take_number<std::uint64_t>());
   }
-  read_seals.resize(about.size());
-  const std::string line = chained();
+  const std::string line = seals->chained();
   const bool named = !info.history.empty() && !chained_seal(info.history.back()).empty();
   if (!line.empty() && !named) info.history.push_back(line);
-}
-
-// The facts of a sealed part are those that were written, and no part of a sealed stack has lost its seals.
-void StackReader::State::check_seals(const Imf::Header& header, const StackInfo& own, const std::string& part) {
-  const auto found = exr::seals_of(header, part);
-  if (found.has_value() != !seals.empty() && !layout_of.empty()) {
-    throw std::runtime_error(part + (found ? " is sealed and others are not" : " has lost its seals") +
-                             "; make the file again");
-  }
-  if (!found) return;
-  // Without these another attribute bears a damaged name, and would be taken for one of other programs.
-  if (multi_part && !(header.hasName() && header.hasType())) {
-    throw std::runtime_error(part + " has a damaged header; make the file again");
-  }
-  if (!seals.empty() && found->values.has_value() != seals.front().values.has_value()) {
-    throw std::runtime_error(part + " has a damaged seal; make the file again");
-  }
-  const Digest read = exr::facts_digest(own, static_cast<int>(about.size()) - 1, about.back());
-  if (read != found->facts) throw std::runtime_error(mismatch("the header of " + part, found->facts, read));
-  seals.push_back(*found);
-}
-
-void StackReader::State::judge(std::size_t index) const {
-  const auto& sealed = seals[index].values;
-  if (!sealed || *sealed == read_seals[index]) return;
-  throw std::runtime_error(mismatch("image " + std::to_string(index), *sealed, read_seals[index]));
-}
-
-// At once with the last image, as a reader need not ask for more than that.
-void StackReader::State::finish_seals() {
-  if (seals.empty()) return;
-  if (places && places->digest() != table->digest()) {
-    throw std::runtime_error("its offset table is damaged, so that other programs cannot read it; make the file again");
-  }
-  if (seals.front().values) return;
-  std::string mark(exr::seal_mark.size(), '\0');
-  std::string bytes(exr::trailer_bytes(seals.size()), '\0');
-  take(mark.data(), mark.size());
-  if (mark != exr::seal_mark) throw std::runtime_error("has lost the seals after its last image; make the file again");
-  take(bytes.data(), bytes.size());
-  const auto sealed = exr::parse_trailer(bytes);
-  for (std::size_t i = 0; i < sealed.size(); ++i) {
-    seals[i].values = sealed[i];
-    judge(i);
-  }
-}
-
-// What tells this stack from others; empty where it is not sealed, or its seals have not come yet.
-std::string StackReader::State::chained() const {
-  if (seals.empty() || !seals.front().values) return "";
-  Sealer facts;
-  Sealer values;
-  for (const auto& part : seals) {
-    facts.add(part.facts);
-    values.add(*part.values);
-  }
-  return chain_line(facts.digest(), values.digest());
 }
 
 void StackReader::State::add_part(const Imf::Header& header) {
@@ -298,7 +231,7 @@ void StackReader::State::add_part(const Imf::Header& header) {
   StackInfo own = exr::stack_info(header);
   own.width = layout.width;
   own.height = layout.height;
-  check_seals(header, own, part);
+  seals->begin_part(header, multi_part, own, about.back());
   const auto known = std::find_if(layouts.begin(), layouts.end(), [&](const Layout& l) { return l.key == layout.key; });
   layout_of.push_back(static_cast<std::size_t>(known - layouts.begin()));
   if (known == layouts.end()) layouts.push_back(std::move(layout));
@@ -328,8 +261,7 @@ void StackReader::State::take_chunk() {
   // The table's order is part by part, row by row.
   const bool in_order =
       index == complete && place + static_cast<std::size_t>(image.missing) == image.chunks.starts.size();
-  if (!in_order) places.reset();
-  if (places) places->add(start);
+  seals->note_chunk(start, in_order);
   std::string& bytes = image.chunks.bytes;
   image.chunks.starts[place] = bytes.size();
   exr::append(bytes, y);
@@ -365,16 +297,16 @@ void StackReader::State::refill() {
     const auto at = static_cast<std::size_t>(i);
     exr::decode(layouts[layout_of[first + at]].header, taken[at], ready[at]);
     check_finite(ready[at], first + at);
-    if (!seals.empty()) read_seals[first + at] = exr::values_digest(ready[at]);
+    seals->note_image(first + at, ready[at]);
   });
-  for (std::size_t index = first; index < first + count && !seals.empty(); ++index) judge(index);
-  if (complete == about.size()) finish_seals();
+  seals->judge(first, first + count);
+  if (complete == about.size()) seals->finish([this](char* to, std::size_t size) { take(to, size); });
 }
 
 StackReader::StackReader(const std::string& path) : state_(std::make_unique<State>(path)) {}
 StackReader::~StackReader() = default;
-std::string StackReader::seal() const { return chained_seal(state_->chained()); }
-bool StackReader::is_sealed() const { return !state_->seals.empty(); }
+std::string StackReader::seal() const { return chained_seal(state_->seals->chained()); }
+bool StackReader::is_sealed() const { return state_->seals->sealed(); }
 const StackInfo& StackReader::info() const { return state_->info; }
 const std::vector<ImageInfo>& StackReader::about() const { return state_->about; }
 

@@ -1,0 +1,46 @@
+// Private to the EXR files: holds a stack to its seals while it is read. A stack without seals passes.
+#pragma once
+
+#include <OpenEXR/ImfHeader.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "io/exr/private/seals.hpp"
+#include "io/stream/seal.hpp"
+#include "model/stack.hpp"
+
+namespace vam::io::exr {
+
+/// All throw std::runtime_error where something is not as it was written.
+class SealCheck {
+ public:
+  /// Of the next part: its facts are those that were written, and no part of a sealed stack has lost its seals.
+  void begin_part(const Imf::Header& header, bool multi_part, const model::StackInfo& own,
+                  const model::ImageInfo& about);
+  /// The offsets that the tables announce, and where the chunks are; those of other programs may not be in the
+  /// tables' order, and are not compared then.
+  void note_offset(std::uint64_t announced) { table_.add(announced); }
+  void note_chunk(std::uint64_t start, bool in_order);
+  /// Several threads may note different images. They are judged from first to end once all of those are noted.
+  void note_image(std::size_t index, const Image& image);
+  void judge(std::size_t first, std::size_t end) const;
+  /// After the last image; take(to, size) gets the bytes that follow it. A reader need not ask for more than images.
+  void finish(const std::function<void(char* to, std::size_t size)>& take);
+
+  [[nodiscard]] bool sealed() const { return !seals_.empty(); }
+  /// What tells this stack from others; empty where it is not sealed, or its seals have not come yet.
+  [[nodiscard]] std::string chained() const;
+
+ private:
+  std::size_t parts_ = 0;
+  std::vector<PartSeals> seals_;  // of every part, or none
+  std::vector<Digest> read_;      // of the values that were read
+  Sealer table_, places_;
+  bool in_order_ = true;
+};
+
+}  // namespace vam::io::exr
