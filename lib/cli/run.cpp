@@ -1,4 +1,5 @@
 // Parses what the user gave, checks it as a whole, and runs the tool.
+#include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cerrno>

@@ -1,13 +1,16 @@
 // What an App holds between its declaration and its run.
 #pragma once
 
-#include <CLI/App.hpp>
 #include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "cli/declaration.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace vam::cli {
 
