@@ -6,25 +6,9 @@
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
 #include "tomo/absorption.hpp"
+#include "tomo/trapezoid.hpp"
 
 namespace vam::light {
-
-namespace {
-
-/// Integral from -infinity to x of a voxel's shadow: the trapezoid box(|cos|) * box(|sin|) of area 1.
-double shadow_up_to(double x, double cosine, double sine) {
-  const double wide = std::max(std::abs(cosine), std::abs(sine));
-  const double narrow = std::min(std::abs(cosine), std::abs(sine));
-  const double outer = 0.5 * (wide + narrow);
-  const double inner = 0.5 * (wide - narrow);
-  if (x <= -outer) return 0;
-  if (x >= outer) return 1;
-  if (x < -inner) return (x + outer) * (x + outer) / (2 * wide * narrow);
-  if (x > inner) return 1 - (outer - x) * (outer - x) / (2 * wide * narrow);
-  return 0.5 + x / wide;
-}
-
-}  // namespace
 
 ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu_per_px, double resin_radius_px,
                                    std::span<const Slab> inserts)
@@ -52,14 +36,17 @@ ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle)
   const double dx = x - turn_.axis_x;
   const double dy = y - turn_.axis_y;
   const double column = dx * c + dy * s + 0.5 * (turn_.columns - 1);
+  const auto wide = static_cast<float>(std::max(std::abs(c), std::abs(s)));
+  const auto narrow = static_cast<float>(std::min(std::abs(c), std::abs(s)));
+  const auto shadow = tomo::Trapezoid::of(wide, narrow, 1);
   Footprint result{};
   result.u = -dx * s + dy * c;
-  result.first = static_cast<int>(std::floor(column - 0.5 * (std::abs(c) + std::abs(s)) + 0.5));
-  double before = 0;
+  result.first = static_cast<int>(std::floor(column - shadow.half + 0.5));
+  float before = -0.5F;
   for (int i = 0; i < most_columns; ++i) {
-    const double up_to = shadow_up_to(result.first + i + 0.5 - column, c, s);
+    const float up_to = shadow.area_up_to(static_cast<float>(result.first + i + 0.5 - column));
     const bool seen = result.first + i >= 0 && result.first + i < turn_.columns;
-    result.weight[i] = seen ? static_cast<float>(up_to - before) : 0.0F;
+    result.weight[i] = seen ? up_to - before : 0.0F;
     before = up_to;
   }
   return result;

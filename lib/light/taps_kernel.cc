@@ -1,5 +1,7 @@
 #include "light/private/taps_kernel.hpp"
 
+#include "tomo/trapezoid.hpp"
+
 namespace vam::light::VAM_SIMD {
 
 namespace {
@@ -8,12 +10,6 @@ using Node = float __attribute__((vector_size(32), may_alias, aligned(32)));
 
 inline float positive(float x) { return x > 0.0F ? x : 0.0F; }
 inline float size(float x) { return x > 0.0F ? x : -x; }
-
-/// Square of what is positive: the integral of a ramp, twice.
-inline float ramp(float x) {
-  const float p = positive(x);
-  return p * p;
-}
 
 /// The node between four of them.
 inline void find_node(const RayNode* nodes, const RaySource& source, const RayFrame& frame, Node& to) {
@@ -31,9 +27,11 @@ inline void find_node(const RayNode* nodes, const RaySource& source, const RayFr
 /// Weights of the columns under the shadows of one block of voxels.
 struct Shadows {
   alignas(64) float first_edge[ray_block];  // of the shadow's middle: the edge before the first column
-  alignas(64) float inner[ray_block];       // half the width of the trapezoid's top, and of its foot
-  alignas(64) float outer[ray_block];
-  alignas(64) float gain[ray_block];
+  alignas(64) float half[ray_block];        // as those of tomo::Trapezoid
+  alignas(64) float flat[ray_block];
+  alignas(64) float slope[ray_block];
+  alignas(64) float curve[ray_block];
+  alignas(64) float before[ray_block];  // area up to the last edge that was taken
 };
 
 inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& taps, Shadows& shadows) {
@@ -45,14 +43,16 @@ inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& 
     const float edge = at[i][4];
     const float wide = edge * (a > b ? a : b);
     const float thin = edge * (a > b ? b : a);
-    const float narrow = thin > 0.02F * wide ? thin : 0.02F * wide;  // no quotient of nothing
-    shadows.inner[i] = 0.5F * (wide - narrow);
-    shadows.outer[i] = 0.5F * (wide + narrow);
-    shadows.gain[i] = at[i][3] / (2.0F * wide * narrow);
+    const auto shadow = tomo::Trapezoid::of(wide, thin, at[i][3]);
+    shadows.half[i] = shadow.half;
+    shadows.flat[i] = shadow.flat;
+    shadows.slope[i] = shadow.slope;
+    shadows.curve[i] = shadow.curve;
+    shadows.before[i] = -0.5F * at[i][3];
     float column = at[i][0];
     column = column < 0.0F ? 0.0F : column;
     column = column > frame.last_column ? frame.last_column : column;
-    const int first = static_cast<int>(positive(column - shadows.outer[i] + 0.5F));  // what lies before 0 is dark
+    const int first = static_cast<int>(positive(column - shadow.half + 0.5F));  // what lies before 0 is dark
     taps.cell[e + i] = first;
     shadows.first_edge[i] = static_cast<float>(first) - 0.5F - column;
     taps.zoom[e + i] = at[i][2];
@@ -60,18 +60,14 @@ inline void cast_shadows(const Node* at, const RayFrame& frame, int e, RayTaps& 
   }
 }
 
-inline void weigh(const Shadows& shadows, int e, const RayTaps& taps) {
-  alignas(64) float up_to[ray_block] = {};
+inline void weigh(Shadows& shadows, int e, const RayTaps& taps) {
   for (int k = 0; k < taps.taps; ++k) {
     float* __restrict weights = taps.weight + static_cast<long>(k) * taps.pitch + e;
     for (int i = 0; i < ray_block; ++i) {
-      const float edge = shadows.first_edge[i] + static_cast<float>(k + 1);
-      const float inner = shadows.inner[i];
-      const float outer = shadows.outer[i];
-      const float t = edge < outer ? edge : outer;
-      const float sum = ramp(t + outer) - ramp(t + inner) - ramp(t - inner) + ramp(t - outer);
-      weights[i] = shadows.gain[i] * (sum - up_to[i]);
-      up_to[i] = sum;
+      const tomo::Trapezoid shadow{shadows.half[i], shadows.flat[i], shadows.slope[i], shadows.curve[i]};
+      const float up_to = shadow.area_up_to(shadows.first_edge[i] + static_cast<float>(k + 1));
+      weights[i] = up_to - shadows.before[i];
+      shadows.before[i] = up_to;
     }
   }
 }
@@ -97,7 +93,7 @@ struct Bounds {
       last_cell[i] = cell > last_cell[i] ? cell : last_cell[i];
       first_row[i] = start < first_row[i] ? start : first_row[i];
       last_row[i] = end > last_row[i] ? end : last_row[i];
-      outer[i] = shadows.outer[i] > outer[i] ? shadows.outer[i] : outer[i];
+      outer[i] = shadows.half[i] > outer[i] ? shadows.half[i] : outer[i];
     }
   }
   void tell(int most_taps, RayTaps& taps) const {

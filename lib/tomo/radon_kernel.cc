@@ -29,7 +29,7 @@ struct Table {
   alignas(64) int base[pair_entries];
 };
 
-/// Weights of `taps` neighbouring elements: differences of the cumulative trapezoid at their common edges. The last
+/// Weights of `taps` neighbouring elements: differences of the trapezoid's area up to their common edges. The last
 /// edge lies beyond the footprint, so its value is the total: the weights add up to it.
 template <int taps, int slabs>
 inline void tabulate(const Gather& job, float pair, Table& table) {
@@ -41,14 +41,12 @@ inline void tabulate(const Gather& job, float pair, Table& table) {
     const float start = job.first[e] + pair * f.step[e];
     const int base = static_cast<int>(least(most(start, zero), last));
     const float edge = static_cast<float>(base) - start + f.first_edge[e];
+    const Trapezoid shadow{f.half[e], f.flat[e], f.slope[e], f.curve[e]};
     float below = -f.half_total[e];
     for (int k = 0; k + 1 < taps; ++k) {
-      const float x = edge + static_cast<float>(k);
-      const float y = least(__builtin_fabsf(x), f.half[e]);
-      const float z = most(y - f.flat[e], zero);
-      const float upto = __builtin_copysignf(f.slope[e] * y - f.curve[e] * (z * z), x);
-      table.weight[k][e] = upto - below;
-      below = upto;
+      const float up_to = shadow.area_up_to(edge + static_cast<float>(k));
+      table.weight[k][e] = up_to - below;
+      below = up_to;
     }
     table.weight[taps - 1][e] = f.half_total[e] - below;
     table.base[e] = base;

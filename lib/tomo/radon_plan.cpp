@@ -14,7 +14,6 @@ namespace vam::tomo {
 namespace {
 
 // Below this flank a trapezoid is a box to float precision; it keeps 1 / flank finite when rays run along the pixels.
-constexpr double least_flank = 1e-6;
 constexpr double largest_exponent = 80;  // e^88 is the largest float
 
 void check_shapes(std::span<const Slab> slabs, int width, int height, const char* what) {
@@ -56,15 +55,15 @@ Plan make_plan(const ParallelGeometry& geometry, std::span<const Slab> images, s
 }
 
 void set_footprint(Footprints& footprints, std::size_t r, double wide, double narrow, double total, double step) {
-  const double flank = std::max(narrow, least_flank);
+  const auto shadow = Trapezoid::of(static_cast<float>(wide), static_cast<float>(narrow), static_cast<float>(total));
   for (std::size_t e = r; e < pair_entries; e += gather_rows) {
     footprints.step[e] = static_cast<float>(step);
-    footprints.half[e] = static_cast<float>((wide + flank) / 2);
-    footprints.flat[e] = static_cast<float>((wide - flank) / 2);
-    footprints.curve[e] = static_cast<float>(total / (2 * flank * wide));
-    footprints.slope[e] = static_cast<float>(total / wide);
+    footprints.half[e] = shadow.half;
+    footprints.flat[e] = shadow.flat;
+    footprints.curve[e] = shadow.curve;
+    footprints.slope[e] = shadow.slope;
     footprints.half_total[e] = static_cast<float>(total / 2);
-    footprints.first_edge[e] = static_cast<float>(1 - (wide + flank) / 2);
+    footprints.first_edge[e] = 1 - shadow.half;
   }
 }
 

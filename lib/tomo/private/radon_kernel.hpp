@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/slab_lanes.hpp"
+#include "tomo/trapezoid.hpp"
 
 namespace vam::tomo {
 
@@ -13,15 +14,13 @@ inline constexpr int group_slabs = 4;                 // slabs that share one ta
 inline constexpr int group_lanes = group_slabs * lanes;
 
 /// Trapezoids of area `total` in units of one element, and how they move: entries 0..7 belong to the even output of a
-/// pair and rows 0..7, entries 8..15 to the odd output. The area up to a distance x from the centre, less half the
-/// total, is
-///   sign(x) * (slope * y - curve * z^2),  y = min(|x|, half),  z = max(y - flat, 0).
+/// pair and rows 0..7, entries 8..15 to the odd output. half, flat, slope and curve are those of tomo::Trapezoid.
 struct Footprints {
-  alignas(64) float step[pair_entries];        // advance of the centre per output
-  alignas(64) float half[pair_entries];        // half the base
-  alignas(64) float flat[pair_entries];        // half the top; half - flat > 0
-  alignas(64) float curve[pair_entries];       // total / (2 * (half - flat) * (half + flat))
-  alignas(64) float slope[pair_entries];       // total / (half + flat)
+  alignas(64) float step[pair_entries];  // advance of the centre per output
+  alignas(64) float half[pair_entries];
+  alignas(64) float flat[pair_entries];
+  alignas(64) float curve[pair_entries];
+  alignas(64) float slope[pair_entries];
   alignas(64) float half_total[pair_entries];  // total / 2
   alignas(64) float first_edge[pair_entries];  // 1 - half: from `start` (below) to the first inner edge, less the base
 };
