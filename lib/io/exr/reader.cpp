@@ -2,9 +2,6 @@
 // image at a time are decoded by OpenEXR from memory. So a pipe does, memory is one image whatever the number of parts
 // (Imf::MultiPartInputFile keeps the buffers of every part it has opened), and no size is believed before it is
 // checked.
-#include <OpenEXR/ImfChannelList.h>
-#include <OpenEXR/ImfPartType.h>
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -17,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/exr/private/format.hpp"
+#include "io/exr/private/layout.hpp"
 #include "io/exr/private/seal_check.hpp"
 #include "io/exr/stack.hpp"
 #include "io/stream/finite.hpp"
@@ -35,66 +33,10 @@ constexpr std::size_t max_waiting_bytes = std::size_t{1} << 30;
 constexpr std::size_t batch = 16;  // compressed images decoded at a time, in parallel
 constexpr std::size_t absent = ~std::size_t{0};
 
-struct Layout {
-  Imf::Header header;  // window, channels, compression, line order
-  std::string key;     // the same, serialized: parts of equal keys share one Layout
-  int width = 0;
-  int height = 0;
-  int chunks = 0;
-  std::size_t max_chunk_bytes = 0;  // OpenEXR stores a chunk uncompressed where compression does not help
-};
-
 struct Arriving {
   exr::Chunks chunks;
   int missing = 0;
 };
-
-std::size_t bytes_per_row(const Imf::Header& header, int width) {
-  std::size_t bytes = 0;
-  for (auto it = header.channels().begin(); it != header.channels().end(); ++it) {
-    bytes += static_cast<std::size_t>(width) * (it.channel().type == Imf::HALF ? 2 : 4);
-  }
-  return bytes;
-}
-
-void check_channels(const Imf::ChannelList& channels) {
-  std::string names;
-  for (auto it = channels.begin(); it != channels.end(); ++it) {
-    names += std::string(" ") + it.name();
-    if (it.channel().xSampling != 1 || it.channel().ySampling != 1) throw std::runtime_error("has subsampled channels");
-  }
-  if (channels.findChannel(exr::channel) != nullptr) return;
-  throw std::runtime_error("has no channel Y, but" + (names.empty() ? " none" : names));
-}
-
-Layout checked_layout(const Imf::Header& part) {
-  if (part.hasType() && part.type() != Imf::SCANLINEIMAGE) {
-    throw std::runtime_error("holds a " + part.type() + "; only scanline images can be read");
-  }
-  const auto& window = part.dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > exr::max_side || height > exr::max_side || width * height > exr::max_pixels) {
-    throw std::runtime_error("has an image of " + std::to_string(width) + " x " + std::to_string(height) +
-                             " pixels; 1 to 65536 per axis and up to 2^28 in all can be read");
-  }
-  check_channels(part.channels());
-  if (part.compression() < 0 || part.compression() >= Imf::NUM_COMPRESSION_METHODS) {
-    throw std::runtime_error("has a compression that is not known");
-  }
-  Layout layout;
-  layout.header = Imf::Header(window, window);
-  layout.header.channels() = part.channels();
-  layout.header.compression() = part.compression();
-  layout.header.lineOrder() = part.lineOrder();
-  layout.key = exr::serialize(layout.header);
-  layout.width = static_cast<int>(width);
-  layout.height = static_cast<int>(height);
-  layout.chunks = exr::chunk_count(layout.height, part.compression());
-  layout.max_chunk_bytes = bytes_per_row(part, layout.width) *
-                           static_cast<std::size_t>(std::min(layout.height, exr::rows_per_chunk(part.compression())));
-  return layout;
-}
 
 void check_finite(const Image& image, std::size_t index) {
   if (all_finite(image.values.data(), image.size())) return;
@@ -130,7 +72,7 @@ struct StackReader::State {
   std::vector<ImageInfo> about;
   bool multi_part = false;
   int announced = 0;                   // vam:count, 0 where it is absent
-  std::vector<Layout> layouts;         // distinct ones; nearly always one
+  std::vector<exr::Layout> layouts;    // distinct ones; nearly always one
   std::vector<std::size_t> layout_of;  // of every part
   std::map<std::size_t, Arriving> arriving;
   std::size_t waiting_bytes = 0;
@@ -211,7 +153,7 @@ void StackReader::State::read_head() {
 }
 
 void StackReader::State::add_part(const Imf::Header& header) {
-  Layout layout = checked_layout(header);
+  exr::Layout layout = exr::checked_layout(header);
   if (about.empty()) {
     info = exr::stack_info(header);
     info.width = layout.width;
@@ -232,7 +174,8 @@ void StackReader::State::add_part(const Imf::Header& header) {
   own.width = layout.width;
   own.height = layout.height;
   seals->begin_part(header, multi_part, own, about.back());
-  const auto known = std::find_if(layouts.begin(), layouts.end(), [&](const Layout& l) { return l.key == layout.key; });
+  const auto known =
+      std::find_if(layouts.begin(), layouts.end(), [&](const exr::Layout& l) { return l.key == layout.key; });
   layout_of.push_back(static_cast<std::size_t>(known - layouts.begin()));
   if (known == layouts.end()) layouts.push_back(std::move(layout));
 }
@@ -244,7 +187,7 @@ void StackReader::State::take_chunk() {
   const auto size = take_number<std::int32_t>();
   const auto index = static_cast<std::size_t>(part);
   if (part < 0 || index >= layout_of.size() || index < complete) throw std::runtime_error("has a chunk of no part");
-  const Layout& layout = layouts[layout_of[index]];
+  const exr::Layout& layout = layouts[layout_of[index]];
   const std::int64_t row = std::int64_t{y} - layout.header.dataWindow().min.y;
   const int rows = exr::rows_per_chunk(layout.header.compression());
   const auto place = static_cast<std::size_t>(row / rows);
