@@ -11,7 +11,9 @@
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/back_projection.hpp"
+#include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/heights.hpp"
+#include "metrology/ost/private/mlem.hpp"
 #include "optics/resample.hpp"
 #include "optics/vial.hpp"
 #include "tomo/filter.hpp"
@@ -22,31 +24,6 @@ namespace vam::metrology {
 namespace {
 
 constexpr int slices_a_pass = 128;  // so that memory beside views and volume is that of a part of them
-
-// Camera sinograms at these heights: columns x angles.
-std::vector<Image> camera_sinograms(std::span<const CameraView> views, const AngleGrid& turn, const AxisPose& axis,
-                                    const LevelRows& rows, std::size_t heights) {
-  std::vector<Image> level(views.size());
-  parallel_for(static_cast<int>(views.size()), [&](int i) {
-    const auto v = static_cast<std::size_t>(i);
-    level[v] = rows.of(views[v].image, axis);
-  });
-  const int columns = views.front().image.width;
-  const int angles = turn.summary().angles;
-  std::vector<Image> sinograms(heights);
-  parallel_for(static_cast<int>(heights), [&](int k) {
-    Image& sinogram = sinograms[k];
-    sinogram = Image(columns, angles);
-    for (int a = 0; a < angles; ++a) {
-      float* out = sinogram.row(a);
-      for (const auto& tap : turn.taps(a)) {
-        const float* in = level[tap.frame].row(k);
-        for (int x = 0; x < columns; ++x) out[x] += tap.weight * in[x];
-      }
-    }
-  });
-  return sinograms;
-}
 
 // Without refraction: the columns as they are, only brought to the virtual pitch by linear interpolation.
 void rescale_columns(const Image& in, const optics::Detector& camera, const optics::Detector& detector, Image& out) {
@@ -102,8 +79,6 @@ struct OstReconstructor::State {
   [[nodiscard]] ClimbingRays rays(int angles) const;
   void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, Dirt& found) const;
   void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
-  void refine(const tomo::ParallelGeometry& geometry, const std::vector<Slab>& sinograms,
-              std::vector<Slab>& images) const;
   void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
 };
 
@@ -212,39 +187,6 @@ void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<con
   }
 }
 
-// MLEM: x <- x * A*(g / A x) / A* 1 [SV82]; keeps x >= 0 and the counts.
-void OstReconstructor::State::refine(const tomo::ParallelGeometry& geometry, const std::vector<Slab>& sinograms,
-                                     std::vector<Slab>& images) const {
-  std::vector<Slab> ones(1, Slab(geometry.columns, geometry.angles));
-  std::fill(ones[0].values.begin(), ones[0].values.end(), 1.0F);
-  std::vector<Slab> norm(1, Slab(geometry.nx, geometry.ny));
-  tomo::adjoint(geometry, ones, norm);
-  std::vector<Slab> ratio(images.size(), Slab(geometry.columns, geometry.angles));
-  std::vector<Slab> back(images.size(), Slab(geometry.nx, geometry.ny));
-  float brightest = 0;
-  for (const auto& image : images)
-    brightest = std::max(brightest, *std::max_element(image.values.begin(), image.values.end()));
-  const float floor = 1e-3F * brightest;  // MLEM never leaves 0: start a little above
-  for (auto& image : images) {
-    for (float& x : image.values) x = std::max(x, floor);
-  }
-  for (int iteration = 0; iteration < options.statistical; ++iteration) {
-    tomo::forward(geometry, images, ratio);
-    for (std::size_t s = 0; s < images.size(); ++s) {
-      const auto& measured = sinograms[s].values;
-      auto& r = ratio[s].values;
-      for (std::size_t i = 0; i < r.size(); ++i) r[i] = r[i] > floor ? std::max(0.0F, measured[i]) / r[i] : 0.0F;
-    }
-    tomo::adjoint(geometry, ratio, back);
-    for (std::size_t s = 0; s < images.size(); ++s) {
-      for (std::size_t i = 0; i < back[s].values.size(); ++i) {
-        const float n = norm[0].values[i];
-        images[s].values[i] *= n > 0 ? back[s].values[i] / n : 0.0F;
-      }
-    }
-  }
-}
-
 // MLEM for a stretch of slices that filtered back-projection has begun, as if rays stayed level.
 void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const {
   const auto geo = geometry(sinograms.front().height);
@@ -256,7 +198,7 @@ void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, in
     scale(images, voxel);
     const auto measured = packed(sinograms.subspan(static_cast<std::size_t>(k), static_cast<std::size_t>(count)),
                                  geo.columns, geo.angles);
-    refine(geo, measured, images);
+    maximise_likelihood(geo, measured, options.statistical, images);
     scale(images, 1 / voxel);
     unpack(images[0], count, volume.slice(first + k));
   }
@@ -304,21 +246,6 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
 double image_magnification(const model::Printer& printer) {
   if (printer.camera.telecentric) return 1;
   return 1 / (1 - model::shortening_mm(printer, printer.camera.index_resin) / printer.camera.distance_mm);
-}
-
-Image mean_view(std::span<const CameraView> views) {
-  std::vector<double> angles_deg;
-  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
-  const AngleGrid turn(angles_deg, 0);
-  Image mean(views.front().image.width, views.front().image.height);
-  const float share = 1.0F / static_cast<float>(turn.summary().angles);
-  for (int a = 0; a < turn.summary().angles; ++a) {
-    for (const auto& tap : turn.taps(a)) {
-      const Image& image = views[tap.frame].image;
-      for (std::size_t i = 0; i < mean.size(); ++i) mean.values[i] += share * tap.weight * image.values[i];
-    }
-  }
-  return mean;
 }
 
 }  // namespace vam::metrology

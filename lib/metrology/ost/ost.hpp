@@ -53,7 +53,4 @@ class OstReconstructor {
 /// 1 when it is telecentric.
 [[nodiscard]] double image_magnification(const model::Printer& printer);
 
-/// The mean over even angles of one turn: what find_axis wants.
-[[nodiscard]] Image mean_view(std::span<const CameraView> views);
-
 }  // namespace vam::metrology

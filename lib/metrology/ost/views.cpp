@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
+#include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/cubic.hpp"
 
 namespace vam::metrology {
@@ -98,6 +99,21 @@ void require_alike(std::span<const CameraView> views) {
                                  " deg is dark, its contrast is " + format_number(contrast[i], 3) +
                                  " and the others' " + format_number(usual, 3) + "; remove it or record it again"};
   }
+}
+
+Image mean_view(std::span<const CameraView> views) {
+  std::vector<double> angles_deg;
+  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
+  const AngleGrid turn(angles_deg, 0);
+  Image mean(views.front().image.width, views.front().image.height);
+  const float share = 1.0F / static_cast<float>(turn.summary().angles);
+  for (int a = 0; a < turn.summary().angles; ++a) {
+    for (const auto& tap : turn.taps(a)) {
+      const Image& image = views[tap.frame].image;
+      for (std::size_t i = 0; i < mean.size(); ++i) mean.values[i] += share * tap.weight * image.values[i];
+    }
+  }
+  return mean;
 }
 
 Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {

@@ -38,6 +38,9 @@ void require_exposed(const Image& raw, const std::string& subject);
 /// light failed, and only noise is left.
 void require_alike(std::span<const CameraView> views);
 
+/// The mean over even angles of one turn: what find_axis wants. Throws Fault::data when the turn is incomplete.
+[[nodiscard]] Image mean_view(std::span<const CameraView> views);
+
 /// Where the rotation axis appears: column at the middle row, and its lean in radians, positive when the axis' lower
 /// end (last row) is displaced towards higher columns.
 struct AxisPose {
