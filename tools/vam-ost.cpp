@@ -39,8 +39,9 @@ cli::Manual manual() {
        "writes a volume into the folder -o, a line of JSON to --log, and updates --projections and --page. With "
        "--target it reports how much of the design is cured, missing and overcured; with --until it prints one line "
        "of JSON on standard output when the conditions hold, and exits: the signal to darken the projector. Frames are "
-       "read while a volume is computed; dark and saturated frames are skipped and counted, and until something has "
-       "gelled the log reports that the tool is waiting."},
+       "read while a volume is computed; dark and saturated frames are skipped and counted. A turn that makes no "
+       "volume, because nothing has gelled yet or views are missing, is reported with the reason in the log, and the "
+       "next one is reconstructed."},
       {{"Views of a synthetic cylinder as a camera records them:",
         "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
         "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},

@@ -2,7 +2,7 @@
 // frame stack, by the oracle's ray tracer. The rig is glass_rig() of synthetic_views.hpp.
 //   columns rows pixel (mm): of the camera    angles: a turn    turns    noise: deviation, in the views' units
 //   offset (px) tilt (deg): of the axis       growth: share of the radius there at the first turn; all is at the last
-//   step (mm): of the sums along the rays
+//   step (mm): of the sums along the rays    lost: views that are missing in the middle of the second turn
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -14,8 +14,9 @@
 
 int main(int argc, char** argv) try {
   using namespace vam;
-  std::map<std::string, double> set{{"columns", 160}, {"rows", 64},  {"pixel", 0.12}, {"angles", 90}, {"turns", 1},
-                                    {"noise", 0},     {"offset", 0}, {"tilt", 0},     {"growth", 1},  {"step", 0.1}};
+  std::map<std::string, double> set{{"columns", 160}, {"rows", 64},  {"pixel", 0.12}, {"angles", 90},
+                                    {"turns", 1},     {"noise", 0},  {"offset", 0},   {"tilt", 0},
+                                    {"growth", 1},    {"step", 0.1}, {"lost", 0}};
   for (int i = 3; i < argc; ++i) {
     const std::string item = argv[i];
     const auto equals = item.find('=');
@@ -37,6 +38,10 @@ int main(int argc, char** argv) try {
     };
     auto seen = test::take_views(camera, grown, test::even_angles(whole("angles")), set["noise"], 1,
                                  {set["step"], field.radius_mm + 0.2});
+    if (turn == 1) {
+      const auto middle = seen.begin() + whole("angles") / 2;
+      seen.erase(middle, middle + whole("lost"));
+    }
     for (auto& view : seen) {
       model::ImageInfo info;
       info.has_angle = info.has_time = true;

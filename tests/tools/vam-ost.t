@@ -98,10 +98,14 @@ grep -q 'src="turns%22%3E%3Cb%3E.png?' turns.html; report $? 'and the image by a
 vam-ost faint.exr --live $glass --level 0.5 --window ram-lak -o faint --log - >.log/out 2>.log/err
 is 'the log - is standard error, its data unmixed' "$(cat .log/out)" ''
 is 'and former spellings work with a warning' "$(grep -c 'is now --isovalue\|is now --filter' .log/err)" 2
-grep -q 'nothing visible' .log/err; report $? 'the log is there'
+grep -q '"waiting"' .log/err; report $? 'the log is there'
 quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
-is 'and is reported' "$(grep -c 'nothing visible' faint.jsonl)" 1
+is 'with the reason' "$(grep -c '"waiting":"views: no rotation axis' faint.jsonl)" 1
+"$render" cylinder:diameter=4,height=4 gap.exr noise=0.05 turns=3 angles=60 lost=8
+quiet 'a gap costs a live print no more than its turn' vam-ost gap.exr --live $glass --isovalue 0.5 -o gap --log gap.jsonl
+is 'which is reported' "$(grep -c '"waiting":"views: the turn is incomplete, no frame for 54 deg' gap.jsonl) $(ls gap | wc -l)" '1 2'
 fails 65 'no volume' vam-ost views --angle-step 2 $rig --live
+fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --angle-step 20 $rig --live
 
 fails 64 'give their distance with --angle-step' vam-ost views -o x.vdb
 fails 64 'need the gelation threshold' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb

@@ -93,6 +93,7 @@ void live(const cli::App& app, const Options& options) {
   io::ViewQueue frames(source);  // from here on the source is its thread's
   metrology::SlidingTurn turn(options.every_deg);
   int left_out = 0;
+  std::string problem;  // of the last turn without a volume
   io::CameraFrame frame;
   while (frames.next(frame)) {
     if (!metrology::exposure_problem(frame.image).empty()) {  // a print continues without a frame or two
@@ -102,21 +103,21 @@ void live(const cli::App& app, const Options& options) {
     const bool due = turn.push(session.take(frame));
     if (!due) continue;
     Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
-    const auto views = turn.views();
-    if (!session.ready(views, pixel_mm)) {  // before anything has gelled there is no axis to be seen
-      line["waiting"] = "nothing visible yet";
+    auto [volume, reason] = session.attempt(turn.views(), pixel_mm);
+    if (!volume) {  // nothing has gelled yet, or frames are missing: the next turn may be better
+      problem = reason;
+      line["waiting"] = reason;
       turns.say(line);
       continue;
     }
-    model::Volume volume = session.reconstruct(views, pixel_mm);
     line["frames_waiting"] = frames.waiting();
-    if (turns.finish(volume, std::move(line), history)) return;
+    if (turns.finish(*volume, std::move(line), history)) return;
   }
   if (turns.count() == 0) {
     throw Error{Fault::data,
                 options.views + ": no volume, " + format_number(turn.turns(), 3) + " turns were recorded" +
                     (left_out > 0 ? " and " + std::to_string(left_out) + " dark or saturated frames skipped" : "") +
-                    "; a full turn with a visible print is needed"};
+                    (problem.empty() ? "; a full turn with a visible print is needed" : "; last: " + problem)};
   }
 }
 

@@ -64,13 +64,24 @@ metrology::CameraView Session::take(const io::CameraFrame& frame) {
   return view;
 }
 
-bool Session::ready(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
+Session::Attempt Session::attempt(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
   try {
-    if (!rig_ || !certain()) set_up(views, stack_pixel_mm);
+    refine_axis(views, stack_pixel_mm);
+    return {reconstruct(views, stack_pixel_mm), {}};
+  } catch (const Error& error) {
+    if (error.fault != Fault::data) throw;
+    return {std::nullopt, error.what()};
+  }
+}
+
+// A later turn shows the axis better; where it does not, what was found before is kept.
+void Session::refine_axis(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
+  if (!rig_ || certain()) return;
+  try {
+    set_up(views, stack_pixel_mm);
   } catch (const Error& error) {
     if (error.fault != Fault::data) throw;
   }
-  return rig_ != nullptr;
 }
 
 // The bars of the axis: a tenth of a pixel and a twentieth of a degree.

@@ -26,8 +26,13 @@ class Session {
 
   /// A frame as a view: its size checked, corrected, binned.
   metrology::CameraView take(const io::CameraFrame& frame);
-  /// Live: finds the axis as soon as something is visible, and again until it is certain. False before that.
-  bool ready(std::span<const metrology::CameraView> views, double stack_pixel_mm);
+  /// Live: a turn may show nothing yet, or have gaps; the next one may be better. The axis is found as soon as
+  /// something is visible, and again until it is certain.
+  struct Attempt {
+    std::optional<model::Volume> volume;
+    std::string problem;  // why there is none
+  };
+  Attempt attempt(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
@@ -49,6 +54,7 @@ class Session {
   void say_dirt() const;
   void place_axis(std::span<const metrology::CameraView> views);
   [[nodiscard]] bool certain() const;
+  void refine_axis(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm);
 
   const cli::App& app_;
