@@ -7,6 +7,7 @@
 #include "base/log.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
+#include "base/utc.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/calibration_record.hpp"
@@ -113,7 +114,7 @@ void keep(const cli::App& app, const ScanOptions& options, const model::Calibrat
   if (calibration.folder.empty()) {
     io::write_text("-", facts.dump(2) + "\n");
   } else {
-    const double now_s = io::utc_seconds();
+    const double now_s = utc_seconds();
     for (const auto& product : finding.products) {
       const std::string path = io::record_path(calibration, scan, now_s, product.ending);
       product.write(path);
@@ -150,7 +151,7 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
     const auto record = io::current_record(calibration, scan);
     std::string why;
     if (record) {
-      why = io::objection(*record, calibration, io::utc_seconds());
+      why = io::objection(*record, calibration, utc_seconds());
       if (why.empty()) why = stranger(*record->json, devices);
       const std::string path = record_file(record->path);
       report[scan] = {{"record", path},

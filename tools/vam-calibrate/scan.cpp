@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/printer_file.hpp"
 
@@ -28,12 +29,12 @@ void run_scan(const cli::App& app, const ScanOptions& options) {
   if (command == "check") return check_records(options, printer.calibration);
   // The axis in the camera's image, as measured before.
   const auto axis_record = io::current_record(printer.calibration, "axis");
-  if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, io::utc_seconds()).empty()) {
+  if (axis_record && command != "axis" && io::objection(*axis_record, printer.calibration, utc_seconds()).empty()) {
     printer.camera.axis_column = axis_record->value("axis_column");
   }
   // A latency measured before decides which pattern frame a camera frame shows.
   const auto known = io::current_record(printer.calibration, "latency");
-  if (known && command != "latency" && io::objection(*known, printer.calibration, io::utc_seconds()).empty()) {
+  if (known && command != "latency" && io::objection(*known, printer.calibration, utc_seconds()).empty()) {
     printer.projector.latency_ms = known->value("latency");
   }
   if (options.from.empty()) throw Error{Fault::usage, command + ": no FRAMES; give the stack or folder of the capture"};

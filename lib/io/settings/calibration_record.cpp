@@ -3,16 +3,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <ctime>
 #include <filesystem>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "base/utc.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
@@ -110,38 +107,6 @@ void require_possible(model::Printer& printer, const CalibrationRecord& record) 
 const std::vector<std::string>& calibration_scans() {
   static const std::vector<std::string> scans{"edges", "response", "flat", "beam", "axis", "latency", "lag"};
   return scans;
-}
-
-double utc_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_REALTIME, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::string utc_text(double utc_s) {
-  const auto whole = static_cast<std::time_t>(std::floor(utc_s));
-  tm parts{};
-  gmtime_r(&whole, &parts);
-  std::array<char, 32> day{};
-  std::strftime(day.data(), day.size(), "%Y-%m-%dT%H:%M:%S", &parts);
-  const int ms = static_cast<int>((utc_s - static_cast<double>(whole)) * 1000);
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%s.%03dZ", day.data(), ms);
-  return text.data();
-}
-
-double parse_utc(const std::string& text, const std::string& subject) {
-  tm parts{};
-  int ms = 0;
-  int read = 0;
-  const int fields = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%2d.%3dZ%n", &parts.tm_year, &parts.tm_mon,
-                                 &parts.tm_mday, &parts.tm_hour, &parts.tm_min, &parts.tm_sec, &ms, &read);
-  if (fields != 7 || read != static_cast<int>(text.size())) {
-    throw Error{Fault::data, subject + ": '" + text + "' is not a time like 2026-11-21T16:58:00.123Z"};
-  }
-  parts.tm_year -= 1900;
-  parts.tm_mon -= 1;
-  return static_cast<double>(timegm(&parts)) + 1e-3 * ms;
 }
 
 std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,

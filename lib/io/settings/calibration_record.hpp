@@ -18,13 +18,6 @@ namespace vam::io {
 /// edges, response, flat, beam, axis, latency.
 [[nodiscard]] const std::vector<std::string>& calibration_scans();
 
-/// Now, in seconds since 1970, UTC.
-[[nodiscard]] double utc_seconds();
-/// "2026-11-21T16:58:00.123Z"
-[[nodiscard]] std::string utc_text(double utc_s);
-/// Throws Fault::data.
-[[nodiscard]] double parse_utc(const std::string& text, const std::string& subject);
-
 /// The path of a new file that belongs to the record, "FOLDER/cal-INSTRUMENT-SCAN-UTC" + ending. Makes the folder.
 /// Throws Fault::usage when calibration.folder is empty, Fault::no_output.
 [[nodiscard]] std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,

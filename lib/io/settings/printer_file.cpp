@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/json.hpp"
+#include "base/utc.hpp"
 #include "fault_of.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
@@ -27,13 +28,6 @@ Json edges(double column, double radius_mm) {
 model::Calibration here(const scratch::Folder& folder) { return {folder / "records", "printer 1", "vial 7", 24}; }
 
 }  // namespace
-
-TEST_CASE("times are written and read to the millisecond") {
-  CHECK(utc_text(now_s) == "2026-11-21T16:58:00.250Z");
-  CHECK(parse_utc("2026-11-21T16:58:00.250Z", "r") == now_s);
-  CHECK(fault_of([] { (void)parse_utc("yesterday", "r"); }) == Fault::data);
-  CHECK(fault_of([] { (void)parse_utc("2026-11-21T16:58:00.250Z and more", "r"); }) == Fault::data);
-}
 
 TEST_CASE("a record is immutable, and current is a link to the latest that did not fail") {
   const scratch::Folder folder;
