@@ -74,7 +74,7 @@ Json to_json(const resin::Process& process) {
           {"absorbance_height_um", process.absorbance_height_um},
           {"critical_dose_mj_cm3", process.critical_dose_mj_cm3},
           {"speed_mm_h", process.speed_mm_h},
-          {"frames_per_s", frames_per_s(process)},
+          {"fps", frames_per_s(process)},
           {"min_intensity_mw_cm2", process.min_intensity_mw_cm2},
           {"max_intensity_mw_cm2", process.max_intensity_mw_cm2},
           {"critical_intensity_mw_cm2", resin::critical_intensity_mw_cm2(process)},

@@ -1,4 +1,5 @@
-// The coverage of voxels by a solid that is a function.
+// The coverage of voxels by a solid that is a function: boxes of voxels that the surface is clear of are filled whole,
+// others halved, down to the smallest block.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -6,156 +7,24 @@
 
 #include "base/parallel.hpp"
 #include "solid/shapes/field.hpp"
+#include "solid/shapes/private/cell_fraction.hpp"
+#include "solid/shapes/private/smooth_block.hpp"
 
 namespace vam::solid {
 
-double cube_fraction(double offset, const Point& normal) {
-  std::array<double, 3> m{std::abs(normal[0]), std::abs(normal[1]), std::abs(normal[2])};
-  std::sort(m.begin(), m.end());
-  const double sum = m[0] + m[1] + m[2];
-  const double level = 0.5 - offset / sum;  // share of the way from the first corner to the last
-  if (level <= 0) return 0;
-  if (level >= 1) return 1;
-  const double a = std::min(level, 1 - level);
-  const double m1 = std::max(m[0] / sum, 1e-7);  // floors against 0/0; they change the result by less than 1e-7
-  const double m2 = std::max(m[1] / sum, 1e-7);
-  const double m3 = m[2] / sum;
-  const double m12 = m1 + m2;
-  const auto cap = [a](double side) { return side * side * (side - 3 * a); };
-  double volume = 0;
-  if (a < m1) {
-    volume = a * a * a / (6 * m1 * m2 * m3);
-  } else if (a < m2) {
-    volume = a * (a - m1) / (2 * m2 * m3) + m1 * m1 / (6 * m2 * m3);
-  } else if (a < std::min(m12, m3)) {
-    volume = (a * a * (3 * m12 - a) + cap(m1) + cap(m2)) / (6 * m1 * m2 * m3);
-  } else if (m3 < m12) {
-    volume = (a * a * (3 - 2 * a) + cap(m1) + cap(m2) + cap(m3)) / (6 * m1 * m2 * m3);
-  } else {
-    volume = (2 * a - m12) / (2 * m3);
-  }
-  volume = std::clamp(volume, 0.0, 0.5);
-  return level <= 0.5 ? volume : 1 - volume;
-}
-
 namespace {
 
-constexpr int block = 4;    // voxels along the edge of a block
-constexpr int deepest = 3;  // halvings of a voxel
-// Departure from a linear field, relative to its change across the cell. Smooth curvature shows up as an even residual
-// of at most a quarter of the curvature times the edge, which the mean value of the cell accounts for; edges show
-// more, and an edge anywhere but in the middle has an odd part.
-constexpr double even_least = 0.01;
-constexpr double even_most = 0.04;
-constexpr double odd_limit = 0.01;
-constexpr double half_diagonal = 0.8660254037844386;  // of a unit cube
-constexpr double slack = 1.05;  // numerically projected distances (gyroid) are Lipschitz to a few per cent
-
-// Corner c of a cell: bit a of c tells the side along axis a.
-using Corners = std::array<double, 8>;
-
-Point corner_sign(unsigned c) {
-  return {(c & 1U) != 0 ? 0.5 : -0.5, (c & 2U) != 0 ? 0.5 : -0.5, (c & 4U) != 0 ? 0.5 : -0.5};
-}
-
-double cell_fraction(const Field& field, const Point& centre, double edge_mm, const Corners& corners, int depth);
-
-// The field at a cell's corners as a plane and what is left.
-struct Fit {
-  double mean = 0;
-  Point slope{};    // change of the field across the cell along each axis
-  double even = 0;  // largest residual that is the same at opposite corners, the cell's middle included
-  double odd = 0;   // largest residual that changes its sign
-
-  Fit(const Corners& corners, double middle) {
-    for (unsigned c = 0; c < 8; ++c) {
-      mean += corners[c] / 8;
-      slope = slope + (corners[c] / 2) * corner_sign(c);
-    }
-    Corners residual{};
-    for (unsigned c = 0; c < 8; ++c) residual[c] = corners[c] - mean - dot(slope, corner_sign(c));
-    even = std::abs(middle - mean);
-    for (unsigned c = 0; c < 4; ++c) {
-      even = std::max(even, 0.5 * std::abs(residual[c] + residual[7 - c]));
-      odd = std::max(odd, 0.5 * std::abs(residual[c] - residual[7 - c]));
-    }
-  }
-};
-
-// The mean over the cell's eight parts.
-double halved_fraction(const Field& field, const Point& centre, double edge_mm, const Corners& corners, double middle,
-                       int depth) {
-  // Nodes of the eight parts, 3 x 3 x 3: the corners and the middle are known.
-  std::array<double, 27> nodes{};
-  for (unsigned n = 0; n < 27; ++n) {
-    const unsigned i = n % 3;
-    const unsigned j = n / 3 % 3;
-    const unsigned k = n / 9;
-    const bool corner = i != 1 && j != 1 && k != 1;
-    nodes[n] = corner    ? corners[i / 2 + j / 2 * 2 + k / 2 * 4]
-               : n == 13 ? middle
-                         : field.value(centre + (edge_mm / 2) * Point{i - 1.0, j - 1.0, k - 1.0});
-  }
-  double fraction = 0;
-  for (unsigned part = 0; part < 8; ++part) {
-    const unsigned first = (part & 1U) + 3 * (part >> 1U & 1U) + 9 * (part >> 2U);
-    Corners part_corners{};
-    for (unsigned c = 0; c < 8; ++c) part_corners[c] = nodes[first + (c & 1U) + 3 * (c >> 1U & 1U) + 9 * (c >> 2U)];
-    fraction +=
-        cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, part_corners, depth + 1) / 8;
-  }
-  return fraction;
-}
-
-double cell_fraction(const Field& field, const Point& centre, double edge_mm, const Corners& corners, int depth) {
-  const double middle = field.value(centre);
-  if (std::abs(middle) > slack * field.lipschitz * half_diagonal * edge_mm) return middle < 0 ? 1 : 0;
-  const Fit fit(corners, middle);
-  const double steepness = length(fit.slope);
-  const double even_limit = std::clamp(0.3 * field.curvature_per_mm * edge_mm, even_least, even_most);
-  const bool smooth = fit.even <= even_limit * steepness && fit.odd <= odd_limit * steepness;
-  if (!smooth && depth < deepest) return halved_fraction(field, centre, edge_mm, corners, middle, depth);
-  if (!smooth) {
-    // What an edge makes of a plane fitted to it must not cut corners that are all on one side.
-    const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
-    if (*high <= 0 && middle <= 0) return 1;
-    if (*low >= 0 && middle >= 0) return 0;
-  }
-  if (steepness == 0) return middle < 0 ? 1 : 0;
-  // The mean over the cell of a field that is quadratic: two thirds centre, one third corners.
-  return cube_fraction((2 * middle + fit.mean) / 3, fit.slope);
-}
-
-struct Span {
-  int begin;
-  int end;
-};
-
-// Voxels of one block [x) x [y) x [z), z relative to k0.
-struct Block {
-  Span x, y, z;
-};
-
-// Whether the surface stays clear of the block, which then is all part (-1) or all void (1); 0: it may not.
-int side_of(const Field& field, const model::Grid& grid, int k0, const Block& b) {
-  const double h = grid.voxel_mm;
-  const Point centre{grid.x_mm(0.5 * (b.x.begin + b.x.end - 1)), grid.y_mm(0.5 * (b.y.begin + b.y.end - 1)),
-                     grid.z_mm(k0 + 0.5 * (b.z.begin + b.z.end - 1))};
-  const Point half{0.5 * h * (b.x.end - b.x.begin), 0.5 * h * (b.y.end - b.y.begin), 0.5 * h * (b.z.end - b.z.begin)};
-  const double whole = field.value(centre);
-  if (std::abs(whole) <= slack * field.lipschitz * length(half)) return 0;
-  return whole < 0 ? -1 : 1;
-}
+constexpr int block = 4;    // voxels along the edge of the smallest box
+constexpr int widest = 16;  // and of the largest one
 
 // The field at the corners of a block's voxels, x fastest.
 class Lattice {
  public:
-  Lattice(const Field& field, const model::Grid& grid, int k0, const Block& b) {
-    for (int k = 0; k <= b.z.end - b.z.begin; ++k) {
-      for (int j = 0; j <= b.y.end - b.y.begin; ++j) {
-        for (int i = 0; i <= b.x.end - b.x.begin; ++i) {
-          values_[index(i, j, k)] = field.value(
-              {grid.x_mm(b.x.begin + i - 0.5), grid.y_mm(b.y.begin + j - 0.5), grid.z_mm(k0 + b.z.begin + k - 0.5)});
+  Lattice(const Field& field, const Point& first, double voxel_mm) {
+    for (int k = 0; k <= block; ++k) {
+      for (int j = 0; j <= block; ++j) {
+        for (int i = 0; i <= block; ++i) {
+          values_[index(i, j, k)] = field.value(first + voxel_mm * Point{i - 0.5, j - 0.5, k - 0.5});
         }
       }
     }
@@ -178,43 +47,77 @@ class Lattice {
   std::array<double, side * side * side> values_{};
 };
 
-void cover_block(const Field& field, const model::Grid& grid, int k0, const Block& b, float* out) {
-  const auto at = [&](int i, int j, int k) {
-    return out + (static_cast<std::ptrdiff_t>(k) * grid.ny + j) * grid.nx + i;
-  };
-  if (const int side = side_of(field, grid, k0, b); side != 0) {
-    for (int k = b.z.begin; k < b.z.end; ++k) {
-      for (int j = b.y.begin; j < b.y.end; ++j) {
-        std::fill(at(b.x.begin, j, k), at(b.x.end, j, k), side < 0 ? 1.0F : 0.0F);
+class Cover {
+ public:
+  Cover(const Field& field, const model::Grid& grid, int k0, int count, float* out)
+      : field_(field), grid_(grid), k0_(k0), count_(count), out_(out) {}
+
+  // Voxels [i, i + edge) x [j, j + edge) x [k, k + edge), as far as they are of the grid; k relative to k0.
+  void box(int edge, int i, int j, int k) {
+    if (i >= grid_.nx || j >= grid_.ny || k >= count_) return;
+    const Point middle = voxel(i, j, k) + (0.5 * (edge - 1) * grid_.voxel_mm) * Point{1, 1, 1};
+    const double value = field_.value(middle);
+    if (std::abs(value) > clear_mm(field_, half_diagonal * edge * grid_.voxel_mm)) {
+      each(edge, i, j, k, [&](int, int, int) { return value < 0 ? 1.0 : 0.0; });
+      return;
+    }
+    if (edge == 8 && is_smooth<8>(i, j, k, middle)) return;
+    if (edge > block) {
+      const int half = edge / 2;
+      for (int part = 0; part < 8; ++part) {
+        box(half, i + (part & 1) * half, j + ((part >> 1) & 1) * half, k + (part >> 2) * half);
+      }
+    } else if (!is_smooth<block>(i, j, k, middle)) {
+      voxel_by_voxel(i, j, k);
+    }
+  }
+
+ private:
+  // Fills the box if it is.
+  template <int edge>
+  bool is_smooth(int i, int j, int k, const Point& middle) {
+    const SmoothBlock<edge> smooth(field_, middle, grid_.voxel_mm);
+    if (smooth.holds()) each(edge, i, j, k, [&](int x, int y, int z) { return smooth.fraction(x, y, z); });
+    return smooth.holds();
+  }
+
+  void voxel_by_voxel(int i, int j, int k) {
+    const double edge_mm = grid_.voxel_mm;
+    const Lattice lattice(field_, voxel(i, j, k), edge_mm);
+    each(block, i, j, k, [&](int x, int y, int z) {
+      return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, lattice.corners(x, y, z));
+    });
+  }
+
+  // fraction(x, y, z) of the voxels of a box, counted from its first one.
+  template <class Fraction>
+  void each(int edge, int i, int j, int k, const Fraction& fraction) {
+    const int right = std::min(edge, grid_.nx - i);
+    for (int z = 0; z < std::min(edge, count_ - k); ++z) {
+      for (int y = 0; y < std::min(edge, grid_.ny - j); ++y) {
+        float* row = out_ + (static_cast<std::ptrdiff_t>(k + z) * grid_.ny + j + y) * grid_.nx + i;
+        for (int x = 0; x < right; ++x) row[x] = static_cast<float>(fraction(x, y, z));
       }
     }
-    return;
   }
-  const Lattice lattice(field, grid, k0, b);
-  for (int k = b.z.begin; k < b.z.end; ++k) {
-    for (int j = b.y.begin; j < b.y.end; ++j) {
-      for (int i = b.x.begin; i < b.x.end; ++i) {
-        const Point centre{grid.x_mm(i), grid.y_mm(j), grid.z_mm(k0 + k)};
-        const Corners corners = lattice.corners(i - b.x.begin, j - b.y.begin, k - b.z.begin);
-        *at(i, j, k) = static_cast<float>(cell_fraction(field, centre, grid.voxel_mm, corners, 0));
-      }
-    }
-  }
-}
+
+  [[nodiscard]] Point voxel(int i, int j, int k) const { return {grid_.x_mm(i), grid_.y_mm(j), grid_.z_mm(k0_ + k)}; }
+
+  const Field& field_;
+  const model::Grid& grid_;
+  int k0_;
+  int count_;
+  float* out_;
+};
 
 }  // namespace
 
 void cover(const Field& field, const model::Grid& grid, int k0, int count, float* out) {
-  const int blocks_y = (grid.ny + block - 1) / block;
-  const int blocks_z = (count + block - 1) / block;
-  parallel_for(blocks_y * blocks_z, [&](int item) {
-    const int j = item % blocks_y * block;
-    const int k = item / blocks_y * block;
-    for (int i = 0; i < grid.nx; i += block) {
-      cover_block(
-          field, grid, k0,
-          {{i, std::min(i + block, grid.nx)}, {j, std::min(j + block, grid.ny)}, {k, std::min(k + block, count)}}, out);
-    }
+  const int boxes_y = (grid.ny + widest - 1) / widest;
+  const int boxes_z = (count + widest - 1) / widest;
+  parallel_for(boxes_y * boxes_z, [&](int item) {
+    Cover voxels(field, grid, k0, count, out);
+    for (int i = 0; i < grid.nx; i += widest) voxels.box(widest, i, item % boxes_y * widest, item / boxes_y * widest);
   });
 }
 
