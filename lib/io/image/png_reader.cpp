@@ -1,0 +1,103 @@
+// libpng leaves by longjmp where an image is damaged: what stands between setjmp and its calls owns nothing.
+#include <png.h>
+
+#include <bit>
+#include <csetjmp>
+#include <cstring>
+#include <vector>
+
+#include "base/error.hpp"
+#include "io/image/private/decoders.hpp"
+
+namespace vam::io {
+
+namespace {
+
+struct Source {
+  const char* at;
+  std::size_t left;
+  char problem[120];
+};
+
+void read(png_structp png, png_bytep to, std::size_t size) {
+  auto& source = *static_cast<Source*>(png_get_io_ptr(png));
+  if (size > source.left) png_error(png, "it is truncated");
+  std::memcpy(to, source.at, size);
+  source.at += size;
+  source.left -= size;
+}
+
+[[noreturn]] void fail(png_structp png, png_const_charp why) {
+  auto& source = *static_cast<Source*>(png_get_error_ptr(png));
+  std::strncpy(source.problem, why, sizeof source.problem - 1);
+  png_longjmp(png, 1);
+}
+
+void ignore(png_structp /*png*/, png_const_charp /*why*/) {}
+
+class PngReader {
+ public:
+  explicit PngReader(Source& source)
+      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, fail, ignore)),
+        info_(png_ != nullptr ? png_create_info_struct(png_) : nullptr) {
+    if (info_ == nullptr) throw std::bad_alloc();
+    png_set_read_fn(png_, &source, read);
+  }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+  /// Asks for plain grey; false where the header is damaged.
+  bool begin() {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_read_info(png_, info_);
+    png_set_expand_gray_1_2_4_to_8(png_);
+    png_set_palette_to_rgb(png_);
+    png_set_strip_alpha(png_);
+    if ((png_get_color_type(png_, info_) & PNG_COLOR_MASK_COLOR) != 0) png_set_rgb_to_gray(png_, 1, 0.299, 0.587);
+    if (std::endian::native == std::endian::little) png_set_swap(png_);
+    png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    return true;
+  }
+  bool pixels(png_bytepp rows) {
+    if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    png_read_image(png_, rows);
+    png_read_end(png_, nullptr);
+    return true;
+  }
+  [[nodiscard]] std::uint32_t width() const { return png_get_image_width(png_, info_); }
+  [[nodiscard]] std::uint32_t height() const { return png_get_image_height(png_, info_); }
+  [[nodiscard]] int bits() const { return png_get_bit_depth(png_, info_); }
+  [[nodiscard]] std::size_t row_bytes() const { return png_get_rowbytes(png_, info_); }
+
+ private:
+  png_structp png_;
+  png_infop info_;
+};
+
+}  // namespace
+
+GreyImage decode_png(const std::string& bytes, const std::string& name) {
+  Source source{bytes.data(), bytes.size(), {}};
+  const auto damaged = [&] { return Error{Fault::data, name + ": the PNG is damaged: " + source.problem}; };
+  PngReader reader(source);
+  if (!reader.begin()) throw damaged();
+  if (std::uint64_t{reader.width()} * reader.height() > max_pixels) {
+    throw Error{Fault::data, too_large(name, reader.width(), reader.height())};
+  }
+  GreyImage image(static_cast<int>(reader.width()), static_cast<int>(reader.height()), reader.bits());
+  std::vector<png_byte> pixels(reader.row_bytes() * reader.height());
+  std::vector<png_bytep> rows(reader.height());
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * reader.row_bytes();
+  if (!reader.pixels(rows.data())) throw damaged();
+  if (image.bits == 16) {
+    std::memcpy(image.values.data(), pixels.data(), 2 * image.values.size());
+  } else {
+    image.values.assign(pixels.begin(), pixels.end());
+  }
+  return image;
+}
+
+}  // namespace vam::io

@@ -1,0 +1,157 @@
+#include <tiffio.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "base/error.hpp"
+#include "io/image/image_file.hpp"
+#include "io/image/private/decoders.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::io {
+
+namespace {
+
+/// A file in memory, as libtiff wants it.
+struct Memory {
+  std::string bytes;
+  std::size_t at = 0;
+};
+
+Memory& memory(thandle_t handle) { return *static_cast<Memory*>(handle); }
+
+tmsize_t read(thandle_t handle, void* to, tmsize_t size) {
+  Memory& file = memory(handle);
+  const std::size_t left = file.bytes.size() - std::min(file.at, file.bytes.size());
+  const std::size_t count = std::min(static_cast<std::size_t>(size), left);
+  if (count > 0) std::memcpy(to, file.bytes.data() + file.at, count);
+  file.at += count;
+  return static_cast<tmsize_t>(count);
+}
+
+tmsize_t write(thandle_t handle, void* from, tmsize_t size) {
+  Memory& file = memory(handle);
+  const auto count = static_cast<std::size_t>(size);
+  if (file.bytes.size() < file.at + count) file.bytes.resize(file.at + count);
+  std::memcpy(file.bytes.data() + file.at, from, count);
+  file.at += count;
+  return size;
+}
+
+toff_t seek(thandle_t handle, toff_t offset, int whence) {
+  Memory& file = memory(handle);
+  const toff_t from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? file.at : file.bytes.size();
+  file.at = from + offset;
+  return file.at;
+}
+
+int close(thandle_t /*handle*/) { return 0; }
+
+toff_t size(thandle_t handle) { return memory(handle).bytes.size(); }
+
+using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
+
+Tiff open(Memory& file, const char* mode) {
+  TIFFSetErrorHandler(nullptr);
+  TIFFSetWarningHandler(nullptr);
+  return {TIFFClientOpen("", mode, &file, read, write, seek, close, size, nullptr, nullptr), TIFFClose};
+}
+
+template <class Value = std::uint16_t>
+Value field(TIFF* tiff, std::uint32_t tag) {
+  Value value{};
+  TIFFGetFieldDefaulted(tiff, tag, &value);
+  return value;
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& why) {
+  throw Error{Fault::data, name + ": cannot be decoded as 8 or 16 grey bits; " + why};
+}
+
+/// 16 bits a sample, grey or colours, in strips.
+void decode_wide(TIFF* tiff, const std::string& name, GreyImage& image) {
+  const auto samples = field(tiff, TIFFTAG_SAMPLESPERPIXEL);
+  const auto photometric = field(tiff, TIFFTAG_PHOTOMETRIC);
+  const bool colours = photometric == PHOTOMETRIC_RGB && samples >= 3;
+  const bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
+  if (!(colours || grey) || field(tiff, TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT || TIFFIsTiled(tiff) != 0 ||
+      (samples > 1 && field(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)) {
+    refuse(name, "16-bit TIFF is read as grey or RGB of whole numbers in strips; convert it first");
+  }
+  std::vector<std::uint16_t> row(static_cast<std::size_t>(TIFFScanlineSize(tiff)) / 2);
+  for (int y = 0; y < image.height; ++y) {
+    if (TIFFReadScanline(tiff, row.data(), static_cast<std::uint32_t>(y)) < 0)
+      refuse(name, "it is truncated or damaged");
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint16_t* sample = &row[static_cast<std::size_t>(x) * samples];
+      const int level = colours ? luma(sample[0], sample[1], sample[2]) : sample[0];
+      image(x, y) = static_cast<std::uint16_t>(photometric == PHOTOMETRIC_MINISWHITE ? 65535 - level : level);
+    }
+  }
+}
+
+/// All else that libtiff knows, by way of 8-bit colours.
+void decode_narrow(TIFF* tiff, const std::string& name, GreyImage& image) {
+  std::vector<std::uint32_t> raster(image.values.size());
+  const auto width = static_cast<std::uint32_t>(image.width);
+  const auto height = static_cast<std::uint32_t>(image.height);
+  if (TIFFReadRGBAImageOriented(tiff, width, height, raster.data(), ORIENTATION_TOPLEFT, 1) == 0) {
+    refuse(name, "it is truncated, damaged or of another kind");
+  }
+  std::transform(raster.begin(), raster.end(), image.values.begin(), [](std::uint32_t p) {
+    return static_cast<std::uint16_t>(
+        luma(static_cast<int>(TIFFGetR(p)), static_cast<int>(TIFFGetG(p)), static_cast<int>(TIFFGetB(p))));
+  });
+}
+
+}  // namespace
+
+GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
+  Memory file{bytes, 0};
+  const Tiff tiff = open(file, "rm");
+  if (tiff == nullptr) refuse(name, "it is truncated or damaged");
+  const auto width = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH);
+  const auto height = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH);
+  if (width == 0 || height == 0) refuse(name, "it is truncated or damaged");
+  if (std::uint64_t{width} * height > max_pixels) throw Error{Fault::data, too_large(name, width, height)};
+  const auto bits = field(tiff.get(), TIFFTAG_BITSPERSAMPLE);
+  if (bits > 16) refuse(name, "it has " + std::to_string(bits) + " bits a sample; convert it first");
+  GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);
+  (bits == 16 ? decode_wide : decode_narrow)(tiff.get(), name, image);
+  return image;
+}
+
+void write_tiff(const std::string& path, const GreyImage& image) {
+  const bool wide = image.bits > 8;
+  Memory memory;
+  {
+    const Tiff tiff = open(memory, "wm");
+    TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, image.width);
+    TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, image.height);
+    TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, wide ? 16 : 8);
+    TIFFSetField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+    TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+    TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff.get(), 0));
+    std::vector<std::uint16_t> words(static_cast<std::size_t>(image.width));
+    std::vector<std::uint8_t> octets(static_cast<std::size_t>(image.width));
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) {
+        const int level = image(x, y);
+        words[x] = static_cast<std::uint16_t>(image.bits == 10 ? level << 6 | level >> 4 : level);
+        octets[x] = static_cast<std::uint8_t>(level * 255 / image.full());
+      }
+      void* row = wide ? static_cast<void*>(words.data()) : static_cast<void*>(octets.data());
+      if (TIFFWriteScanline(tiff.get(), row, static_cast<std::uint32_t>(y), 0) < 0) {
+        throw Error{Fault::bug, path + ": the TIFF encoder failed"};
+      }
+    }
+  }
+  OutputFile file(path);
+  file.write(memory.bytes.data(), memory.bytes.size());
+  file.commit();
+}
+
+}  // namespace vam::io
