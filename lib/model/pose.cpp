@@ -29,10 +29,31 @@ Pose parse_line(const std::string& line) {
     number = *value;
   }
   std::getline(stream, cell);
-  return {numbers[0], numbers[1], numbers[2], numbers[3], moves_named(cell)};
+  const Pose pose{numbers[0], numbers[1], numbers[2], numbers[3], moves_named(cell)};
+  if (const std::string why = objection(pose); !why.empty()) throw std::runtime_error("a pose " + why);
+  return pose;
 }
 
 }  // namespace
+
+std::string objection(const Pose& pose) {
+  constexpr double most_mm = 1e4;
+  if (!std::isfinite(pose.angle_deg)) return "is at " + format_number(pose.angle_deg) + " degrees";
+  for (const double mm : {pose.dx_mm, pose.dy_mm, pose.dz_mm}) {
+    if (!(std::abs(mm) <= most_mm)) return "is displaced by " + format_number(mm) + " mm; check the unit";
+  }
+  return "";
+}
+
+std::string objection(const Poses& poses, double start_deg, double step_deg) {
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double want = start_deg + static_cast<double>(k) * step_deg;
+    if (std::abs(poses[k].angle_deg - want) <= 0.01 * std::abs(step_deg)) continue;
+    return "pose " + std::to_string(k) + " is at " + format_number(poses[k].angle_deg) + " degrees, but frame " +
+           std::to_string(k) + " is at " + format_number(want);
+  }
+  return "";
+}
 
 std::string moves_name(Moves moves) { return moves == Moves::vial ? "vial" : "part"; }
 

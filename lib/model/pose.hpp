@@ -28,8 +28,14 @@ using Poses = std::vector<Pose>;
 [[nodiscard]] std::string moves_name(Moves moves);
 [[nodiscard]] Moves moves_named(const std::string& name);
 
+/// Why the displacement is none of this world, "is displaced by 1e9 mm; check the unit"; empty where it is.
+[[nodiscard]] std::string objection(const Pose& pose);
+
+/// Why the poses are not those of frames at start_deg, start_deg + step_deg ...; empty where they are.
+[[nodiscard]] std::string objection(const Poses& poses, double start_deg, double step_deg);
+
 /// The lines of a table of poses with its header, "angle_deg,dx_mm,dy_mm,dz_mm,moves" [formats: Poses], and the way
-/// back. Throws std::runtime_error for another text.
+/// back. Throws std::runtime_error for another text and for impossible poses.
 [[nodiscard]] std::string poses_text(const Poses& poses);
 [[nodiscard]] Poses parse_poses(const std::string& text);
 

@@ -62,11 +62,12 @@ fails 64 'at least half a turn' vam-optimize --helix 9 $picture tall.vdb -o none
 ok "the doses without --like reach as high as the helix lifts" vam-dose helix.exr $picture -o high.vdb
 
 # Records of wobble: the projector's columns see it, or a camera at an azimuth
-record() { printf '{"schema":"vam-calibration/1","scan":"%s","values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":%s}}}' "$1" "$2" >"$3"; }
+times='"utc":"2026-01-01T00:00:00.000Z","valid_until":"2126-01-01T00:00:00.000Z"'
+record() { printf '{"schema":"vam-calibration/1",'"$times"',"scan":"%s","values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":%s}}}' "$1" "$2" >"$3"; }
 record edges 28.6478898 edges.json
 record axis -61.3521102 axis.json
 for scan in edges axis; do
-  ok "wobble from a record of $scan" vam-optimize --method fbp --angles 60 --wobble $scan.json part.vdb -o $scan.exr
+  quiet "wobble from a record of $scan" vam-optimize --method fbp --angles 60 --wobble $scan.json part.vdb -o $scan.exr
 done
 is "is that of the table, to 1e-6 mm" "$($exr attr edges.exr vam:poses | cut -c1-9)" "$($exr attr axis.exr vam:poses | cut -c1-9)"
 vam-optimize --method fbp --angles 60 --poses wobble.csv part.vdb -o table.exr
@@ -74,10 +75,15 @@ for scan in edges axis; do
   is "the same light from the record of $scan and the table" "$(vam-dose $scan.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)" \
     "$(vam-dose table.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)"
 done
-printf '{"schema":"vam-calibration/1","scan":"edges","values":{}}' >still.json
+sed 's/2126/2026/' axis.json >old.json
+vam-optimize --method fbp --angles 60 --wobble old.json part.vdb -o old.exr 2>errors
+is "a record past its validity is used with a warning" "$? $(grep -c 'warning: old.json: is .* h old and was valid for' errors)" '0 1'
+vam-optimize --method fbp --angles 60 --wobble axis.json --set 'calibration.vial=vial 9' part.vdb -o other.exr 2>errors
+is "one of another vial, too" "$? $(grep -c "warning: axis.json: is of vial '', this is 'vial 9'" errors)" '0 1'
+printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{}}' >still.json
 fails 65 'knows no wobble_mm' vam-optimize --wobble still.json part.vdb -o none.exr
 wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble wrong.json part.vdb -o none.exr; }
-head='{"schema":"vam-calibration/1","scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
+head='{"schema":"vam-calibration/1",'"$times"',"scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
 wrong 'changed after it was written' "$head,$values,\"seal\":\"xxh3:00000000000000000000000000000000\"}"
 wrong 'of a scan that failed' "$head,$values,\"status\":\"fail\"}"
 wrong 'a wobble of -0.3 mm' "$head,\"values\":{\"wobble_mm\":{\"value\":-0.3},\"wobble_phase\":{\"value\":20}}}"

@@ -46,6 +46,17 @@ void check_finite(const Image& image, std::size_t index) {
                            " of image " + std::to_string(index) + " is not a finite number");
 }
 
+void require_own_poses(const StackInfo& info) {
+  if (info.poses.empty()) return;
+  if (info.poses.size() != static_cast<std::size_t>(info.height)) {
+    throw std::runtime_error("vam:poses has " + std::to_string(info.poses.size()) + " lines, but the images have " +
+                             std::to_string(info.height) + " angles");
+  }
+  if (const std::string why = objection(info.poses, info.angle_start_deg, info.angle_step_deg); !why.empty()) {
+    throw std::runtime_error("vam:poses: " + why);
+  }
+}
+
 }  // namespace
 
 struct StackReader::State {
@@ -159,11 +170,7 @@ void StackReader::State::add_part(const Imf::Header& header) {
     info.width = layout.width;
     info.height = layout.height;
     announced = std::exchange(info.count, 0);
-    if (info.kind == model::Kind::sinogram && !info.poses.empty() &&
-        info.poses.size() != static_cast<std::size_t>(info.height)) {
-      throw std::runtime_error("vam:poses has " + std::to_string(info.poses.size()) + " lines, but the images have " +
-                               std::to_string(info.height) + " angles");
-    }
+    if (info.kind == model::Kind::sinogram) require_own_poses(info);
   }
   const std::string part = "part " + std::to_string(about.size());
   if (layout.width != info.width || layout.height != info.height) {

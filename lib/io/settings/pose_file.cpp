@@ -5,7 +5,9 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
+#include "base/utc.hpp"
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/csv_table.hpp"
 
@@ -13,15 +15,12 @@ namespace vam::io {
 
 model::Poses read_poses(const std::string& path) {
   const CsvTable table = read_csv(path, {"angle_deg", "dx_mm", "dy_mm", "dz_mm", "moves"});
-  constexpr double most_mm = 1e4;
   model::Poses poses;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const std::string place = table.source + ":" + std::to_string(table.lines[row]) + ": ";
     model::Pose pose{table.number(row, 0), table.number(row, 1), table.number(row, 2), table.number(row, 3), {}};
-    for (const double mm : {pose.dx_mm, pose.dy_mm, pose.dz_mm}) {
-      if (std::abs(mm) <= most_mm) continue;
-      throw Error{Fault::data, place + "a displacement of " + format_number(mm) + " mm is impossible; check the unit"};
-    }
+    if (const std::string why = model::objection(pose); !why.empty())
+      throw Error{Fault::data, place + "the pose " + why};
     try {
       pose.moves = model::moves_named(table.rows[row][4]);
     } catch (const std::runtime_error& problem) {
@@ -37,12 +36,8 @@ void require_angles(const std::string& path, const model::Poses& poses, int fram
     throw Error{Fault::data, path + ": has " + std::to_string(poses.size()) + " poses, but the stack has " +
                                  std::to_string(frames) + " frames; one a frame is needed"};
   }
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const double want = start_deg + static_cast<double>(k) * step_deg;
-    if (std::abs(poses[k].angle_deg - want) <= 0.01 * std::abs(step_deg)) continue;
-    throw Error{Fault::data, path + ": pose " + std::to_string(k) + " is at " + format_number(poses[k].angle_deg) +
-                                 " degrees, but frame " + std::to_string(k) + " is at " + format_number(want) +
-                                 "; the step is 360 / --angles"};
+  if (const std::string why = model::objection(poses, start_deg, step_deg); !why.empty()) {
+    throw Error{Fault::data, path + ": " + why + "; the step is 360 / --angles"};
   }
 }
 
@@ -52,6 +47,9 @@ WobbleRecord read_wobble(const std::string& path, const model::Printer& printer,
   const auto refuse = [&](const std::string& why) { return Error{Fault::data, path + ": " + why}; };
   if (scan != "edges" && scan != "axis") throw refuse("is a record of " + scan + ", not of edges or axis");
   if (record.json->value("status", "") == "fail") throw refuse("is of a scan that failed; run vam-calibrate");
+  if (const std::string why = objection(record, printer.calibration, utc_seconds()); !why.empty()) {
+    warn(path + ": " + why);
+  }
   WobbleRecord wobble;
   try {
     wobble = {record.value("wobble_mm"), record.value("wobble_phase")};
