@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "io/settings/flip_log.hpp"
 #include "io/stream/stream.hpp"
 
@@ -14,8 +16,12 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
   if (info.space != model::Space::projector) {
     throw Error{Fault::usage, "--shown: applies to a projector sinogram, which a print shows"};
   }
+  const io::StageRows rows{info.height, info.angle_start_deg, info.angle_step_deg};
+  if (std::abs(std::abs(rows.step_deg) * rows.count - 360) > 0.01 * std::abs(rows.step_deg)) {
+    throw Error{Fault::data, options.input + ": has " + format_number(std::abs(rows.step_deg) * rows.count) +
+                                 " degrees of stage angles; --shown needs one turn"};
+  }
   std::vector<double> turns(static_cast<std::size_t>(info.height));
-  const auto from = static_cast<int>(std::lround(info.angle_start_deg / info.angle_step_deg));
   const std::string sinogram = options.input == "-" ? "" : io::sha256_of(options.input);
   for (const std::string& run : options.shown) {
     const std::string armed = io::armed_sinogram(run);
@@ -23,10 +29,8 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
       throw Error{Fault::data, options.input + ": is not the sinogram of " + run + ", whose SHA-256 begins " +
                                    armed.substr(0, 8) + "; give the one that was shown"};
     }
-    const auto of_run = io::turns_shown(io::read_shown(run), info.height, printer.stage.speed_deg_s);
-    for (int row = 0; row < info.height; ++row) {
-      turns[row] += of_run[static_cast<std::size_t>(((row + from) % info.height + info.height) % info.height)];
-    }
+    const auto of_run = io::turns_shown(io::read_shown(run), rows, printer.stage.speed_deg_s);
+    std::transform(turns.begin(), turns.end(), of_run.begin(), turns.begin(), std::plus<>{});
   }
   if (std::all_of(turns.begin(), turns.end(), [](double t) { return t == 0; })) {
     throw Error{Fault::data, options.shown.front() + ": no light was shown in this run"};

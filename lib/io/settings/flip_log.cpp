@@ -16,6 +16,7 @@ struct FlipLine {
   double t_s;
   int frame;
   double angle_deg;
+  bool last = false;  // of its run
 };
 
 std::vector<FlipLine> read_flips(const std::string& file) {
@@ -27,8 +28,9 @@ std::vector<FlipLine> read_flips(const std::string& file) {
     const Json event = Json::parse(text, nullptr, false);
     if (event.is_discarded() && stream.eof()) break;  // cut by the death of its writer
     try {
+      if (event.at("event") == "display" && !flips.empty()) flips.back().last = true;  // another run begins
       if (event.at("event") != "flip") continue;
-      flips.push_back({event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg")});
+      flips.push_back({event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false});
     } catch (const Json::exception&) {
       throw Error{Fault::data, file + ":" + std::to_string(line) + ": is no event of vam-project's log"};
     }
@@ -45,7 +47,7 @@ std::vector<ShownImage> read_shown(const std::string& path) {
   std::vector<ShownImage> shown;
   for (std::size_t i = 0; i < flips.size(); ++i) {
     if (flips[i].frame < 0) continue;
-    const bool last = i + 1 == flips.size();
+    const bool last = flips[i].last || i + 1 == flips.size();
     const double seconds = !last ? flips[i + 1].t_s - flips[i].t_s : shown.empty() ? 0 : shown.back().seconds;
     shown.push_back({flips[i].angle_deg, std::max(0.0, seconds)});
   }
@@ -63,12 +65,12 @@ std::string armed_sinogram(const std::string& run) {
   return "";
 }
 
-std::vector<double> turns_shown(const std::vector<ShownImage>& shown, int rows, double speed_deg_s) {
-  std::vector<double> turns(static_cast<std::size_t>(rows));
-  const double row_s = 360.0 / rows / speed_deg_s;
+std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows, double speed_deg_s) {
+  std::vector<double> turns(static_cast<std::size_t>(rows.count));
+  const double row_s = 360.0 / rows.count / speed_deg_s;
   for (const ShownImage& image : shown) {
-    const long nearest = std::lround(image.angle_deg * rows / 360) % rows;
-    turns[static_cast<std::size_t>(nearest < 0 ? nearest + rows : nearest)] += image.seconds / row_s;
+    const long nearest = std::lround((image.angle_deg - rows.start_deg) / rows.step_deg) % rows.count;
+    turns[static_cast<std::size_t>(nearest < 0 ? nearest + rows.count : nearest)] += image.seconds / row_s;
   }
   return turns;
 }

@@ -9,7 +9,7 @@ namespace vam::io {
 /// An image that was on the screen, with light.
 struct ShownImage {
   double angle_deg = 0;  // of the stage in the middle of its showing
-  double seconds = 0;    // until the next flip; of the last one of a print that was killed, as long as the one before
+  double seconds = 0;    // until the next flip; of the last one of a run that was killed, as long as the one before
 };
 
 /// The lit images in order, of flips.jsonl or of the run folder (vam-print) that holds it. A last line that is cut is
@@ -20,9 +20,16 @@ struct ShownImage {
 /// alone.
 [[nodiscard]] std::string armed_sinogram(const std::string& run);
 
-/// For how many turns of the stage, at this speed, each of `rows` stage angles was shown, rows evenly over one turn
-/// from 0: the sum over images of seconds over the time that the stage spends at a row. A whole print has its turns in
-/// each.
-[[nodiscard]] std::vector<double> turns_shown(const std::vector<ShownImage>& shown, int rows, double speed_deg_s);
+/// Stage angles of a sinogram's rows, which are spread evenly over one turn, in either sense.
+struct StageRows {
+  int count = 0;
+  double start_deg = 0;
+  double step_deg = 0;
+};
+
+/// For how many turns of the stage, at this speed, each row was shown: the sum over images of seconds over the time that
+/// the stage spends at a row. A whole print has its turns in each.
+[[nodiscard]] std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows,
+                                              double speed_deg_s);
 
 }  // namespace vam::io

@@ -28,8 +28,22 @@ TEST_CASE("what was shown is the flips with a frame, each until the next flip") 
   CHECK(shown.front().seconds == 2);
   CHECK(shown.back().angle_deg == 92);
   CHECK(shown.back().seconds == 1);
-  CHECK(turns_shown(shown, 4, 90) == std::vector<double>{2, 1, 0, 0});
-  CHECK(turns_shown({{-90, 0.5}, {719, 0.5}}, 4, 90) == std::vector<double>{0.5, 0, 0, 0.5});
+  CHECK(turns_shown(shown, {4, 0, 90}, 90) == std::vector<double>{2, 1, 0, 0});
+  CHECK(turns_shown({{-90, 0.5}, {719, 0.5}}, {4, 0, 90}, 90) == std::vector<double>{0.5, 0, 0, 0.5});
+  CHECK(turns_shown({{90, 1}, {91, 0.5}}, {4, 180, 90}, 90) == std::vector<double>{0, 0, 0, 1.5});
+  CHECK(turns_shown({{90, 1}, {-1, 0.5}}, {4, 0, -90}, 90) == std::vector<double>{0.5, 0, 0, 1});
+}
+
+TEST_CASE("an image does not last into the next run of one log") {
+  const scratch::Folder folder;
+  const std::string begin = R"({"event":"display"})"
+                            "\n";
+  const std::string lines =
+      begin + flip(10, 0, 0) + flip(11, 1, 90) + begin + flip(9999, 2, 180) + flip(10001, -1, 190);
+  const auto shown = read_shown(folder.write("flips.jsonl", lines));
+  REQUIRE(shown.size() == 3);
+  CHECK(shown[1].seconds == 1);
+  CHECK(shown[2].seconds == 2);
 }
 
 TEST_CASE("a log that its writer's death cut is read, another file is refused") {
