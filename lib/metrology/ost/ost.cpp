@@ -70,14 +70,15 @@ struct OstReconstructor::State {
             .axis_x = 0.5 * (grid.nx - 1),
             .axis_y = 0.5 * (grid.ny - 1),
             .angle_start_rad = 0,
-            .angle_step_rad = 2 * std::numbers::pi / angles};
+            .angle_step_rad = 2 * std::numbers::pi / angles,
+            .alpha_per_px = -absorption_per_mm * grid.voxel_mm};
   }
 
   [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
-  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, Dirt& found) const;
+  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
   void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
   void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
 };
@@ -85,6 +86,11 @@ struct OstReconstructor::State {
 OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows,
                                    const AxisPose& axis, const OstOptions& options)
     : state_(std::make_unique<State>()) {
+  constexpr int fewest_rows = 4;  // of the interpolation between rows
+  if (rows < fewest_rows) {
+    throw Error{Fault::data, "views: have " + std::to_string(rows) + " rows after binning; at least " +
+                                 std::to_string(fewest_rows) + " are needed"};
+  }
   State& s = *state_;
   s.options = options;
   s.axis = axis;
@@ -154,11 +160,10 @@ ClimbingRays OstReconstructor::State::rays(int angles) const {
   return rays;
 }
 
-// Specks and bubbles; their shares are added to `found` by that of the heights.
-void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm,
+// Specks and bubbles; `part` of the volume is made from these heights, and their shares count by it.
+void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part,
                                     Dirt& found) const {
-  const double part = 100.0 * static_cast<double>(heights_mm.size()) / grid.nz;
-  found.speck_percent += part * remove_specks(sinograms);
+  found.speck_percent += 100 * part * remove_specks(sinograms);
   // The same line from the other end climbs the other way.
   const double rate = climb_rate_per_mm(eye, 0);
   std::vector<int> rows;
@@ -169,7 +174,7 @@ void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<con
   if (absorption_per_mm > 0) return;  // a line is not the same from its other end
   const double share = remove_bubbles(sinograms, rows);
   found.contradicts = found.contradicts || share > most_bubbles;
-  found.bubble_percent += part * share;
+  found.bubble_percent += 100 * part * share;
 }
 
 // A ray that climbs is longer than its plan by 1 / cos; light from the axis plane has the way to the wall before it.
@@ -226,7 +231,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     if (dirt.has_background) subtract(seen, dirt.background);
     auto sinograms = s.virtual_sinograms(seen, heights_mm);
     seen.clear();
-    if (s.options.clean) s.clean(sinograms, heights_mm, dirt);
+    if (s.options.clean) s.clean(sinograms, heights_mm, static_cast<double>(count) / s.grid.nz, dirt);
     s.weigh(sinograms, heights_mm);
     auto filtered = packed(sinograms, s.detector.columns, angles);
     for (auto& slab : filtered) filter.apply(slab);
