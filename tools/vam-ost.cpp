@@ -1,6 +1,7 @@
 // vam-ost: optical scattering tomography, from camera views to the scattering volume of the print.
 #include <cstdio>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "io/settings/report.hpp"
 #include "moved.hpp"
@@ -68,7 +69,7 @@ void declare(cli::App& app, Options& o) {
   cli::add_output(app, o.output);
   app.group("Camera");
   app.option("--angle-step", "DEG", o.step_deg, cli::any,
-             "Angular step of frames without recorded angles. Negative: opposite direction.")
+             "Angular step of frames without recorded angles, not 0. Negative: opposite direction.")
       .default_is("none")
       .was("--step");
   app.option("--dark", "FILE", o.dark,
@@ -76,7 +77,7 @@ void declare(cli::App& app, Options& o) {
   app.option(
       "--flat", "FILE", o.flat,
       "Image or stack of a uniform scene; views are divided by it after dark subtraction. Default: camera.flat.");
-  app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels.");
+  app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels of the views, in addition to camera.binning.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pixel pitch at the axis before binning. Default: the stack's, else camera.pixel_mm.");
   app.option("--axis", "PX", o.axis_column, cli::any,
@@ -102,19 +103,27 @@ void declare(cli::App& app, Options& o) {
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
   app.option("--pieces", "MM3", o.pieces_mm3, cli::non_negative,
              "Smallest body that belongs to the print. Default: 1 % of the largest body's volume.");
-  app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.").writes();
-  app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and reference.");
+  app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.")
+      .writes({".ply", ".stl"})
+      .needs({"--isovalue", "--resin"});
+  app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and target.")
+      .writes({".png"});
   app.option("--target", "FILE.vdb", o.reference,
              "Volume with the part to compare with, in the same frame of reference.")
       .was("--reference");
   app.group("Live");
   app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.");
-  app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.");
+  app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.").needs({"--live"});
   app.option(
-      "--until", "CONDITIONS", o.until,
-      "Print a stop event and exit when all conditions hold: missing and overcure in per cent, iou, cured in mm3.");
-  app.option("--log", "FILE", o.log, "Append a line of JSON for every volume; - is standard error.");
+         "--until", "CONDITIONS", o.until,
+         "Print a stop event and exit when all conditions hold: missing and overcure in per cent, iou, cured in mm3.")
+      .needs({"--live"})
+      .needs({"--isovalue", "--resin"})
+      .needs({"--target"});
+  app.option("--log", "FILE", o.log, "Append a line of JSON for every volume; - is standard error.").needs({"--live"});
   app.option("--page", "FILE.html", o.page, "Page that shows --projections and refreshes itself.")
+      .writes({".html"})
+      .needs({"--live"})
       .needs({"--projections"});
   cli::add_printer(app, o.printer);
   app.group("Output and machine");
@@ -142,6 +151,12 @@ void once(const cli::App& app, const Options& options) {
 
 void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer)) return;
+  if (app.given("--angle-step") && options.step_deg == 0) {
+    throw Error{Fault::usage, "--angle-step: is 0; give the angle from view to view"};
+  }
+  if (options.live && app.given("--report")) {
+    throw Error{Fault::usage, "--report: is of one volume; with --live the figures of each go to --log"};
+  }
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

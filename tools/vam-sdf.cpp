@@ -52,7 +52,7 @@ void declare(cli::App& app, Options& options) {
   app.positional("REFERENCE", options.reference, "Mesh or volume of the design.");
   app.option("-o,--output", "FILE.ply", options.output,
              "Write the aligned print with distances and colours at its vertices.")
-      .writes();
+      .writes({".ply"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
   app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.");
@@ -92,10 +92,10 @@ void declare_height(cli::App& app, HeightOptions& options) {
   app.choice("--align", options.align, {"none", "icp", "full"},
              "Alignment of the design with the print: centred, refined from there, or from any orientation.");
   app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.")
-      .writes();
+      .writes({".png"});
   app.option("--line", "X0,Y0,X1,Y1", options.line, 4,
              "End points of a section, in pixels from the top left. Default: the middle column.");
-  app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.").writes();
+  app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.").writes({".png"});
   app.option("--require", "CONDITIONS", options.require,
              "Conditions on rms and max (mm), iou, shrinkage (%), height (mm).");
   cli::add_report(app, options.report);

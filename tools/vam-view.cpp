@@ -57,7 +57,7 @@ void show_images(const Options& options, io::FileType type, const io::ImageText&
 }
 
 void run(const cli::App& app, Options& options) {
-  if (tool::print_printer(options.printer, options.output)) return;
+  if (tool::print_printer(options.printer)) return;
   check(options);
   options.view.name = options.input == "-" ? "stdin" : options.input.substr(options.input.find_last_of('/') + 1);
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial

@@ -173,13 +173,14 @@ App& App::not_in_job() {
   return *this;
 }
 
-App& App::writes() {
+App& App::writes(const std::vector<std::string>& endings) {
   state_->current_group().options.back().writes = true;
+  state_->current_group().options.back().endings = endings;
   return *this;
 }
 
 App& App::needs(const std::vector<std::string>& any_of) {
-  state_->current_group().options.back().needs = any_of;
+  state_->current_group().options.back().needs.push_back(any_of);
   return *this;
 }
 

@@ -84,9 +84,10 @@ class App {
   App& default_is(const std::string& text);
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
-  /// The option declared last names a file that the tool writes: no two of them may name the same one.
-  App& writes();
-  /// The option declared last is refused where none of these is given.
+  /// The option declared last names a file that the tool writes: no two of them may name the same one. Of what kind it
+  /// is: its name must end in one of `endings`, if any; "-" and devices may be called anything.
+  App& writes(const std::vector<std::string>& endings = {});
+  /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
   App& needs(const std::vector<std::string>& any_of);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it. A value stands for a former flag that took none: --keep-negative, --negative keep.

@@ -22,11 +22,12 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::vector<std::string> needs = {};      // one of these options, where this one is given
-  std::vector<Former> former = {};          // not shown
-  std::function<std::string()> value = {};  // in force
-  bool in_job = true;                       // App::job() lists it
-  bool writes = false;                      // names a file that is written
+  std::vector<std::vector<std::string>> needs = {};  // one option of each, where this one is given
+  std::vector<Former> former = {};                   // not shown
+  std::function<std::string()> value = {};           // in force
+  bool in_job = true;                                // App::job() lists it
+  bool writes = false;                               // names a file that is written
+  std::vector<std::string> endings = {};             // of which its name has one; empty: any
 };
 
 struct Group {

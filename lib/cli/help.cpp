@@ -41,7 +41,7 @@ std::vector<std::string> details(const Option& option) {
   if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
   if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
-  if (!option.needs.empty()) texts.push_back("Requires " + join(option.needs, " or ") + ".");
+  for (const auto& any_of : option.needs) texts.push_back("Requires " + join(any_of, " or ") + ".");
   return texts;
 }
 

@@ -95,20 +95,36 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
 void App::require_needed() const {
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
-      if (option.needs.empty() || !given(long_flag(option))) continue;
-      const auto is_given = [&](const std::string& flag) { return given(flag); };
-      if (std::any_of(option.needs.begin(), option.needs.end(), is_given)) continue;
-      throw Error{Fault::usage, long_flag(option) + ": requires " + join(option.needs, " or ")};
+      if (!given(long_flag(option))) continue;
+      for (const auto& any_of : option.needs) {
+        const auto is_given = [&](const std::string& flag) { return given(flag); };
+        if (std::any_of(any_of.begin(), any_of.end(), is_given)) continue;
+        throw Error{Fault::usage, long_flag(option) + ": requires " + join(any_of, " or ")};
+      }
     }
   }
   for (const auto& nested : state_->subcommands) nested->require_needed();
 }
+
+namespace {
+
+// A name that says another format than the file's would mislead whoever opens it.
+void require_ending(const Option& option) {
+  const std::string path = option.value();
+  if (option.endings.empty() || path == "-" || path.starts_with("/dev/")) return;
+  const auto ends = [&](const std::string& ending) { return path.ends_with(ending); };
+  if (std::any_of(option.endings.begin(), option.endings.end(), ends)) return;
+  throw Error{Fault::usage, long_flag(option) + ": '" + path + "' must end in " + join(option.endings, " or ")};
+}
+
+}  // namespace
 
 void App::require_own_outputs() const {
   std::vector<const Option*> before;
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
       if (!option.writes || option.value().empty()) continue;
+      require_ending(option);
       for (const Option* other : before) {
         if (option.value() == "-" && other->value() == "-") {
           throw Error{Fault::usage, long_flag(option) + ": would write to standard output, as " + long_flag(*other) +

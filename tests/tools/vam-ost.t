@@ -102,13 +102,20 @@ grep -q '"waiting"' .log/err; report $? 'the log is there'
 quiet 'live waits while nothing is visible' vam-ost faint.exr --live $glass --isovalue 0.5 -o faint --log faint.jsonl
 is 'with the reason' "$(grep -c '"waiting":"views: no rotation axis' faint.jsonl)" 1
 "$render" cylinder:diameter=4,height=4 gap.exr noise=0.05 turns=3 angles=60 lost=8
-quiet 'a gap costs a live print no more than its turn' vam-ost gap.exr --live $glass --isovalue 0.5 -o gap --log gap.jsonl
+vam-ost gap.exr --live $glass --isovalue 0.5 -o gap --log gap.jsonl 2>errors
+report $? 'a gap costs a live print no more than its turn'
+is 'with a warning' "$(grep -c 'warning: no volume after .* turns: views: the turn is incomplete' errors)" 1
 is 'which is reported' "$(grep -c '"waiting":"views: the turn is incomplete, no frame for 54 deg' gap.jsonl) $(ls gap | wc -l)" '1 2'
 fails 65 'no volume' vam-ost views --angle-step 2 $rig --live
 fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --angle-step 20 $rig --live
 
 fails 64 'give their distance with --angle-step' vam-ost views -o x.vdb
-fails 64 'need the gelation threshold' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb
+fails 64 'mesh: requires --isovalue or --resin' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb
+fails 64 "'p.obj' must end in .ply or .stl" vam-ost views --angle-step 6 --isovalue 1 --mesh p.obj -o x.vdb
+fails 64 'every: requires --live' vam-ost views --angle-step 6 --every 90 -o x.vdb
+fails 64 'until: requires --target' vam-ost views --angle-step 6 --live --isovalue 1 --until 'iou>=0.5'
+fails 64 'report: is of one volume' vam-ost views --angle-step 6 --live --report x.json
+fails 64 'angle-step: is 0' vam-ost views --angle-step 0 -o x.vdb
 fails 64 'requires --projections' vam-ost views --angle-step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors

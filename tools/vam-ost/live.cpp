@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/image/view_queue.hpp"
@@ -105,6 +106,7 @@ void live(const cli::App& app, const Options& options) {
     Json line{{"turns", turn.turns()}, {"time_s", frame.time_s}, {"frames_left_out", left_out}};
     auto [volume, reason] = session.attempt(turn.views(), pixel_mm);
     if (!volume) {  // nothing has gelled yet, or frames are missing: the next turn may be better
+      if (turns.count() > 0) warn("no volume after " + format_number(turn.turns(), 3) + " turns: " + reason);
       problem = reason;
       line["waiting"] = reason;
       turns.say(line);

@@ -11,6 +11,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/resin_record.hpp"
 #include "metrology/ost/projection_sheet.hpp"
+#include "optics/vial.hpp"
 #include "plot/image_figure.hpp"
 #include "printer.hpp"
 #include "solid/voxel/isosurface.hpp"
@@ -34,8 +35,11 @@ model::Volume dense(const io::SparseVolume& sparse) {
 }
 
 Session::Session(const cli::App& app, const Options& options)
-    : app_(app), options_(options), printer_(tool::load_printer(options.printer)), isovalue_(isovalue_of(options)) {
-  if (!options.mesh.empty()) io::check_mesh_output(options.mesh);
+    : app_(app),
+      options_(options),
+      printer_(tool::load_printer(options.printer)),
+      isovalue_(isovalue_of(options)),
+      rules_{options.pieces_mm3, {}} {
   if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
   if (!options.flat.empty()) {
     fields_.flat = io::read_field(options.flat);
@@ -45,9 +49,9 @@ Session::Session(const cli::App& app, const Options& options)
   }
   if (options.flat.empty() && !printer_.camera.flat.empty()) fields_.flat = io::read_field(printer_.camera.flat);
   if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
-  if (!isovalue_ && (!options.mesh.empty() || !options.until.empty()))
-    throw Error{Fault::usage, "--mesh and --until: need the gelation threshold; give --isovalue or --resin"};
-  if (!options.until.empty() && !reference_) throw Error{Fault::usage, "--until: needs the design; give --target"};
+  (void)optics::camera_view(printer_);  // an impossible bench is no matter of the views
+  constexpr double margin_mm = 1;
+  if (isovalue_ && reference_) rules_.inside = metrology::neighbourhood(*reference_, margin_mm);
 }
 
 metrology::CameraView Session::take(const io::CameraFrame& frame) {
@@ -131,10 +135,7 @@ void Session::require_print(const model::Volume& volume) const {
 
 void Session::keep_print(model::Volume& volume) {
   if (!isovalue_) return;
-  metrology::BodyRules rules{options_.pieces_mm3, {}};
-  constexpr double margin_mm = 1;
-  if (reference_) rules.inside = metrology::neighbourhood(*reference_, margin_mm);
-  bodies_ = metrology::keep_bodies(volume, *isovalue_, rules);
+  bodies_ = metrology::keep_bodies(volume, *isovalue_, rules_);
   constexpr double within = 0.75;  // a level on the edge is about half of what is inside
   if (bodies_.inside > 0 && *isovalue_ > within * bodies_.inside) {
     warn("isovalue " + format_number(*isovalue_, 3) + " cuts the inside of the print, of which half is below " +

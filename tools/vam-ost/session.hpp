@@ -61,6 +61,7 @@ class Session {
   const Options& options_;
   model::Printer printer_;
   std::optional<double> isovalue_;
+  metrology::BodyRules rules_;  // what of a volume is the print
   metrology::CameraFields fields_;
   std::optional<model::Volume> reference_;
   metrology::AxisEstimate axis_;

@@ -8,8 +8,8 @@ namespace vam::view_tool {
 
 void declare(cli::App& app, Options& options) {
   app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.");
-  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes();
-  app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.");
+  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes({".png"});
+  app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid, "Grid of the volume. Required if the volume has more than one.");
   app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
@@ -39,6 +39,9 @@ void check(const Options& options) {
   if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
   if (options.plain && (view.sheet > 1 || options.histogram))
     throw Error{Fault::usage, "--plain: shows one image only; leave out --sheet and --histogram"};
+  if (!options.exported.empty() && options.output != "-") {
+    throw Error{Fault::usage, "--export: writes the values instead of the image; leave out --output"};
+  }
   const std::string& written = options.exported.empty() ? options.output : options.exported;
   io::refuse_two_stdins({options.input, options.target});
   io::refuse_same_file(options.input, written);

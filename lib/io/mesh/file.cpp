@@ -126,8 +126,6 @@ std::string mesh_format_names() {
   return join(names, ", ");
 }
 
-void check_mesh_output(const std::string& path) { (void)format_of_output(path); }
-
 void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {
   format_of_output(path).write(path, mesh, comments);
 }

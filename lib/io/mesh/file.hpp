@@ -20,8 +20,6 @@ namespace vam::io {
 /// Writes the format of the file name's extension, PLY to "-"; comments go where the format has some.
 /// Throws Error: usage (an ending that is not written), no_output, io.
 void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments);
-/// Throws Fault::usage as write_mesh would, before there is a mesh.
-void check_mesh_output(const std::string& path);
 
 /// Writes binary STL (32-bit floats). "-" is stdout. Throws Error: no_output, io.
 void write_stl(const std::string& path, const model::TriangleSoup& mesh);

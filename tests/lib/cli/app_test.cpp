@@ -302,6 +302,17 @@ TEST_CASE("an option that needs another is refused without it") {
   }
 }
 
+TEST_CASE("an output's name does not say another format") {
+  for (const auto& [path, status] :
+       std::vector<std::pair<std::string, int>>{{"a.png", 0}, {"-", 0}, {"/dev/null", 0}, {"a.jpg", 64}, {"png", 64}}) {
+    Tool tool;
+    std::string file;
+    tool.app.option("--plot", "FILE.png", file, "Plot.").writes({".png", ".tif"});
+    const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--plot", path}) == status); });
+    CHECK(text == (status == 0 ? "" : "vam-demo: --plot: '" + path + "' must end in .png or .tif\n"));
+  }
+}
+
 TEST_CASE("two outputs do not share a file or standard output; devices may be shared") {
   const auto run = [](const std::vector<std::string>& words, std::string& text) {
     Tool tool;
