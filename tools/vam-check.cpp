@@ -29,15 +29,16 @@ cli::Manual manual() {
   return {
       "vam-check",
       "check that files are what was written, and show what they were made from",
-      {"vam-check reads each file and holds it to its seals: hashes of values and facts that these tools write into "
+      {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these tools "
+       "write into "
        "stacks, volumes, calibration records, reports and the printer file of a print (vam-formats(7), SEALS), and the "
        "checksums of lossless videos. A file that differs ends it with status 65, after the others have been read.",
        "For each file it prints whether it is sealed, and the chain of commands that led to it: the seal of the file "
        "that each command wrote, the command, and, where that file is among those that are checked, its name. A dash "
        "stands for a file that was not sealed or came through a pipe.",
-       "The tools themselves hold every file that they read to its seals, so that this check is for archives, and for "
+       "The tools themselves verify every file that they read against its seals; this check is for archives, and for "
        "files that others pass on. A file of another program has no seal; that is printed and no error. Seals find "
-       "bit rot, cuts and edits; they are no signature."},
+       "bit rot, cuts and edits; they are not signatures."},
       {{"A part and its sinogram:",
         "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o sino.exr && vam-check part.vdb "
         "sino.exr"},

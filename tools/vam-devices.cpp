@@ -27,12 +27,12 @@ cli::Manual manual() {
       {"Lists the devices that this machine sees, each with the device string for the printer file and for --device, "
        "--screen and --light, and with what is known of it. A line below a device says what stands in the way of using "
        "it, and the remedy: no permission (the group to join or the udev rule to write), another program that has it "
-       "(its process), a graphics card whose master is a desktop. A kind of which there is none is listed with what to "
-       "check.",
-       "No device is told anything: nothing moves or shines. A serial port does not tell what is connected to it; it "
-       "is listed as gcs: or, where the maker of its USB converter suggests so, another scheme. --ask asks at each "
-       "port "
-       "by each protocol for the identity of the controller. This does not move the stage, but most GRBL boards are "
+       "(its process), a graphics card whose master is a desktop. If no device of a kind is found, what to "
+       "check is listed.",
+       "No commands are sent: nothing moves or lights up. What is connected to a serial port is not known; it "
+       "is listed as gcs: or, where the maker of its USB converter suggests so, another scheme. --ask queries each "
+       "port by each protocol for the identity of the controller. This does not move the stage, but most GRBL boards "
+       "are "
        "reset when their port is opened, and other instruments on such ports receive a question that they do not "
        "know."},
       {{"What is there:", "vam-devices"},
@@ -40,8 +40,7 @@ cli::Manual manual() {
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --ask"}},
       {"Duration. About a second, which is the time that cameras on the network have for their answer; with --ask up "
-       "to 4 "
-       "s more a port.",
+       "to 4 s more per port.",
        "A camera of another subnet is not found; give its IP address (aravis:192.168.1.7)."},
       {"vam-stage", "vam-capture", "vam-project", "vam-print"}};
 }

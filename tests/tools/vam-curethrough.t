@@ -108,7 +108,7 @@ fails 65 'the minimum, 120 mW/cm2, must be at least 0 and below the maximum' \
   vam-curethrough correct ladder.vdb --min-irradiance 120 --max-irradiance 110 -o no.exr
 fails 65 'slice height: 50 um is more than ten absorbance heights' \
   vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr
-fails 65 'nothing cures; increase the intensity or print slower' vam-curethrough correct ladder.vdb --max-irradiance 10 -o no.exr
+fails 65 'nothing cures; increase the intensity, or print at' vam-curethrough correct ladder.vdb --max-irradiance 10 -o no.exr
 printf 'grey,intensity\n0,0\n100,5\n200,4\n255,9\n' >falling.csv
 fails 65 'falling.csv:4: intensity 4 at grey 200 is below 5' vam-curethrough correct ladder.vdb $light --response falling.csv -o no.exr
 printf 'grey,reading\n0,0\n100,5\n200,4\n255,9\n' >falling.csv

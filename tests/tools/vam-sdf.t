@@ -44,7 +44,8 @@ fails 66 'missing' vam-sdf height missing.png badge.vdb
 fails 64 'REFERENCE' vam-sdf box.off
 fails 64 'give the isovalue' vam-sdf sphere.vdb box.off
 fails 64 'rmse' vam-sdf box.off box.off --require 'rmse<=1'
-fails 64 'is also the input' vam-sdf box.off box.off -o box.off
+cp moved.ply self.ply
+fails 64 "is also the input" vam-sdf self.ply box.off -o self.ply
 fails 64 'not one of none, icp, full' vam-sdf box.off box.off --align best
 fails 65 'no surface' vam-sdf sphere.vdb box.off --isovalue 7
 fails 66 'missing.stl' vam-sdf missing.stl box.off

@@ -177,7 +177,8 @@ void declare(cli::App& app, CorrectOptions& options) {
   cli::add_output(app, options.output);
   app.option("--png", "FOLDER", options.png,
              "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
-             "unless -o is given.");
+             "unless -o is given.")
+      .writes();
   app.choice("--values", options.values, {"intensity", "grey"},
              "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the "
              "response.");

@@ -80,8 +80,8 @@ void require_printable(const CureLimits& limits) {
   if (burst_slices(limits) == 0) {
     const double highest = limits.settled(limits.phi_max);
     throw Error{Fault::data, "intensity range: the maximum settles at " + format_number(highest, 3) +
-                                 " critical doses, so nothing cures; increase the intensity or print slower than " +
-                                 format_number(highest, 3) + " times this speed"};
+                                 " critical doses, so nothing cures; increase the intensity, or print at " +
+                                 format_number(highest, 3) + " times this speed or slower"};
   }
 }
 
