@@ -22,25 +22,32 @@ model::Poses wobble_poses(double radius_mm, double lab_angle_deg, int direction,
 model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid, double pitch_mm, int angles) {
   const model::Projector& p = printer.projector;
   const double scale = model::vertical_magnification(printer);
-  const double picture_mm = scale * p.rows * p.pixel_mm;
-  const double picture_middle_mm = scale * (p.axis_row - 0.5 * (p.rows - 1)) * p.pixel_mm;
+  const double image_mm = scale * p.rows * p.pixel_mm;
+  const double image_middle_mm = scale * (p.axis_row - 0.5 * (p.rows - 1)) * p.pixel_mm;
   const double part_mm = scale * grid.nz * grid.voxel_mm;
   const double part_middle_mm = scale * grid.z_mm(0.5 * (grid.nz - 1));
   const double pitch = std::abs(pitch_mm);
-  if (pitch > 2 * picture_mm) {
+  if (pitch > 2 * image_mm) {
     throw Error{Fault::usage,
-                "--helix: at " + format_number(pitch, 4) + " mm a turn a slice passes the picture, " +
-                    format_number(picture_mm, 4) + " mm high in the resin, in " + format_number(picture_mm / pitch, 3) +
-                    " turns; at least half a turn is needed: give at most " + format_number(2 * picture_mm, 4)};
+                "--helix: at " + format_number(pitch, 4) + " mm per turn a slice passes the image, " +
+                    format_number(image_mm, 4) + " mm high in the resin, in " + format_number(image_mm / pitch, 3) +
+                    " turns; at least half a turn is needed: give at most " + format_number(2 * image_mm, 4)};
   }
   constexpr double rounding = 1e-6;
-  const double turns = std::ceil((part_mm + picture_mm) / pitch - rounding);
+  const double turns = std::ceil((part_mm + image_mm) / pitch - rounding);
+  constexpr double most_frames = 1e6;
+  if (!(turns * angles <= most_frames)) {
+    throw Error{Fault::usage, "--helix: a pitch of " + format_number(pitch) + " mm takes " + format_number(turns, 3) +
+                                  " turns; at most " + format_number(std::floor(most_frames / angles)) +
+                                  " can be computed: give at least " +
+                                  format_number((part_mm + image_mm) * angles / most_frames, 3)};
+  }
   const auto frames = static_cast<int>(std::lround(turns * angles));
   model::Poses poses;
   for (int k = 0; k < frames; ++k) {
     const double turned = (k + 0.5) / angles - 0.5 * turns;
     poses.push_back(
-        {360.0 * k / angles, 0, 0, picture_middle_mm - part_middle_mm + pitch_mm * turned, model::Moves::vial});
+        {360.0 * k / angles, 0, 0, image_middle_mm - part_middle_mm + pitch_mm * turned, model::Moves::vial});
   }
   return poses;
 }

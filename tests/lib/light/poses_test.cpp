@@ -59,6 +59,8 @@ TEST_CASE("a helix passes the whole part through the whole picture") {
   }
   CHECK(fault_of([&] { static_cast<void>(helix_poses(printer, part, 8 * scale + 0.01, 60)); }) == Fault::usage);
   CHECK_NOTHROW(static_cast<void>(helix_poses(printer, part, 8 * scale - 0.01, 60)));
+  CHECK(fault_of([&] { static_cast<void>(helix_poses(printer, part, 1e-9, 60)); }) == Fault::usage);
+  CHECK(fault_of([&] { static_cast<void>(helix_poses(printer, part, 1e-4, 60)); }) == Fault::usage);
 }
 
 TEST_CASE("rows are those of the picture, or as many as light the part in any pose") {
