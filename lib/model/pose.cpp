@@ -108,14 +108,17 @@ bool repeat(const Poses& poses) {
 }
 
 Pose pose_between(const Poses& poses, double frame) {
-  const auto last = static_cast<double>(poses.size() - 1);
-  const double place = std::clamp(frame, 0.0, last);
-  const auto low = static_cast<std::size_t>(place);
+  const auto count = static_cast<double>(poses.size());
+  const bool round = repeat(poses);
+  const double place = round ? frame - count * std::floor(frame / count) : std::clamp(frame, 0.0, count - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), poses.size() - 1);
+  const std::size_t high = round ? (low + 1) % poses.size() : std::min(low + 1, poses.size() - 1);
   const Pose& a = poses[low];
-  const Pose& b = poses[std::min(low + 1, poses.size() - 1)];
+  const Pose& b = poses[high];
   const double part = place - static_cast<double>(low);
   const auto between = [&](double from, double to) { return from + part * (to - from); };
-  return {between(a.angle_deg, b.angle_deg), between(a.dx_mm, b.dx_mm), between(a.dy_mm, b.dy_mm),
+  const double step_deg = poses.size() > 1 ? poses[1].angle_deg - poses[0].angle_deg : 0;
+  return {a.angle_deg + part * step_deg, between(a.dx_mm, b.dx_mm), between(a.dy_mm, b.dy_mm),
           between(a.dz_mm, b.dz_mm), part < 0.5 ? a.moves : b.moves};
 }
 

@@ -53,7 +53,8 @@ struct Range {
 /// twice the longest way from frame to frame.
 [[nodiscard]] bool repeat(const Poses& poses);
 
-/// At a place between frames, linear between the nearest two, the ends beyond. `moves` is that of the nearest.
+/// At a place between frames, linear between the nearest two; beyond the ends, poses that repeat() go on from the other
+/// end, others stay. `moves` is that of the nearest. Angles are even.
 [[nodiscard]] Pose pose_between(const Poses& poses, double frame);
 
 }  // namespace vam::model

@@ -234,9 +234,7 @@ model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace&
   info.poses.clear();
   for (int n = 0; n < schedule.count && !sinogram.poses.empty(); ++n) {
     const double frame = (schedule.angle_deg(n) - sinogram.angle_start_deg) / sinogram.angle_step_deg;
-    const double round =
-        model::repeat(sinogram.poses) ? frame - sinogram.height * std::floor(frame / sinogram.height) : frame;
-    model::Pose& pose = info.poses.emplace_back(model::pose_between(sinogram.poses, round));
+    model::Pose& pose = info.poses.emplace_back(model::pose_between(sinogram.poses, frame));
     pose.angle_deg = schedule.angle_deg(n);
   }
   return info;

@@ -37,6 +37,12 @@ TEST_CASE("extent of poses, and whether they can be repeated") {
 TEST_CASE("between two poses, and beyond the ends") {
   CHECK(pose_between(sinking, 0.5).dz_mm == -0.75);
   CHECK(pose_between(sinking, 0.5).angle_deg == 45);
-  CHECK(pose_between(sinking, -2) == sinking.front());
-  CHECK(pose_between(sinking, 9) == sinking.back());
+  Poses helix;
+  for (int k = 0; k < 10; ++k) helix.push_back({36.0 * k, 0, 0, 0.5 * k, Moves::vial});
+  CHECK(pose_between(helix, -2) == helix.front());
+  CHECK(pose_between(helix, 99).dz_mm == helix.back().dz_mm);
+  const Poses wobble{{0, 1, 0, 0, Moves::vial}, {120, 0, 1, 0, Moves::vial}, {240, -1, 0, 0, Moves::vial}};
+  CHECK(pose_between(wobble, 2.5) == Pose{300, 0, 0, 0, Moves::vial});  // half way back to the first one
+  CHECK(pose_between(wobble, 3.5).dx_mm == 0.5);
+  CHECK(pose_between(wobble, -1).dx_mm == -1);
 }
