@@ -1,7 +1,9 @@
 #include "io/settings/flip_log.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -21,7 +23,7 @@ struct FlipLine {
 
 std::vector<FlipLine> read_flips(const std::string& file) {
   std::ifstream stream(file);
-  if (!stream.is_open()) throw Error{Fault::no_input, file + ": cannot be opened"};
+  if (!stream.is_open()) throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
   std::vector<FlipLine> flips;
   std::string text;
   for (int line = 1; std::getline(stream, text); ++line) {

@@ -27,8 +27,8 @@ struct StageRows {
   double step_deg = 0;
 };
 
-/// For how many turns of the stage, at this speed, each row was shown: the sum over images of seconds over the time that
-/// the stage spends at a row. A whole print has its turns in each.
+/// For how many turns of the stage, at this speed, each row was shown: the sum over images of seconds over the time
+/// that the stage spends at a row. A whole print has its turns in each.
 [[nodiscard]] std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows,
                                               double speed_deg_s);
 

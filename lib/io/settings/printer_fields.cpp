@@ -156,7 +156,8 @@ std::string contradiction(const Printer& printer) {
   const double obstacle_mm = std::max(vial.radius_mm, bath.window_mm);
   if (lens_mm && *lens_mm <= obstacle_mm) {
     return "the projector's lens, " + mm(*lens_mm) + " from the axis, is not outside " +
-           (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm(obstacle_mm);
+           (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm(obstacle_mm) +
+           "; its distance is lens_distance_mm, or throw_ratio x columns x pixel_mm";
   }
   if (!camera.telecentric && camera.distance_mm <= vial.radius_mm) {
     return "camera.distance_mm " + mm(camera.distance_mm) + " is not outside vial.radius_mm " + mm(vial.radius_mm);

@@ -3,7 +3,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -229,7 +231,7 @@ std::string slurp(const std::string& file) {
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (!stream.is_open() || stream.bad()) {
-    throw Error{Fault::no_input, file + ": cannot read the printer file"};
+    throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
   }
   if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is no printer file"};
   return text;
@@ -276,8 +278,9 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
     apply_records(printer, settled.calibration, utc_seconds());
   }
   for (const auto& set : sets) override_one(printer, set);
-  const bool only_sets = path.empty() && !sets.empty();
-  check(printer, sets.empty() ? Fault::data : Fault::usage, only_sets ? "--set " + sets.back() : path);
+  std::string subject = path;  // with several --set any of them may be the cause
+  if (path.empty() && !sets.empty()) subject = sets.size() == 1 ? "--set " + sets.front() : "printer settings";
+  check(printer, sets.empty() ? Fault::data : Fault::usage, subject);
   return printer;
 }
 

@@ -17,14 +17,15 @@ constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
 double gelation_isovalue(const std::string& path) {
   double isovalue = 0;
   try {
-    const Json record = Json::parse(read_all(path, Content::text, most_bytes));
+    const Json record = Json::parse(read_all(path, Content::text, most_bytes), nullptr, false);
+    if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
     if (record.at("schema") != "vam-resin/1")
       throw Error{Fault::data,
                   path + ": not a record of vam-calibrate resin, its schema is " + record["schema"].dump()};
     require_seal(record, path);
     isovalue = record.at(record.contains("level") ? "level" : "isovalue").get<double>();  // level: until 0.1.0
-  } catch (const Json::exception& error) {
-    throw Error{Fault::data, path + ": not a record of vam-calibrate resin (" + error.what() + ")"};
+  } catch (const Json::exception&) {
+    throw Error{Fault::data, path + ": not a record of vam-calibrate resin, which has schema and isovalue"};
   }
   if (!(isovalue > 0)) {
     throw Error{Fault::data, path + ": isovalue is " + format_number(isovalue) + "; it must be above 0"};
