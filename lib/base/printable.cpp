@@ -24,6 +24,32 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+std::string page_text(std::string_view text) {
+  std::string shown;
+  for (const char c : printable(text)) {
+    switch (c) {
+      case '<':
+        shown += "&lt;";
+        break;
+      case '>':
+        shown += "&gt;";
+        break;
+      case '&':
+        shown += "&amp;";
+        break;
+      case '"':
+        shown += "&quot;";
+        break;
+      case '\'':
+        shown += "&#39;";
+        break;
+      default:
+        shown += c;
+    }
+  }
+  return shown;
+}
+
 std::string link_text(std::string_view name) {
   std::string text;
   for (const char c : name) {

@@ -9,6 +9,9 @@ namespace vam {
 /// Control characters (ASCII, and C1 in UTF-8) become \n, \t or \x1b; the rest stays as it is.
 [[nodiscard]] std::string printable(std::string_view text);
 
+/// As text of a page, or as the quoted value of an attribute: printable(), with <, >, &, " and ' as entities.
+[[nodiscard]] std::string page_text(std::string_view text);
+
 /// As part of a link in a page: all but letters, digits and ._-~ as %xx, so that it also ends no attribute.
 [[nodiscard]] std::string link_text(std::string_view name);
 

@@ -20,7 +20,7 @@ struct Options {
   std::optional<double> latency_ms;  // absent: camera.latency_ms
   bool live = false;
   bool with_parent = false;
-  std::string log, report;
+  std::string latest, log, report;
   device::CameraSettings camera;
   cli::PrinterOptions printer;
   io::StackOptions stack;

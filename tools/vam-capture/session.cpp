@@ -10,6 +10,7 @@
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/port/lines.hpp"
+#include "io/image/image_file.hpp"
 #include "io/settings/report.hpp"
 #include "printer.hpp"
 #include "vam-capture/recording.hpp"
@@ -108,6 +109,21 @@ void check(const Options& o, const model::Printer& printer) {
   throw Error{Fault::usage, "--frames: a stack needs the number of images in advance; give it, or --live, or a folder"};
 }
 
+// For whoever watches a capture that keeps no files.
+class Latest {
+ public:
+  explicit Latest(std::string path) : path_(std::move(path)) {}
+  void show(const device::CapturedFrame& frame) {
+    if (path_.empty() || frame.time_s < shown_s_ + 1) return;
+    shown_s_ = frame.time_s;
+    io::write_png(path_, frame.levels);
+  }
+
+ private:
+  std::string path_;
+  double shown_s_ = -1e300;
+};
+
 // What was lost is said, whatever else happens; what is missing is an error.
 void conclude(const Options& o, const device::CaptureTally& tally, long wanted) {
   std::string lost;
@@ -152,10 +168,12 @@ void take(const cli::App& app, const Options& options) {
   about["latency_ms"] = 1e3 * plan.latency_s;
   log("begin", about);
   Progress progress("capturing", plan.frames);
+  Latest latest(options.latest);
   const device::CaptureSink sink{[&](long place) { return store->wanted(place); },
                                  [&](device::Shot&& shot) {
                                    if (!shot.frame.complete)
                                      log("incomplete", {{"number", shot.frame.number}, {"place", shot.place}});
+                                   latest.show(shot.frame);
                                    store->keep(std::move(shot));
                                    progress.tick();
                                  },

@@ -14,46 +14,57 @@ namespace vam::io {
 
 namespace {
 
-struct FlipLine {
-  double t_s;
-  int frame;
-  double angle_deg;
-  bool last = false;  // of its run
-};
-
-std::vector<FlipLine> read_flips(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream.is_open()) throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
-  std::vector<FlipLine> flips;
-  std::string text;
-  for (int line = 1; std::getline(stream, text); ++line) {
-    const Json event = Json::parse(text, nullptr, false);
-    if (event.is_discarded() && stream.eof()) break;  // cut by the death of its writer
-    try {
-      if (event.at("event") == "display" && !flips.empty()) flips.back().last = true;  // another run begins
-      if (event.at("event") != "flip") continue;
-      flips.push_back({event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false});
-    } catch (const Json::exception&) {
-      throw Error{Fault::data, file + ":" + std::to_string(line) + ": is no event of vam-project's log"};
-    }
-  }
-  return flips;
-}
+constexpr double last_run_up_deg = -360;  // from this angle on missed blanks are judged
 
 }  // namespace
 
-std::vector<ShownImage> read_shown(const std::string& path) {
-  const bool folder = std::filesystem::is_directory(path);
-  const std::string file = folder ? (std::filesystem::path(path) / "flips.jsonl").string() : path;
-  const std::vector<FlipLine> flips = read_flips(file);
+FlipLog::FlipLog(const std::string& path)
+    : file_(std::filesystem::is_directory(path) ? (std::filesystem::path(path) / "flips.jsonl").string() : path),
+      stream_(file_) {
+  if (!stream_.is_open()) throw Error{Fault::no_input, file_ + ": cannot open: " + std::strerror(errno)};
+}
+
+void FlipLog::read() {
+  std::string text;
+  for (;;) {
+    const auto begin = stream_.tellg();
+    if (!std::getline(stream_, text) || stream_.eof()) {  // not whole, yet or for ever: its writer goes on or is dead
+      stream_.clear();
+      stream_.seekg(begin);
+      return;
+    }
+    ++line_;
+    const Json event = Json::parse(text, nullptr, false);
+    try {
+      if (event.at("event") == "display" && !flips_.empty()) flips_.back().last = true;  // another run begins
+      if (event.at("event") != "flip") continue;
+      const Flip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false};
+      flips_.push_back(flip);
+      if (flip.angle_deg < last_run_up_deg) continue;
+      const long missed = event.value("missed", 0L);
+      missed_ += missed;
+      blanks_ += 1 + missed;
+    } catch (const Json::exception&) {
+      throw Error{Fault::data, file_ + ":" + std::to_string(line_) + ": is no event of vam-project's log"};
+    }
+  }
+}
+
+std::vector<ShownImage> FlipLog::shown() const {
   std::vector<ShownImage> shown;
-  for (std::size_t i = 0; i < flips.size(); ++i) {
-    if (flips[i].frame < 0) continue;
-    const bool last = flips[i].last || i + 1 == flips.size();
-    const double seconds = !last ? flips[i + 1].t_s - flips[i].t_s : shown.empty() ? 0 : shown.back().seconds;
-    shown.push_back({flips[i].angle_deg, std::max(0.0, seconds)});
+  for (std::size_t i = 0; i < flips_.size(); ++i) {
+    if (flips_[i].frame < 0) continue;
+    const bool last = flips_[i].last || i + 1 == flips_.size();
+    const double seconds = !last ? flips_[i + 1].t_s - flips_[i].t_s : shown.empty() ? 0 : shown.back().seconds;
+    shown.push_back({flips_[i].angle_deg, std::max(0.0, seconds)});
   }
   return shown;
+}
+
+std::vector<ShownImage> read_shown(const std::string& path) {
+  FlipLog log(path);
+  log.read();
+  return log.shown();
 }
 
 std::string armed_sinogram(const std::string& run) {

@@ -1,6 +1,7 @@
 // The flips of a print, from the log of vam-project: what was shown when, and at which stage angle.
 #pragma once
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,36 @@ namespace vam::io {
 struct ShownImage {
   double angle_deg = 0;  // of the stage in the middle of its showing
   double seconds = 0;    // until the next flip; of the last one of a run that was killed, as long as the one before
+};
+
+/// The log of a print, also of one that goes on.
+class FlipLog {
+ public:
+  /// flips.jsonl, or the run folder (vam-print) that holds it. Throws Fault::no_input.
+  explicit FlipLog(const std::string& path);
+
+  /// Takes in the whole lines that were added since the last call. Throws Fault::data for another kind of file.
+  void read();
+
+  /// The lit images so far, in order.
+  [[nodiscard]] std::vector<ShownImage> shown() const;
+  /// Vertical blanks from the last run-up turn on: those at which the image changed late, of all.
+  [[nodiscard]] long missed() const { return missed_; }
+  [[nodiscard]] long blanks() const { return blanks_; }
+
+ private:
+  struct Flip {
+    double t_s;
+    int frame;
+    double angle_deg;
+    bool last;  // of its run
+  };
+  std::string file_;
+  std::ifstream stream_;
+  int line_ = 0;
+  std::vector<Flip> flips_;
+  long missed_ = 0;
+  long blanks_ = 0;
 };
 
 /// The lit images in order, of flips.jsonl or of the run folder (vam-print) that holds it. A last line that is cut is

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fstream>
+
 #include "fault_of.hpp"
 #include "lib/io/scratch.hpp"
 
@@ -55,4 +57,26 @@ TEST_CASE("a log that its writer's death cut is read, another file is refused") 
   CHECK(read_shown(folder.write("empty", "")).empty());
   error_of([&] { (void)read_shown(folder.write("text", "one\ntwo\n")); }, Fault::data);
   error_of([&] { (void)read_shown(folder / "none"); }, Fault::no_input);
+}
+
+TEST_CASE("a log that grows is read line by line, and its missed blanks are counted from the last run-up turn on") {
+  const scratch::Folder folder;
+  const std::string path = folder.write("flips.jsonl", "");
+  vam::io::FlipLog log(path);
+  const auto add = [&](const std::string& text) {
+    std::ofstream(path, std::ios::app) << text;
+    log.read();
+  };
+  log.read();
+  CHECK(log.shown().empty());
+  const std::string late = flip(11, 0, 2);
+  add(R"({"event":"flip","t_monotonic_s":1,"frame":-1,"angle_deg":-361,"missed":7})"
+      "\n" +
+      late.substr(0, 20));
+  CHECK(log.blanks() == 0);
+  add(late.substr(20) + R"({"event":"flip","t_monotonic_s":13,"frame":1,"angle_deg":92,"missed":2})" + "\n");
+  CHECK(log.shown().size() == 2);
+  CHECK(log.shown().front().seconds == 2);
+  CHECK(log.missed() == 2);
+  CHECK(log.blanks() == 4);
 }

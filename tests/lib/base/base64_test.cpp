@@ -1,0 +1,15 @@
+#include "base/base64.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string_view>
+
+TEST_CASE("base64 as the examples of RFC 4648, section 10") {
+  CHECK(vam::base64("").empty());
+  CHECK(vam::base64("f") == "Zg==");
+  CHECK(vam::base64("fo") == "Zm8=");
+  CHECK(vam::base64("foo") == "Zm9v");
+  CHECK(vam::base64("foob") == "Zm9vYg==");
+  CHECK(vam::base64("foobar") == "Zm9vYmFy");
+  CHECK(vam::base64(std::string_view("\xff\x00\xfe", 3)) == "/wD+");
+}

@@ -1,0 +1,125 @@
+#!/bin/sh
+# A print that is watched: the line on a terminal, the page that renews itself, in a real browser where there is one.
+[ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+PATH=$VAM_SOURCE/scripts:$PATH; export PATH
+tiny_print frames.exr
+printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
+printf '[camera]\ndevice = "sim:?lit_s=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
+print() { vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 "$@"; }
+
+fails 66 'nowhere: is no folder' vam-status nowhere
+fails 66 'frames.exr: is no folder' vam-status frames.exr
+mkdir empty
+fails 65 'empty: has no events.jsonl' vam-status empty
+fails 64 '--folow: unknown option; did you mean --follow' vam-status empty --folow
+fails 64 '^vam-print: --page: takes no value' vam-print frames.exr --screen null: --page=x
+
+# On a terminal: the line, renewed in place, and the page beside it.
+script -qefc "TERM=dumb vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 --turns 3 --page --run run" typed \
+  >/dev/null 2>&1 & printing=$!
+await test -s run/page.html
+sleep 3
+if vam-status run >line; then cp run/page.html during.html; fi
+wait $printing; is 'a print that is watched has status 0' $? 0
+ok 'the line tells the state' grep -Eq '^(getting ready|running up, dark|printing)  turn [0-9.]+ of 3  angle [0-9.]+ deg  dose given [0-9.]+ %  missed [0-9]+ of [0-9]+ blanks' line
+holds 'it was renewed on the terminal' "$(tr '\r' '\n' <typed | grep -c 'dose given') > 2"
+is 'at last' "$(vam-status run | sed 's/  angle .* deg\(  dose given [0-9.]* %\).*/\1/')" 'ended: done  turn 3.00 of 3  dose given 100.0 %'
+is 'the same with --follow, once' "$(vam-status run --follow | grep -c .)" 1
+ok 'the page is among the hashes' grep -q page.html run/SHA256SUMS
+ok 'and as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
+is 'no longer renewed' "$(grep -c http-equiv=.refresh during.html) $(grep -c http-equiv=.refresh run/page.html)" '1 0'
+print --run quiet >out 2>err
+is 'not on a terminal, nothing is said and no page made' "$? $(cat out err | grep -c .) $(ls quiet | grep -c html)" '0 0 0'
+
+# How far: half of the flips. The dose is that of the light that was given, by vam-dose on the same log.
+cp -r run half
+sed -i '/"event":"end"/d' half/events.jsonl
+head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl >half/flips.jsonl
+last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
+printf '{"t_monotonic_s":1,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last" >half/angles.jsonl
+touch half/events.jsonl
+given=$(vam-status half | sed 's/.*dose given \([0-9.]*\) %.*/\1/')
+ok 'vam-dose on it' vam-dose frames.exr --shown half --printer half/printer.toml --report dose.json -o dose.vdb
+holds 'dose given' "($given / 100 - $(json dose.json shown_turns) / 3) ^ 2 < 0.01 ^ 2"
+touch -d '1 hour ago' half/*.jsonl
+ok 'a print that was killed' sh -c 'vam-status half | grep -q "^not ended, but silent for 3[56]"'
+echo '{"turns":1.5,"missing_percent":34.25,"iou":0.5}' >half/ost.jsonl
+ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
+
+# Names are data: of the folder, of records, of an outcome.
+hostile='<img src=x onerror=document.title=1>&amp;"'
+mv half "$hostile"
+cat >"$hostile/calibration.json" <<'JSON'
+{"edges": {"utc": "2026-11-22T10:00:00Z", "valid_until": "</td><script>document.title=2</script>", "status": "pa\u001bss"},
+ "<b onmouseover='x'>": {"utc": 7, "valid_until": [], "status": null}}
+JSON
+ok 'a page of hostile names' vam-status "$hostile" --page page.html
+is 'has none of their elements' "$(grep -Ec '<img src=x|<b onm|document\.title=2</script>' page.html)" 0
+rm "$hostile/sinogram.exr"
+vam-status "$hostile" --page bare.html 2>bare.err
+is 'a page without sinogram, which is said' "$? $(grep -c 'the page has no pictures of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
+fails 74 '/dev/full: ' vam-status run --page /dev/full
+vam-status run --page - | head -c 100 >/dev/null; report 0 'a page to head'
+is 'nothing of it on a terminal line to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1
+
+# As a browser shows it, over file://, with the pictures.
+browser=$(command -v chromium || command -v google-chrome)
+if [ -z "$browser" ]; then
+  echo "ok $((number += 1)) - the page in a browser # SKIP no chromium here (scripts/setup installs it)"
+  done_testing
+fi
+look() { timeout 60 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$PWD/.log/browser" "$@" 2>.log/browser.err; }
+dom() { look --dump-dom "$@" >dom.html; }
+dom "file://$PWD/page.html"
+is 'the title is text' "$(grep -c '<title>not ended, but silent for [0-9]* s - &lt;img src=x onerror=document.title=1&gt;&amp;amp;"</title>' dom.html)" 1
+is 'no element is made of a name' "$(grep -Ec '<b onm|<img src="x"' dom.html)" 0
+look --screenshot="$PWD/page.png" --window-size=1100,1200 "file://$PWD/during.html" >/dev/null
+python3 - <<'PY' >colours
+import subprocess, struct, zlib
+def pixels(path):
+    data = open(path, 'rb').read()
+    width, height = struct.unpack('>II', data[16:24])
+    kind = data[25]
+    at, packed = 8, b''
+    while at < len(data):
+        size, name = struct.unpack('>I4s', data[at:at + 8])
+        if name == b'IDAT': packed += data[at + 8:at + 8 + size]
+        at += 12 + size
+    raw, step = zlib.decompress(packed), 4 if kind == 6 else 3
+    above, rows = bytearray(width * step), []
+    for y in range(height):
+        line = bytearray(raw[y * (width * step + 1):(y + 1) * (width * step + 1)])
+        how, line = line[0], line[1:]
+        for i in range(len(line)):
+            left = line[i - step] if i >= step else 0
+            corner = above[i - step] if i >= step else 0
+            if how == 1: line[i] = line[i] + left & 255
+            elif how == 2: line[i] = line[i] + above[i] & 255
+            elif how == 3: line[i] = line[i] + (left + above[i] >> 1) & 255
+            elif how == 4:
+                p = left + above[i] - corner
+                best = min((abs(p - left), 0, left), (abs(p - above[i]), 1, above[i]), (abs(p - corner), 2, corner))[2]
+                line[i] = line[i] + best & 255
+        rows.append(line); above = line
+    return width, height, step, rows
+width, height, step, rows = pixels('page.png')
+red = sum(1 for row in rows for x in range(0, len(row), step) if row[x] > 180 and row[x + 1] < 40 and row[x + 2] < 40)
+violet = sum(1 for row in rows for x in range(0, len(row), step) if 55 < row[x] < 85 and row[x + 1] < 40 and 75 < row[x + 2] < 120)
+print(width, height, red > 20, violet > 2000)
+PY
+is 'the mark and the dose are drawn' "$(cat colours)" '1100 1200 True True'
+# It renews itself: a browser that has it open shows what is written later.
+sed 's/content="2"/content="1"/' during.html >renewed.html
+"$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$PWD/.log/open" --remote-debugging-port=0 \
+  "file://$PWD/renewed.html" >/dev/null 2>&1 & viewer=$!
+titles() {
+  python3 -c 'import sys, urllib.request as u; print(u.urlopen("http://127.0.0.1:%s/json/list" % open(sys.argv[1]).readline().strip()).read().decode())' \
+    .log/open/DevToolsActivePort 2>/dev/null
+}
+shows() { titles | grep -q "$1"; }
+await shows '"title": "[a-z, ]* - run"'; report $? 'a browser has the page open'
+sed -i 's/<title>/<title>later /' renewed.html
+await shows '"title": "later [a-z, ]* - run"'; report $? 'and shows what is written later'
+kill $viewer; wait $viewer 2>/dev/null
+done_testing

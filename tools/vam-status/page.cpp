@@ -1,0 +1,186 @@
+#include "vam-status/page.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+
+#include "base/base64.hpp"
+#include "base/error.hpp"
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "io/image/capture_folder.hpp"
+#include "io/image/image_file.hpp"
+#include "plot/image_figure.hpp"
+#include "vam-status/overhead.hpp"
+
+namespace vam::status_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string fixed(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string figure(const std::string& title, const std::string& content, const std::string& caption) {
+  return "<figure><h2>" + page_text(title) + "</h2>" + content + "<figcaption>" + page_text(caption) +
+         "</figcaption></figure>\n";
+}
+
+std::string picture(const RgbImage& image, const std::string& alt) {
+  return "<img src=\"data:image/png;base64," + base64(io::encode_png(image)) + "\" alt=\"" + page_text(alt) + "\">";
+}
+
+// Mean of blocks, so that no more than `most` columns are left.
+Image reduced(const GreyImage& image, int most) {
+  const int by = (image.width + most - 1) / most;
+  Image small(image.width / by, image.height / by);
+  for (int y = 0; y < small.height; ++y) {
+    for (int x = 0; x < small.width; ++x) {
+      double sum = 0;
+      for (int j = 0; j < by; ++j) {
+        for (int i = 0; i < by; ++i) sum += image(x * by + i, y * by + j);
+      }
+      small(x, y) = static_cast<float>(sum / by / by / image.full());
+    }
+  }
+  return small;
+}
+
+std::string camera_figure(const RunFolder& run) {
+  const auto newest = newest_picture(run);
+  if (!newest) {
+    return figure("Camera", "<p class=\"none\">no picture</p>", "vam-print --views DEG takes pictures during a print.");
+  }
+  const GreyImage levels = io::read_image(newest->path);
+  const model::PrinterCamera& camera = run.printer().camera;
+  const double pixel_mm = camera.pixel_mm * camera.binning;
+  const double axis = camera.axis_column.value_or(0.5 * (levels.width - 1));
+  const double level = camera.axis_row.value_or(0.5 * (levels.height - 1));
+  plot::ImageFigure view;
+  view.panels.push_back({reduced(levels, 480), "", {}});
+  view.x = {"across the vial, from the axis (mm)", (-0.5 - axis) * pixel_mm, (levels.width - 0.5 - axis) * pixel_mm};
+  view.y = {"z (mm)", (level - levels.height + 0.5) * pixel_mm, (level + 0.5) * pixel_mm};
+  view.colours = plot::ColourMap::grey;
+  const Image& shown = view.panels.front().values;
+  view.high = std::max(0.02F, *std::max_element(shown.values.begin(), shown.values.end()));
+  view.value_label = "fraction of full scale";
+  view.size = 480;
+  const std::string when =
+      newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
+  return figure("Camera", picture(plot::draw(view), "camera picture"), "The newest picture" + when + ".");
+}
+
+std::string screen_figure(const RunFolder& run, const LightView& light, double angle_deg, bool lit) {
+  plot::ImageFigure view;
+  Image image = light.projection(angle_deg);
+  if (!lit) std::fill(image.values.begin(), image.values.end(), 0.0F);
+  view.panels.push_back({std::move(image), "", {}});
+  view.x = {"x (mm), seen from the projector", -run.printer().vial.radius_mm, run.printer().vial.radius_mm};
+  view.y = {"z (mm)", light.low_mm(), light.high_mm()};
+  view.colours = plot::ColourMap::grey;
+  view.value_label = "fraction";
+  view.size = 480;
+  const double peak = run.printer().projector.max_intensity_mw_cm2;
+  return figure("Projected image", picture(plot::draw(view), "image of the projector"),
+                lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
+                          " deg; 1 is the brightest pixel of the print, " + format_number(peak, 3) + " mW/cm2."
+                    : "Dark: no light is given now.");
+}
+
+std::string time_text(const std::string& utc) {
+  std::tm moment{};
+  if (strptime(utc.c_str(), "%Y-%m-%dT%H:%M:%S", &moment) == nullptr) return "age unknown";
+  const double age_h = (static_cast<double>(std::time(nullptr)) - static_cast<double>(timegm(&moment))) / 3600;
+  return age_h < 48 ? fixed(age_h, 1) + " h old" : fixed(age_h / 24, 1) + " days old";
+}
+
+std::string records_table(const Progress& progress) {
+  if (progress.records.empty()) return "<p class=\"none\">none are in force: the print relies on the printer file.</p>";
+  std::string rows = "<table><tr><th>record</th><th>age</th><th>valid until</th><th>status</th></tr>\n";
+  for (const RecordAge& record : progress.records) {
+    rows += "<tr><td>" + page_text(record.scan) + "</td><td>" + time_text(record.utc) + "</td><td>" +
+            page_text(record.valid_until) + "</td><td>" + page_text(record.status) + "</td></tr>\n";
+  }
+  return rows + "</table>";
+}
+
+std::string figures_table(const RunFolder& run) {
+  const Progress& p = run.progress();
+  const auto row = [](const std::string& name, const std::string& value) {
+    return "<tr><th>" + name + "</th><td>" + page_text(value) + "</td></tr>\n";
+  };
+  const double turn = std::clamp(p.angle_deg / 360, 0.0, std::max(0.0, p.turns));
+  std::string rows = "<table>" + row("turn", fixed(turn, 2) + " of " + format_number(p.turns));
+  rows += row("stage angle", fixed(std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 1) + " deg");
+  rows += row("dose given", fixed(100 * p.given_fraction, 1) + " % of this print");
+  rows += row("blanks missed", std::to_string(p.missed) + " of " + std::to_string(p.blanks));
+  rows += p.missing_percent ? row("cured / missing", fixed(100 - *p.missing_percent, 1) + " % / " +
+                                                         fixed(*p.missing_percent, 1) + " % of the part")
+                            : row("cured / missing", "not measured (vam-print --until)");
+  if (!p.simulated.empty()) rows += row("simulated", join(p.simulated, ", "));
+  return rows + "</table>\n";
+}
+
+constexpr const char* style =
+    "body{font:15px/1.4 sans-serif;margin:1.2em;color:#111;background:#fff}h1{font-size:1.3em;margin:0}"
+    "h2{font-size:1em;margin:0 0 .4em}p{margin:.3em 0 .8em}.pictures{display:flex;flex-wrap:wrap;gap:1.2em}"
+    "figure{margin:0;width:30em;max-width:100%}figure img,figure svg{width:100%;height:auto}"
+    "figcaption{color:#444}table{border-collapse:collapse;margin:.4em 0 1em}"
+    "th,td{text-align:left;padding:.15em 1em .15em 0;font-variant-numeric:tabular-nums}th{font-weight:600}"
+    ".none{color:#666}#old{background:#b00;color:#fff;padding:.4em .8em;display:none}";
+
+// Without a renewal the page would look alive for ever. Bound by its hash; nothing else can run.
+constexpr const char* script =
+    "setInterval(function(){var b=document.body;if(b.dataset.live&&Date.now()/1000-b.dataset.written>15)"
+    "document.getElementById('old').style.display='block'},1000)";
+constexpr const char* script_hash = "IMvL7mhReVqrMSJcQbGUckXauCJKPWcu6DMz5ZqVVy8=";
+
+}  // namespace
+
+std::optional<CameraPicture> newest_picture(const RunFolder& run) {
+  const std::string views = run.file("views");
+  if (io::is_capture_folder(views)) {
+    const io::CaptureManifest manifest = io::read_manifest(views);
+    if (!manifest.frames.empty()) {
+      const io::CaptureRecord& last = manifest.frames.rbegin()->second;
+      return CameraPicture{(fs::path(views) / io::capture_file_name(last.place)).string(), last.angle_deg};
+    }
+  }
+  if (fs::exists(run.file("camera.png"))) return CameraPicture{run.file("camera.png"), {}};
+  return std::nullopt;
+}
+
+std::string page(const std::string& name, const RunFolder& run, const LightView* light, double period_s) {
+  const Progress& progress = run.progress();
+  const bool live = !progress.outcome.has_value();
+  const bool lit = live && progress.blanks > 0 && progress.angle_deg >= progress.from_deg &&
+                   progress.angle_deg < 360 * progress.turns;
+  const std::time_t now = std::time(nullptr);
+  char utc[32];
+  std::strftime(utc, sizeof utc, "%Y-%m-%d %H:%M:%S UTC", std::gmtime(&now));
+  std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
+  html += std::string(
+              "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+              "style-src 'unsafe-inline'; script-src 'sha256-") +
+          script_hash + "'\">\n";
+  if (live) html += "<meta http-equiv=\"refresh\" content=\"" + format_number(std::max(1.0, period_s), 3) + "\">\n";
+  html += "<title>" + page_text(state_of(progress) + " - " + name) + "</title>\n<style>" + style + "</style></head>\n";
+  html += "<body data-written=\"" + std::to_string(now) + "\"" + (live ? " data-live=\"1\"" : "") + ">\n";
+  html += "<p id=\"old\">This page is no longer renewed: the print, or the program that shows it, has ended.</p>\n";
+  html += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
+  html += figures_table(run) + "<div class=\"pictures\">\n" + camera_figure(run);
+  if (light != nullptr) {
+    html += overhead_figure(run, *light, lit) + screen_figure(run, *light, progress.angle_deg, lit);
+  }
+  html += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);
+  return html + "<script>" + script + "</script></body></html>\n";
+}
+
+}  // namespace vam::status_tool

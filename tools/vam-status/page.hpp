@@ -1,0 +1,25 @@
+// The page of a print: one file without scripts of others, pictures within, that a browser renews by itself.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "vam-status/light_view.hpp"
+#include "vam-status/progress.hpp"
+
+namespace vam::status_tool {
+
+/// The newest image of the camera.
+struct CameraPicture {
+  std::string path;
+  std::optional<double> angle_deg;
+};
+
+/// Of the run's views/, else its camera.png; nothing where there is neither.
+[[nodiscard]] std::optional<CameraPicture> newest_picture(const RunFolder& run);
+
+/// HTML in UTF-8. Every text that is not of this program is escaped. light: null without sinogram; renewed every
+/// `period_s` until the print has ended.
+[[nodiscard]] std::string page(const std::string& name, const RunFolder& run, const LightView* light, double period_s);
+
+}  // namespace vam::status_tool

@@ -1,0 +1,172 @@
+#include "vam-status/progress.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/printable.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::status_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double silence_s = 5;               // longer than any pause of a stage that turns
+constexpr double loading_s = 600;             // and than it takes to load frames and to find a reference
+constexpr std::streamoff tail_bytes = 65536;  // holds many entries
+
+// The whole lines at the end of a log, or of all of it. A log that is not there has none.
+void each_line(const std::string& file, bool only_tail, const std::function<void(const Json&)>& take) {
+  std::ifstream stream(file);
+  std::string text;
+  if (only_tail && stream.seekg(0, std::ios::end) && stream.tellg() > tail_bytes) {
+    stream.seekg(-tail_bytes, std::ios::end);
+    std::getline(stream, text);  // begins somewhere within
+  } else {
+    stream.clear();
+    stream.seekg(0);
+  }
+  while (std::getline(stream, text) && !stream.eof()) {
+    const Json line = Json::parse(text, nullptr, false);
+    if (line.is_object()) take(line);
+  }
+}
+
+// What another program writes is not always what is expected.
+double number(const Json& line, const char* key, double otherwise) {
+  return line.contains(key) && line[key].is_number() ? line[key].get<double>() : otherwise;
+}
+std::string word(const Json& line, const char* key) {
+  return line.contains(key) && line[key].is_string() ? line[key].get<std::string>() : "";
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const std::string& path) : path_(path) {
+  if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": is no folder; give that of a print of vam-print"};
+  if (!fs::exists(file("events.jsonl"))) {
+    throw Error{Fault::data, path + ": has no events.jsonl; give the folder of a print that vam-print has armed"};
+  }
+  printer_ = io::load_printer(file("printer.toml"), {}, io::Records::ignore);
+}
+
+std::string RunFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
+
+std::vector<io::ShownImage> RunFolder::shown() const {
+  return flips_ ? flips_->shown() : std::vector<io::ShownImage>{};
+}
+
+void RunFolder::read() {
+  read_events();
+  read_angle();
+  read_flips();
+  read_records();
+  each_line(file("ost.jsonl"), true, [&](const Json& line) {
+    if (line.contains("missing_percent")) progress_.missing_percent = number(line, "missing_percent", 0);
+  });
+}
+
+void RunFolder::read_events() {
+  progress_.silent_s = 1e9;
+  for (const char* name : {"events.jsonl", "angles.jsonl"}) {
+    std::error_code problem;
+    const auto written = fs::last_write_time(file(name), problem);
+    if (problem) continue;
+    const std::chrono::duration<double> age = fs::file_time_type::clock::now() - written;
+    progress_.silent_s = std::min(progress_.silent_s, std::max(0.0, age.count()));
+  }
+  each_line(file("events.jsonl"), false, [&](const Json& line) {
+    if (line.value("event", Json()) == "armed") {
+      progress_.turns = number(line, "turns", 0);
+      progress_.from_deg = number(line, "from_deg", 0);
+    } else if (line.value("event", Json()) == "end") {
+      progress_.outcome = word(line, "outcome");
+      progress_.status = static_cast<int>(number(line, "status", 0));
+    }
+  });
+  progress_.simulated.clear();
+  const auto look = [&](const char* log, const char* event, const char* what) {
+    bool simulated = false;
+    std::ifstream stream(file(log));
+    std::string text;
+    for (int first = 0; first < 8 && std::getline(stream, text); ++first) {
+      const Json line = Json::parse(text, nullptr, false);
+      if (!line.is_object() || line.value("event", Json()) != event) continue;
+      simulated = simulated || text.find("\"simulated\":true") != std::string::npos;
+    }
+    if (simulated) progress_.simulated.emplace_back(what);
+  };
+  look("stage.jsonl", "begin", "stage");
+  look("capture.jsonl", "begin", "camera");
+  look("flips.jsonl", "light", "light engine");
+}
+
+void RunFolder::read_angle() {
+  each_line(file("angles.jsonl"), true,
+            [&](const Json& line) { progress_.angle_deg = number(line, "angle_deg", progress_.angle_deg); });
+}
+
+void RunFolder::read_flips() {
+  if (!flips_) {
+    if (!fs::exists(file("flips.jsonl"))) return;
+    flips_.emplace(path_);
+  }
+  flips_->read();
+  progress_.missed = flips_->missed();
+  progress_.blanks = flips_->blanks();
+  double lit_s = 0;
+  for (const io::ShownImage& image : flips_->shown()) lit_s += image.seconds;
+  const double wanted_deg = 360 * progress_.turns - progress_.from_deg;
+  if (wanted_deg > 0) progress_.given_fraction = std::min(1.0, lit_s * printer_.stage.speed_deg_s / wanted_deg);
+}
+
+void RunFolder::read_records() {
+  progress_.records.clear();
+  if (!fs::exists(file("calibration.json"))) return;
+  const Json records = Json::parse(io::read_all(file("calibration.json")), nullptr, false);
+  if (!records.is_object()) return;
+  for (const auto& [scan, record] : records.items()) {
+    if (!record.is_object()) continue;
+    progress_.records.push_back({scan, word(record, "utc"), word(record, "valid_until"), word(record, "status")});
+  }
+}
+
+std::string state_of(const Progress& progress) {
+  if (progress.outcome) return "ended: " + printable(*progress.outcome);
+  if (progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
+    return "not ended, but silent for " + std::to_string(std::lround(progress.silent_s)) + " s";
+  }
+  if (progress.blanks == 0) return "getting ready";
+  return progress.angle_deg < progress.from_deg ? "running up, dark" : "printing";
+}
+
+std::string status_line(const Progress& p, double speed_deg_s) {
+  char text[256];
+  const double end_deg = 360 * p.turns;
+  const double at_deg = std::clamp(p.angle_deg, 0.0, std::max(0.0, end_deg));
+  std::snprintf(text, sizeof text, "  turn %.2f of %g  angle %.1f deg  dose given %.1f %%  missed %ld of %ld blanks",
+                at_deg / 360, p.turns, std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 100 * p.given_fraction,
+                p.missed, p.blanks);
+  std::string line = state_of(p) + text;
+  if (p.missing_percent) {
+    std::snprintf(text, sizeof text, "  cured %.1f %%, missing %.1f %%", 100 - *p.missing_percent, *p.missing_percent);
+    line += text;
+  }
+  if (!p.outcome && p.silent_s <= silence_s && p.blanks > 0 && speed_deg_s > 0) {
+    const long left_s = std::lround(std::max(0.0, end_deg - p.angle_deg) / speed_deg_s);
+    std::snprintf(text, sizeof text, "  %ld:%02ld left", left_s / 60, left_s % 60);
+    line += text;
+  }
+  return line;
+}
+
+}  // namespace vam::status_tool

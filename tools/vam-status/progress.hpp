@@ -1,0 +1,67 @@
+// How far a print is, by the logs in its run folder.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json_fwd.hpp"
+#include "io/settings/flip_log.hpp"
+#include "model/printer.hpp"
+
+namespace vam::status_tool {
+
+/// A calibration record in force.
+struct RecordAge {
+  std::string scan;
+  std::string utc, valid_until, status;
+};
+
+/// What the run folder says at one moment. Angles are stage angles in degrees; light comes on at from_deg.
+struct Progress {
+  double turns = 0;  // of the whole print
+  double from_deg = 0;
+  double angle_deg = 0;       // of the last stage sample
+  double given_fraction = 0;  // of the light of this run: 0 to 1
+  long missed = 0;            // vertical blanks, of `blanks`, from the last run-up turn on
+  long blanks = 0;
+  std::optional<double> missing_percent;  // of the part, by live metrology
+  std::optional<std::string> outcome;     // when it has ended
+  int status = 0;
+  double silent_s = 0;  // since the last entry of a log
+  std::vector<std::string> simulated;
+  std::vector<RecordAge> records;
+};
+
+/// Follows the logs of one run.
+class RunFolder {
+ public:
+  /// Throws Fault::no_input where there is no such folder, Fault::data where it is none of vam-print.
+  explicit RunFolder(const std::string& path);
+
+  /// Reads what has been added.
+  void read();
+  [[nodiscard]] const Progress& progress() const { return progress_; }
+  /// Of the run's frozen settings.
+  [[nodiscard]] const model::Printer& printer() const { return printer_; }
+  [[nodiscard]] std::vector<io::ShownImage> shown() const;
+  [[nodiscard]] std::string file(const std::string& name) const;
+
+ private:
+  void read_events();
+  void read_angle();
+  void read_flips();
+  void read_records();
+
+  std::string path_;
+  model::Printer printer_;
+  std::optional<io::FlipLog> flips_;
+  Progress progress_;
+};
+
+/// "printing  turn 3.41 of 20  angle 147.6 deg  dose given 17 % ..."
+[[nodiscard]] std::string status_line(const Progress& progress, double speed_deg_s);
+/// "printing", "running up", "ended: done", ...
+[[nodiscard]] std::string state_of(const Progress& progress);
+
+}  // namespace vam::status_tool
