@@ -8,7 +8,7 @@
 
 namespace vam::status_tool {
 
-/// A figure in HTML. Light comes from below, x is to the right, as in vam-physics(7), section 1.
+/// A figure in HTML. Light comes from below, x is to the right, as in [physics §1].
 [[nodiscard]] std::string overhead_figure(const RunFolder& run, const LightView& light, bool lit);
 
 }  // namespace vam::status_tool

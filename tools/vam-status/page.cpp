@@ -131,7 +131,7 @@ std::string figures_table(const RunFolder& run) {
 constexpr const char* style =
     "body{font:15px/1.4 sans-serif;margin:1.2em;color:#111;background:#fff}h1{font-size:1.3em;margin:0}"
     "h2{font-size:1em;margin:0 0 .4em}p{margin:.3em 0 .8em}.pictures{display:flex;flex-wrap:wrap;gap:1.2em}"
-    "figure{margin:0;width:30em;max-width:100%}figure img,figure svg{width:100%;height:auto}"
+    "figure{margin:0 0 1.2em;width:30em;max-width:100%}figure img,figure svg{width:100%;height:auto}"
     "figcaption{color:#444}table{border-collapse:collapse;margin:.4em 0 1em}"
     "th,td{text-align:left;padding:.15em 1em .15em 0;font-variant-numeric:tabular-nums}th{font-weight:600}"
     ".none{color:#666}#old{background:#b00;color:#fff;padding:.4em .8em;display:none}";
@@ -175,10 +175,9 @@ std::string page(const std::string& name, const RunFolder& run, const LightView*
   html += "<body data-written=\"" + std::to_string(now) + "\"" + (live ? " data-live=\"1\"" : "") + ">\n";
   html += "<p id=\"old\">This page is no longer renewed: the print, or the program that shows it, has ended.</p>\n";
   html += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
-  html += figures_table(run) + "<div class=\"pictures\">\n" + camera_figure(run);
-  if (light != nullptr) {
-    html += overhead_figure(run, *light, lit) + screen_figure(run, *light, progress.angle_deg, lit);
-  }
+  html += figures_table(run) + "<div class=\"pictures\">\n<div>" + camera_figure(run);
+  if (light != nullptr) html += screen_figure(run, *light, progress.angle_deg, lit);
+  html += "</div>\n" + (light != nullptr ? overhead_figure(run, *light, lit) : "");
   html += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);
   return html + "<script>" + script + "</script></body></html>\n";
 }
