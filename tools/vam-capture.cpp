@@ -44,7 +44,10 @@ cli::Manual manual() {
         "vam-capture --device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/\nvam-capture "
         "--device 'sim:?pace=virtual' --binning 8 --speed 90 --every 12 --turns 0.5 -o views/"}},
       {"Settings. Exposure, frame rate and binning default to the printer file's [camera]; every setting is read back, "
-       "and a camera that applies another value ends the capture (status 76).",
+       "and a camera that applies another value ends the capture (status 76). Automatics of exposure, gain, black "
+       "level, "
+       "gamma and white balance are switched off, and gamma is set to 1, as grey levels are to be proportional to "
+       "light; what is in force is in log, report and manifest (gain, gamma, black_level, automatic_off).",
        "Time. The time of a frame is the middle of its exposure: the camera's own time stamp, mapped to the machine's "
        "clock by the shortest delay observed in the last 10 s, minus half the exposure, minus --latency, the shortest "
        "delay from the end of an exposure to its time stamp.",
@@ -72,6 +75,11 @@ void add_camera(cli::App& app, Options& o) {
   app.option("--fps", "HZ", o.camera.fps, cli::positive, "Frames per second.").default_is("camera.fps");
   app.option("--binning", "N", o.camera.binning, {1, 64}, "Sum N x N pixels in the camera.")
       .default_is("camera.binning");
+  app.option("--gain", "VALUE", o.camera.gain, cli::any, "Gain, in dB or the camera's own steps.")
+      .default_is("camera.gain, else as the camera has it");
+  app.option("--black-level", "VALUE", o.camera.black_level, cli::any, "Black level, in the camera's own unit.")
+      .default_is("camera.black_level, else as the camera has it");
+  app.option("--gamma", "N", o.camera.gamma, {0.1, 10}, "Gamma of the camera; 1 is linear.");
   app.option("--trigger", "SOURCE", o.camera.trigger, "free, software, or an input line of the camera (Line0).");
   app.option("--format", "NAME", o.camera.format, "Pixel format, in the camera's naming (Mono8, Mono16, GREY, Y16).");
   app.option("--timeout", "S", o.camera.timeout_s, {0.01, 86400}, "Longest wait for a frame.")

@@ -66,6 +66,8 @@ struct PrinterCamera {
   int binning = 1;
   double exposure_us = 20000;
   double fps = 10;
+  std::optional<double> gain;         // as the camera counts it; absent: as it has it
+  std::optional<double> black_level;  // the same
   double latency_ms = 0;              // from the end of an exposure to its time stamp, as it arrives
   double index_resin = 1.53;          // at the camera's wavelength
   double absorption_per_mm = 0;       // of the resin there, natural logarithm of intensity lost per mm

@@ -63,6 +63,11 @@ taken = [json.loads(line) for line in open("swept/manifest.jsonl")][1:]
 print(all(e["levels"] == sent[e["number"]]["levels"] for e in taken), len({e["levels"] for e in taken}) >= 5)
 PY
 is 'exactly as sent, and the line moved: five places and black' "$(cat seen)" 'True True'
+ok 'software trigger: a frame each' $take --trigger software --frames 5 -o asked/ --report asked.json
+is 'all of them' "$(ls asked | grep -c png) $(json asked.json missing)" '5 0'
+is 'the gain, and that its automatic is off' "$(json asked.json gain) $(json asked.json automatic_off)" "0.0 ['GainAuto']"
+fails 64 'has no setting for black level; omit it' $take --black-level 3 --frames 1 -o no.exr
+fails 64 'has no setting for gamma; omit it' $take --gamma 2 --frames 1 -o no.exr
 camera_down
 fails 69 'no such camera' vam-capture --device aravis:127.0.0.9 --frames 1 -o none.exr
 done_testing

@@ -22,9 +22,14 @@ namespace {
 
 Json facts(device::Camera& camera) {
   const device::CameraMode mode = camera.mode();
-  return {{"camera", camera.identify()}, {"columns", mode.columns}, {"rows", mode.rows},
-          {"bits", mode.bits},           {"fps", mode.fps},         {"exposure_us", mode.exposure_us},
-          {"binning", mode.binning}};
+  Json facts{{"camera", camera.identify()}, {"columns", mode.columns}, {"rows", mode.rows},
+             {"bits", mode.bits},           {"fps", mode.fps},         {"exposure_us", mode.exposure_us},
+             {"binning", mode.binning}};
+  if (mode.gain) facts["gain"] = *mode.gain;
+  if (mode.gamma) facts["gamma"] = *mode.gamma;
+  if (mode.black_level) facts["black_level"] = *mode.black_level;
+  if (!mode.automatic_off.empty()) facts["automatic_off"] = mode.automatic_off;
+  return facts;
 }
 
 constexpr const char* simulated_frames = "frames of a simulated camera";  // in the history of a stack
@@ -33,6 +38,7 @@ bool is_folder(const std::string& path) { return path != "-" && !std::filesystem
 
 device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
   device::CapturePlan plan;
+  plan.triggered = o.camera.trigger == "software";
   plan.every_deg = o.every_deg;
   plan.by_number = is_folder(o.output);
   plan.latency_s = 1e-3 * o.latency_ms.value_or(printer.camera.latency_ms);
@@ -148,6 +154,8 @@ std::unique_ptr<device::Camera> open_camera(const Options& options, const model:
     settings.exposure_us = settings.exposure_us.value_or(printer.camera.exposure_us);
     settings.fps = settings.fps.value_or(printer.camera.fps);
     settings.binning = settings.binning.value_or(printer.camera.binning);
+    if (!settings.gain) settings.gain = printer.camera.gain;
+    if (!settings.black_level) settings.black_level = printer.camera.black_level;
   }
   return device::open_camera(device, settings, {open_recording, printer, {}}, device::real_clock());
 }

@@ -1,4 +1,4 @@
-// GenICam cameras (USB3 Vision, GigE Vision) by Aravis. glib stays in this file.
+// GenICam cameras (USB3 Vision, GigE Vision) by Aravis. glib stays here and in aravis_levels.cpp.
 #include <arv.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/camera/camera_backends.hpp"
+#include "device/camera/private/aravis_levels.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
 #include "device/os/identity.hpp"
@@ -31,29 +32,6 @@ struct Unref {
 };
 template <class Object>
 using Handle = std::unique_ptr<Object, Unref>;
-
-// Collects Aravis's messages; one problem at a time.
-class Problem {
- public:
-  ~Problem() { g_clear_error(&error_); }
-  Problem() = default;
-  Problem(const Problem&) = delete;
-  Problem& operator=(const Problem&) = delete;
-  operator GError**() {  // NOLINT: the calls of Aravis take it as their last argument
-    g_clear_error(&error_);
-    return &error_;
-  }
-  [[nodiscard]] bool there() const { return error_ != nullptr; }
-  [[nodiscard]] bool timed_out() const {
-    return there() && error_->domain == ARV_DEVICE_ERROR &&
-           (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
-            error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
-  }
-  [[nodiscard]] std::string text() const { return there() ? error_->message : "no reason given"; }
-
- private:
-  GError* error_ = nullptr;
-};
 
 struct Format {
   const char* name;
@@ -111,6 +89,7 @@ class AravisCamera final : public Camera {
     }
     choose_format();
     set_binning();
+    set_levels(camera_.get(), name_, settings_, mode_);
     set_exposure();
     set_rate();
     set_trigger();
@@ -260,9 +239,6 @@ class AravisCamera final : public Camera {
   void set_exposure() {
     if (!settings_.exposure_us) return;
     Problem problem;
-    if (arv_camera_is_exposure_auto_available(camera_.get(), problem) != 0) {
-      arv_camera_set_exposure_time_auto(camera_.get(), ARV_AUTO_OFF, problem);
-    }
     arv_camera_set_exposure_time(camera_.get(), *settings_.exposure_us, problem);
     check(problem, "exposure");
   }

@@ -21,9 +21,12 @@ namespace vam::device {
 struct CameraSettings {
   std::optional<double> exposure_us;
   std::optional<double> fps;
-  std::optional<int> binning;    // both ways
-  std::string trigger = "free";  // free, software, or the name of an input line
-  std::string format;            // GenICam or V4L2 name of the pixel format; empty: the first grey one
+  std::optional<int> binning;         // both ways
+  std::optional<double> gain;         // dB (GenICam) or the camera's own steps (V4L2, GainRaw)
+  std::optional<double> black_level;  // in the camera's own unit
+  double gamma = 1;                   // intensity to grey level; 1: linear, as every measurement needs it
+  std::string trigger = "free";       // free, software, or the name of an input line
+  std::string format;                 // GenICam or V4L2 name of the pixel format; empty: the first grey one
   std::optional<double> timeout_s;
 
   /// The longest wait for a frame: timeout_s, else a second more than three frame periods and an exposure.
@@ -38,6 +41,9 @@ struct CameraMode {
   double exposure_us = 0;  // 0: the camera does not say
   double fps = 0;          // 0: the camera does not say
   int binning = 1;
+  // Empty: the camera does not say, or has it not.
+  std::optional<double> gain, gamma, black_level;
+  std::vector<std::string> automatic_off;  // what it has of automatics; all are switched off
 };
 
 /// An image with the facts of its taking.

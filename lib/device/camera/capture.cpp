@@ -118,6 +118,7 @@ CaptureTally capture(Camera& camera, AngleSource* angles, const CapturePlan& pla
   if (angles != nullptr) angles->update();
   camera.start();
   for (;;) {
+    if (plan.triggered) camera.trigger();
     auto frame = camera.next();
     if (!frame) break;
     if (angles != nullptr) angles->update();

@@ -11,6 +11,7 @@
 namespace vam::device {
 
 struct CapturePlan {
+  bool triggered = false;           // each frame is asked for (trigger "software")
   long frames = 0;                  // places to fill; 0: without end
   std::optional<double> every_deg;  // a place is an angle, k * every_deg
   bool by_number = false;           // without every_deg: a place is a frame number, else the n-th frame received

@@ -62,9 +62,10 @@ class ReplayCamera final : public Camera {
 std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraSettings& settings,
                                            const CameraBench& bench, Clock& clock) {
   address.allow({"pace"});
-  if (settings.exposure_us || settings.fps || settings.binning || settings.trigger != "free") {
-    throw Error{Fault::usage,
-                "device '" + address.text + "': exposure, rate, binning and trigger of a recording are fixed"};
+  if (settings.exposure_us || settings.fps || settings.binning || settings.trigger != "free" || settings.gain ||
+      settings.black_level || settings.gamma != 1) {
+    throw Error{Fault::usage, "device '" + address.text +
+                                  "': exposure, rate, binning, trigger and grey levels of a recording are fixed"};
   }
   return std::make_unique<ReplayCamera>(address.place, in_real_pace(address, "virtual"), bench, clock);
 }

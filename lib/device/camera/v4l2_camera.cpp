@@ -89,6 +89,7 @@ class V4l2Camera final : public Camera {
     }
     check_capture();
     choose_format();
+    set_levels();
     set_exposure();
     set_rate();
     map_buffers(address.integer("buffers", 2, 64).value_or(10));
@@ -198,6 +199,47 @@ class V4l2Camera final : public Camera {
     stride_ = size.fmt.pix.bytesperline;
   }
 
+  // Empty: the camera has no such control.
+  std::optional<int> level(std::uint32_t id, std::optional<double> wanted, const std::string& what) {
+    auto value = cleared<v4l2_control>();
+    value.id = id;
+    if (driver_->control(VIDIOC_G_CTRL, &value) != 0) {
+      if (!wanted) return std::nullopt;
+      throw Error{Fault::usage, path_ + ": has no setting for " + what + "; omit it"};
+    }
+    if (!wanted) return value.value;
+    value.value = static_cast<int>(std::lround(*wanted));
+    ask(VIDIOC_S_CTRL, &value, "rejects the " + what + " (VIDIOC_S_CTRL)");
+    ask(VIDIOC_G_CTRL, &value, "does not report the " + what + " (VIDIOC_G_CTRL)");
+    check(what, *wanted, value.value, 0.5);
+    return value.value;
+  }
+
+  // Automatics first: with one of them on a value holds until the next frame.
+  void set_levels() {
+    struct Automatic {
+      std::uint32_t id;
+      const char* name;
+    };
+    constexpr std::array automatics{Automatic{V4L2_CID_AUTOGAIN, "gain"},
+                                    Automatic{V4L2_CID_AUTOBRIGHTNESS, "brightness"},
+                                    Automatic{V4L2_CID_AUTO_WHITE_BALANCE, "white balance"},
+                                    Automatic{V4L2_CID_EXPOSURE_AUTO_PRIORITY, "exposure priority"},
+                                    Automatic{V4L2_CID_BACKLIGHT_COMPENSATION, "backlight compensation"}};
+    for (const auto& [id, name] : automatics) {
+      if (!level(id, std::nullopt, name)) continue;
+      level(id, 0, std::string("automatic ") + name);
+      mode_.automatic_off.emplace_back(name);
+    }
+    constexpr double hundredths = 100;  // USB Video Class 1.5, 4.2.2.3.12: 100 is linear
+    const bool has_gamma = settings_.gamma != 1 || level(V4L2_CID_GAMMA, std::nullopt, "gamma");
+    const auto gamma =
+        has_gamma ? level(V4L2_CID_GAMMA, hundredths * settings_.gamma, "gamma in hundredths") : std::nullopt;
+    if (gamma) mode_.gamma = *gamma / hundredths;
+    mode_.gain = level(V4L2_CID_GAIN, settings_.gain, "gain");
+    mode_.black_level = level(V4L2_CID_BRIGHTNESS, settings_.black_level, "black level (brightness)");
+  }
+
   // Read back: a control that the camera rounds by more than a hundredth is not what was asked for.
   void set_exposure() {
     auto value = cleared<v4l2_control>();
@@ -229,7 +271,7 @@ class V4l2Camera final : public Camera {
   }
 
   void check(const std::string& what, double wanted, double got, double grain) const {
-    if (std::abs(wanted - got) <= 0.01 * wanted + grain) return;
+    if (std::abs(wanted - got) <= 0.01 * std::abs(wanted) + grain) return;
     throw Error{Fault::protocol, path_ + ": the " + what + " reads back as " + format_number(got) + " instead of " +
                                      format_number(wanted) + "; choose a supported value"};
   }

@@ -69,6 +69,8 @@ const std::vector<PrinterField> fields{
     {"camera", "binning", at<&Printer::camera, &PrinterCamera::binning>, "pixels per axis", 1, 64},
     {"camera", "exposure_us", at<&Printer::camera, &PrinterCamera::exposure_us>, "exposure time", 0, 1e9, true},
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
+    {"camera", "gain", at<&Printer::camera, &PrinterCamera::gain>, "in dB or the camera's own steps; as it has it if absent", -1e6, 1e6},
+    {"camera", "black_level", at<&Printer::camera, &PrinterCamera::black_level>, "in the camera's own unit; as it has it if absent", -1e6, 1e6},
     {"camera", "latency_ms", at<&Printer::camera, &PrinterCamera::latency_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
     {"camera", "index_resin", at<&Printer::camera, &PrinterCamera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
     {"camera", "absorption_per_mm", at<&Printer::camera, &PrinterCamera::absorption_per_mm>, "of the resin at the camera's wavelength, natural logarithm", 0, 1e3},

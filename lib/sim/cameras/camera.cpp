@@ -109,7 +109,14 @@ class SimCamera final : public device::Camera {
             {"simulated", true}};
   }
   device::CameraMode mode() const override {
-    return {scene_.columns(), scene_.rows(), sim_.bits, sim_.exposure_us, sim_.fps, binning_};
+    device::CameraMode mode;
+    mode.columns = scene_.columns();
+    mode.rows = scene_.rows();
+    mode.bits = sim_.bits;
+    mode.exposure_us = sim_.exposure_us;
+    mode.fps = sim_.fps;
+    mode.binning = binning_;
+    return mode;
   }
   void start() override {
     start_s_ = clock_.now_s();

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -22,6 +23,8 @@ namespace {
 
 // Packets of a cut frame that are lost, by a generator with a fixed seed: some of them, rarely all.
 constexpr double cut_ratio = 0.4;
+constexpr unsigned gain_auto_off = 1;  // and 2 is Continuous, in the description of Aravis' fake camera
+constexpr unsigned gain_auto_on = 2;
 constexpr double readout_s = 0.004;  // from the end of an exposure to the time stamp
 
 // Aravis' own description lets the region be as large as the sensor whatever the binning is; no real camera does.
@@ -124,9 +127,10 @@ struct SimGvCamera::State {
     // The exposure ended a while ago: what was on until then has come to the logs.
     const double end_s = now_s - readout_s - settings.lag_s;
     const double middle_s = end_s - 0.5e-6 * exposure_us;
-    const GreyImage levels =
+    GreyImage levels =
         region(scene->render(world->during(end_s - 1e-6 * exposure_us, end_s), exposure_us, number), buffer);
     const SimMoment moment = world->at(middle_s);
+    amplify(levels, number);
     copy(levels, buffer);
     const bool lost = settings.lose.contains(number);
     const bool cut = settings.cut.contains(number);
@@ -140,6 +144,18 @@ struct SimGvCamera::State {
          {"angle_deg", moment.angle_deg},
          {"lit_s", moment.lit_s},
          {"levels", fingerprint(levels)}});
+  }
+
+  // Gain in dB, as many makers count GainRaw or Gain; while it is automatic, as cameras are delivered, it wanders.
+  void amplify(GreyImage& levels, long number) const {
+    const bool automatic = get(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE) != gain_auto_off;
+    const double gain_db = automatic ? 3 + 3 * std::sin(static_cast<double>(number))
+                                     : static_cast<double>(get(ARV_FAKE_CAMERA_REGISTER_GAIN_RAW));
+    if (gain_db == 0) return;
+    const double factor = std::pow(10, gain_db / 20);
+    for (auto& level : levels.values) {
+      level = static_cast<std::uint16_t>(std::min<double>(levels.full(), std::round(factor * level)));
+    }
   }
 
   // The part of the sensor that the client asked for; black beyond it.
@@ -184,6 +200,7 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
   set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, settings.bench.rows);
   set(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, 1e6 / settings.fps);
   set(ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US, settings.exposure_us);
+  set(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE, gain_auto_on);
   arv_fake_camera_set_fill_pattern(
       camera,
       [](ArvBuffer* buffer, void* state, guint32 exposure_us, guint32, ArvPixelFormat format) {

@@ -107,6 +107,27 @@ TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full
   CHECK_FALSE(to_grey(deep, 3, 1, 0, PixelLayout::words, 12, image));
 }
 
+TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and read back") {
+  VirtualClock clock;
+  V4l2Script script;
+  CHECK(v4l2(script, clock)->mode().gain == 17);  // as the camera has it
+  CHECK(script.controls.at(V4L2_CID_AUTOGAIN) == 0);
+  CHECK(script.controls.at(V4L2_CID_GAMMA) == 100);
+  CameraSettings settings;
+  settings.gain = 40;
+  const auto camera = v4l2(script, clock, settings);
+  CHECK(camera->mode().gain == 40);
+  CHECK(camera->mode().gamma == 1.0);
+  CHECK_FALSE(camera->mode().black_level.has_value());
+  CHECK(camera->mode().automatic_off == std::vector<std::string>{"gain"});
+  script.controls[V4L2_CID_AUTOGAIN] = 1;
+  script.stuck = {V4L2_CID_AUTOGAIN};
+  error_of([&] { (void)v4l2(script, clock, settings); }, Fault::protocol);
+  settings.black_level = 3;
+  script.stuck.clear();
+  error_of([&] { (void)v4l2(script, clock, settings); }, Fault::usage);
+}
+
 TEST_CASE("V4L2: grey first, settings read back, sequence gaps and the error flag") {
   VirtualClock clock;
   V4l2Script script;

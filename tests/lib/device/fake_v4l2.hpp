@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "device/camera/v4l2_driver.hpp"
@@ -23,6 +25,9 @@ struct V4l2Script {
   int rate_limit = 1000;  // frames a second; faster is not taken
   bool gone = false;      // after the last frame: unplugged, else silent
   int exposure = 0;       // seen
+  std::map<__u32, int> controls{
+      {V4L2_CID_AUTOGAIN, 1}, {V4L2_CID_GAIN, 17}, {V4L2_CID_GAMMA, 220}};  // besides, as it is
+  std::set<__u32> stuck;                                                    // take no value
 };
 
 class FakeV4l2 final : public vam::device::V4l2Driver {
@@ -70,6 +75,11 @@ class FakeV4l2 final : public vam::device::V4l2Driver {
       case VIDIOC_S_CTRL:
       case VIDIOC_G_CTRL: {
         auto& value = *static_cast<v4l2_control*>(argument);
+        if (const auto known = script_.controls.find(value.id); known != script_.controls.end()) {
+          if (request == VIDIOC_S_CTRL && !script_.stuck.contains(value.id)) known->second = value.value;
+          value.value = known->second;
+          return 0;
+        }
         if (value.id != V4L2_CID_EXPOSURE_ABSOLUTE) return fail(EINVAL);
         (request == VIDIOC_S_CTRL ? script_.exposure : value.value) =
             request == VIDIOC_S_CTRL ? value.value : script_.exposure;
