@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "device/stage/ripple_fit.hpp"
 
 namespace vam::device {
 
@@ -101,7 +102,7 @@ class FollowedAngle final : public AngleSource {
   long lines_ = 0;
   double heard_s_ = 0;
   AngleSample last_;
-  AngleFit fit_;
+  RippleFit fit_;
 };
 
 }  // namespace
