@@ -38,7 +38,7 @@ LightView::LightView(const std::string& sinogram, const model::Printer& printer)
       }
       thinned_.push_back(std::move(thin));
     }
-    if (slice == info_.count / 2) middle_ = std::move(image);
+    if (slice == middle_slice()) middle_ = std::move(image);
   }
   model::StackInfo one = info_;
   one.count = 1;

@@ -36,10 +36,11 @@ class LightView {
   [[nodiscard]] double half_width_mm() const { return 0.5 * info_.width * info_.pixel_mm; }
   [[nodiscard]] double low_mm() const { return info_.z_start_mm - 0.5 * info_.row_mm; }
   [[nodiscard]] double high_mm() const { return low_mm() + info_.count * info_.row_mm; }
-  [[nodiscard]] double middle_mm() const { return info_.z_start_mm + info_.count / 2 * info_.row_mm; }
+  [[nodiscard]] double middle_mm() const { return info_.z_start_mm + middle_slice() * info_.row_mm; }
   [[nodiscard]] double resin_mm() const;
 
  private:
+  [[nodiscard]] int middle_slice() const { return info_.count / 2; }
   [[nodiscard]] int row_of(double angle_deg) const;
   [[nodiscard]] Image expose(const std::vector<double>& turns) const;
 

@@ -24,11 +24,9 @@ void RippleFit::begin(const AngleSample& sample) {
   state_[0] = sample.angle_deg;
   spread_[0][0] = sample.sigma_deg * sample.sigma_deg;
   spread_[1][1] = unknown_speed_deg_s * unknown_speed_deg_s;
-  for (int k = 1; k <= harmonics; ++k) {
-    const double sigma_deg = likely_ripple_deg / k;
-    for (const int place : {2 * k, 2 * k + 1}) {
-      spread_[static_cast<std::size_t>(place)][static_cast<std::size_t>(place)] = sigma_deg * sigma_deg;
-    }
+  for (std::size_t k = 1; k <= harmonics; ++k) {
+    const double sigma_deg = likely_ripple_deg / static_cast<double>(k);
+    for (const std::size_t place : {2 * k, 2 * k + 1}) spread_[place][place] = sigma_deg * sigma_deg;
   }
   first_s_ = t_s_ = sample.t_s;
 }
@@ -37,9 +35,9 @@ RippleFit::Vector RippleFit::seen_at(double angle_deg) {
   Vector seen{};
   seen[0] = 1;
   const double step = angle_deg * rad_per_deg;
-  for (int k = 1; k <= harmonics; ++k) {
-    seen[static_cast<std::size_t>(2 * k)] = std::cos(k * step);
-    seen[static_cast<std::size_t>(2 * k + 1)] = std::sin(k * step);
+  for (std::size_t k = 1; k <= harmonics; ++k) {
+    seen[2 * k] = std::cos(static_cast<double>(k) * step);
+    seen[2 * k + 1] = std::sin(static_cast<double>(k) * step);
   }
   return seen;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <cstddef>
 
 #include "device/stage/angle_fit.hpp"
 
@@ -20,8 +20,8 @@ class RippleFit {
   [[nodiscard]] AngleSample at(double t_s) const;
 
  private:
-  static constexpr int harmonics = 24;  // of the turn: periods down to 15 degrees
-  static constexpr int size = 2 + 2 * harmonics;
+  static constexpr std::size_t harmonics = 24;  // of the turn: periods down to 15 degrees
+  static constexpr std::size_t size = 2 + 2 * harmonics;
   using Vector = std::array<double, size>;
 
   void begin(const AngleSample& sample);
