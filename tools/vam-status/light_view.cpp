@@ -106,12 +106,8 @@ Image LightView::expose(const std::vector<double>& turns) const {
 }
 
 Image LightView::dose(const std::vector<io::ShownImage>& shown) const {
-  const std::vector<double> given = io::turns_shown(shown, info_.height, printer_.stage.speed_deg_s);
-  std::vector<double> turns(given.size());  // the log counts angles from 0, the stack from where it begins
-  for (int row = 0; row < info_.height; ++row) {
-    turns[static_cast<std::size_t>(row_of(row * info_.angle_step_deg))] = given[static_cast<std::size_t>(row)];
-  }
-  return expose(turns);
+  const io::StageRows rows{info_.height, info_.angle_start_deg, info_.angle_step_deg};
+  return expose(io::turns_shown(shown, rows, printer_.stage.speed_deg_s));
 }
 
 }  // namespace vam::status_tool
