@@ -12,6 +12,7 @@
 #include "sim/controllers/grbl.hpp"
 #include "sim/controllers/options.hpp"
 #include "sim/controllers/pty_host.hpp"
+#include "sim/controllers/zaber.hpp"
 
 namespace {
 
@@ -48,7 +49,10 @@ cli::Manual manual() {
       {"Faults. --fault KIND@COMMAND[:N] injects a fault at the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): "
        "garbage, truncated, late (3 s) or silent answers, wrong-sender (an answer of controller 7), error (the command "
        "is rejected), unplug (the cable is disconnected; the motion continues), power-loss (the controller fails and "
-       "the stage coasts to a stop) and block (the stage is blocked while the controller keeps answering)."},
+       "the stage coasts to a stop), block (the stage is blocked while the controller keeps answering) and stall (the "
+       "same, and a Zaber controller reports it). A command of a Zaber stage is named by its first words (get pos, "
+       "move "
+       "abs, home)."},
       {"vam-stage", "vam-sim-camera"},
       {},
       {{69, "No pseudo-terminal is available."}, {129, "SIGHUP."}, {130, "SIGINT."}, {143, "SIGTERM."}}};
@@ -70,15 +74,17 @@ void declare(cli::App& app, Options& options) {
   app.option("--max", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.");
   app.option("--at", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
   app.group("Serial line");
-  app.choice("--protocol", options.protocol, {"gcs", "grbl"},
-             "A PI controller, or a GRBL 1.1 board with the stage on axis X.");
+  app.choice("--protocol", options.protocol, {"gcs", "grbl", "zaber"},
+             "A PI controller, a GRBL 1.1 board with the stage on axis X, or a Zaber rotary stage.");
   app.option("--latency", "MS", options.latency_ms, {0, 1000}, "Time from question to answer.");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
              "Additional random time, before and after the angle is sampled.");
   app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept this rate only.");
-  app.option("--address", "N", options.stage.address, {1, 16}, "Address of the controller in a daisy chain.");
+  app.option("--address", "N", options.stage.address, {1, 99},
+             "Address of the controller in a daisy chain (GCS: 16 at most).");
   app.flag("--reset-at-open", options.stage.reset_at_open,
            "GRBL: the board is reset when its port is opened, as most are, and its position is lost.");
+  app.flag("--old-firmware", options.stage.old_firmware, "Zaber: firmware 6.28, which takes no speed with a motion.");
   app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N].");
   app.group("Program");
   app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");
@@ -125,7 +131,9 @@ void run(Options& options) {
   options.stage.jitter_s = 1e-3 * options.jitter_ms;
   options.stage.seed = static_cast<std::uint64_t>(options.seed);
   for (const auto& fault : options.faults) options.stage.faults.push_back(sim::parse_sim_fault(fault));
-  const auto make = options.protocol == "grbl" ? sim::make_sim_grbl : sim::make_sim_gcs;
+  const auto make = options.protocol == "grbl"    ? sim::make_sim_grbl
+                    : options.protocol == "zaber" ? sim::make_sim_zaber
+                                                  : sim::make_sim_gcs;
   const auto stage = make(options.stage, device::real_clock().now_s(), sim::file_sim_log(options.log));
   sim::Pty pty;
   const Link link(options.link, pty.path());

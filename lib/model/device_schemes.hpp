@@ -15,7 +15,8 @@ struct DeviceScheme {
 };
 
 inline constexpr std::array stage_schemes{DeviceScheme{"gcs", "PATH"}, DeviceScheme{"tic", "SERIAL"},
-                                          DeviceScheme{"grbl", "PATH"}, DeviceScheme{"sim", ""}};
+                                          DeviceScheme{"grbl", "PATH"}, DeviceScheme{"zaber", "PATH"},
+                                          DeviceScheme{"sim", ""}};
 inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP"}, DeviceScheme{"v4l2", "PATH"},
                                            DeviceScheme{"replay", "PLACE"}, DeviceScheme{"sim", ""}};
 

@@ -1,5 +1,5 @@
 """Ends vam-stage spin in every way a program can end, again and again, and lets the simulator's own log say when the
-table stood. usage: stage_trials.py TRIALS. Prints a table; exit status 1 when one trial took too long.
+table stood. usage: stage_trials.py TRIALS PROTOCOL (gcs, grbl, zaber). Prints a table; exit status 1 when one trial took too long.
 
 The stage turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the stage's own."""
 
@@ -14,6 +14,9 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
 
+SCHEME = sys.argv[2]
+OPTIONS = {"gcs": "?baud=115200"}.get(SCHEME, "")
+ANGLE_QUERY = {"gcs": "POS?", "grbl": "?", "zaber": "get pos"}[SCHEME]
 LANES = 3  # trials at the same time, each with a table of its own: mostly they wait
 
 
@@ -28,13 +31,13 @@ def standing(event):
 def simulator(folder, *options):
     log = os.path.join(folder, "truth")
     open(log, "w").close()
-    process = subprocess.Popen(["vam-sim-stage", "--acceleration", "2000", "--log", log, "--die-with-parent", *options],
+    process = subprocess.Popen(["vam-sim-stage", "--protocol", SCHEME, "--acceleration", "2000", "--log", log, "--die-with-parent", *options],
                                stdout=subprocess.PIPE, text=True)
     return process, process.stdout.readline().strip(), Log(log)
 
 
 def tool(path, environment):
-    return subprocess.Popen(["vam-stage", "spin", "--device", f"gcs:{path}?baud=115200", "--speed", "60", "--turns", "90"],
+    return subprocess.Popen(["vam-stage", "spin", "--device", f"{SCHEME}:{path}{OPTIONS}", "--speed", "60", "--turns", "90"],
                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment)
 
 
@@ -51,8 +54,14 @@ def running_tool(path, environment, log):
     return None
 
 
+def home(path, environment):
+    """A Zaber stage that was just switched on turns only after this."""
+    subprocess.run(["vam-stage", "home", "--device", f"{SCHEME}:{path}{OPTIONS}"], check=True, env=environment)
+
+
 def trials_on_one_stage(cause, count, folder, environment):
     stage, path, log = simulator(folder)
+    home(path, environment)
     times = []
     for _ in range(count):
         process = running_tool(path, environment, log)
@@ -70,7 +79,8 @@ def trials_on_one_stage(cause, count, folder, environment):
 def trials_of_device_errors(count, folder, environment):
     times = []
     for trial in range(count):
-        stage, path, log = simulator(folder, "--fault", f"garbage@POS?:{30 + trial}")
+        stage, path, log = simulator(folder, "--fault", f"garbage@{ANGLE_QUERY}:{60 + trial}")
+        home(path, environment)
         process = tool(path, environment)
         fault = log.wait(lambda event: event["event"] == "fault", 10)
         stood = log.wait(standing, 3)

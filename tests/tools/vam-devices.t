@@ -28,7 +28,7 @@ stage_up
 list --port "$PWD/stage"
 is 'a port that the system does not list' "$(row "gcs:$PWD/stage")" ''
 ok 'can be named' grep -q "^stage *gcs:$PWD/stage$" list
-for protocol in gcs grbl; do
+for protocol in gcs grbl zaber; do
   stage_down; stage_up --protocol $protocol
   LD_PRELOAD=$shim vam-devices --port "$PWD/stage" --ask >list 2>err
   ok "$protocol: it tells who it is" grep -Eq "^stage +$protocol:$PWD/stage +[A-Z].*simulated" list

@@ -26,7 +26,7 @@ is './printer.toml names it' "$? $(grep -c "^vam-stage: /dev/nope: not a serial 
 fails 69 '/dev/nope' env VAM_PRINTER=lab/printer.toml vam-stage home
 fails 69 '/dev/nope' vam-stage home --printer lab/printer.toml
 fails 65 "odd.toml:2: stage.device: 'usb:1': unknown device scheme" vam-stage home --printer lab/odd.toml
-fails 65 'use one of gcs:, tic:, grbl:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
+fails 65 'use one of gcs:, tic:, grbl:, zaber:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
 fails 64 "camera.device: 'webcam': unknown device scheme" vam-stage home --set camera.device=webcam
 for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
   ok "the printer file knows $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
@@ -131,6 +131,25 @@ is 'one sample per second is not taken for a hang' $? 0
 holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
 ok 'and stands' stood
 stage_down
+
+# A Zaber stage, the second of its chain: it turns only when it is homed, and is told all by its address.
+for old in '' --old-firmware; do
+  stage_up --protocol zaber $old --address 2 --acceleration 5000
+  zaber() { verb=$1; shift; LD_PRELOAD=$shim vam-stage $verb --device "zaber:$PWD/stage?address=2" "$@"; }
+  fails 76 'not referenced' zaber spin --speed 360
+  fails 75 'no answer' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage"
+  fails 76 'BADAXIS' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?address=2&axis=2"
+  fails 64 'axis' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?axis=X"
+  zaber spin --home --speed 360 --run-up 0.25 --rate 1 >samples
+  holds "Zaber${old:+ ($old)} turns too" "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+  ok 'and stands' stood
+  LD_PRELOAD=$shim vam-stage spin --device "zaber:$PWD/stage?address=2" --speed 1 >/dev/null & chained=$!
+  await turning
+  kill -9 $chained; wait $chained 2>/dev/null
+  await stood
+  ok 'killed, it leaves a Zaber stage standing' stood
+  stage_down
+done
 fails 64 'steps_per_deg' vam-stage identify --device tic:
 fails 69 'no such device|not available' vam-stage identify --device 'tic:?steps_per_deg=10'
 

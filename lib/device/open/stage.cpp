@@ -7,6 +7,7 @@
 #include "device/stage/gcs_stage.hpp"
 #include "device/stage/grbl_stage.hpp"
 #include "device/stage/tic_stage.hpp"
+#include "device/stage/zaber_stage.hpp"
 #include "model/device_schemes.hpp"
 #include "sim/controllers/options.hpp"
 
@@ -70,12 +71,27 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
   return stage;
 }
 
+std::unique_ptr<Stage> open_zaber(const Address& address, Clock& clock, Guardian* guardian) {
+  address.allow({"baud", "address", "axis", "steps_per_deg"});
+  ZaberSettings settings;
+  settings.address = address.integer("address", 1, 99).value_or(settings.address);
+  settings.axis = address.integer("axis", 1, 9).value_or(settings.axis);
+  settings.steps_per_deg = address.number("steps_per_deg", settings.steps_per_deg, -1e6, 1e6);
+  auto lock = lock_device(address.place, guardian);
+  auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
+  auto stage = make_zaber_stage(std::move(port), clock, settings, guardian);
+  stage->hold(std::move(lock));
+  (void)stage->fault();  // what a former user left behind
+  return stage;
+}
+
 struct StageBackend {
   const char* scheme;
   std::unique_ptr<Stage> (*open)(const Address& address, Clock& clock, Guardian* guardian);
 };
 
-constexpr StageBackend backends[] = {{"gcs", open_gcs}, {"tic", open_tic}, {"grbl", open_grbl}, {"sim", open_sim}};
+constexpr StageBackend backends[] = {
+    {"gcs", open_gcs}, {"tic", open_tic}, {"grbl", open_grbl}, {"zaber", open_zaber}, {"sim", open_sim}};
 static_assert(model::has_schemes(backends, model::stage_schemes));
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/safety/stop_order.hpp"
+#include "device/stage/private/line_link.hpp"
 
 namespace vam::device {
 
@@ -24,14 +25,14 @@ const std::string soft_reset = "\x18";
 class GrblStage final : public Stage {
  public:
   GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian)
-      : port_(std::move(port)), clock_(clock), axis_(axis), stop_order_(guardian) {
+      : link_(std::move(port)), port_(link_.port()), clock_(clock), axis_(axis), stop_order_(guardian) {
     greet();
   }
 
   ~GrblStage() override {
     if (!stop_order_.standing()) return;
     try {
-      port_->write(homing_ ? soft_reset : jog_cancel);
+      port_.write(homing_ ? soft_reset : jog_cancel);
     } catch (...) {
       // The line is dead for us; the guardian keeps its order.
     }
@@ -70,12 +71,12 @@ class GrblStage final : public Stage {
   bool homed() override {
     if (!homing_) return true;
     stop_order_.beat();
-    const std::string line = next_line(0.05, false);
+    const std::string line = link_.poll_line(0.05);
     if (line.empty()) {
       if (idle_since_s_ && clock_.now_s() > *idle_since_s_ + timeout_s) {
-        throw Error{Fault::busy, port_->name() + ": no answer to '$H' although the board is idle"};
+        throw Error{Fault::busy, port_.name() + ": no answer to '$H' although the board is idle"};
       }
-      port_->write("?");
+      port_.write("?");
       return false;
     }
     if (line.front() == '<') {
@@ -106,7 +107,7 @@ class GrblStage final : public Stage {
 
   StageSample sample() override {
     StageSample now;
-    drain();
+    link_.drain();
     now.t0_s = clock_.now_s();
     const std::string report = status();
     now.t1_s = clock_.now_s();
@@ -115,11 +116,11 @@ class GrblStage final : public Stage {
   }
 
   bool moving() override {
-    drain();
+    link_.drain();
     const std::string report = status();
     const std::string state = state_of(report);
     if (state == "Alarm")
-      throw Error{Fault::protocol, port_->name() + ": alarm state; home the axis or unlock the board with $X"};
+      throw Error{Fault::protocol, port_.name() + ": alarm state; home the axis or unlock the board with $X"};
     const bool moves = state != "Idle";
     if (!moves) stop_order_.withdraw();
     return moves;
@@ -129,7 +130,7 @@ class GrblStage final : public Stage {
   // position. A search for the reference hears nothing else, and has no position yet.
   void stop(Stop) override {
     stop_order_.beat();
-    port_->write(homing_ ? soft_reset : jog_cancel);
+    port_.write(homing_ ? soft_reset : jog_cancel);
     if (homing_) referenced_ = false;
     homing_ = false;
   }
@@ -140,10 +141,10 @@ class GrblStage final : public Stage {
   std::string letter() const { return std::string(1, static_cast<char>('X' + axis_)); }
 
   void greet() {
-    port_->write("\n");
+    port_.write("\n");
     const double deadline_s = clock_.now_s() + wake_s;
     while (clock_.now_s() < deadline_s) {
-      const std::string line = next_line(0.2, false);
+      const std::string line = link_.poll_line(0.2);
       if (line.rfind("Grbl ", 0) == 0) {
         greeting_ = line.substr(0, line.find(" ["));
         referenced_ = false;  // it was reset: its position counts from where it stood
@@ -151,15 +152,15 @@ class GrblStage final : public Stage {
       }
       if (line == "ok") break;  // it was awake
     }
-    drain();
+    link_.drain();
     send("$I");
     for (;;) {
-      const std::string line = next_line(timeout_s, true);
+      const std::string line = link_.need_line(timeout_s);
       if (line == "ok") break;
       if (line.rfind("[VER:", 0) == 0) read_version(line);
       if (line.rfind('[', 0) != 0) {
         throw Error{Fault::protocol,
-                    port_->name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
+                    port_.name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
       }
     }
   }
@@ -175,63 +176,33 @@ class GrblStage final : public Stage {
   void read_settings() {
     send("$$");
     for (;;) {
-      const std::string line = next_line(timeout_s, true);
+      const std::string line = link_.need_line(timeout_s);
       if (line == "ok") return;
       const std::size_t equals = line.find('=');
       const auto value =
           equals == std::string::npos ? std::nullopt : parse_number(split(line.substr(equals + 1), ' ').front());
-      if (line.front() != '$' || !value) throw malformed("$$", line);
+      if (line.front() != '$' || !value) throw link_.malformed("$$", line);
       settings_[line.substr(0, equals)] = *value;
     }
   }
 
-  Error malformed(const std::string& question, const std::string& line) const {
-    return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + line.substr(0, 40) + "'"};
-  }
-
-  void drain() {
-    buffer_.clear();
-    while (!port_->read(1e-9).empty()) continue;
-  }
-
   void send(const std::string& line) {
-    drain();
-    port_->write(line + "\n");
-  }
-
-  std::string next_line(double wait_s, bool needed) {
-    for (;;) {
-      const std::size_t end = buffer_.find('\n');
-      if (end != std::string::npos) {
-        std::string line = buffer_.substr(0, end);
-        buffer_.erase(0, end + 1);
-        if (!line.empty() && line.back() == '\r') line.pop_back();
-        if (!line.empty()) return line;
-        continue;
-      }
-      const std::string bytes = port_->read(wait_s);
-      if (bytes.empty() && needed) {
-        throw Error{Fault::busy, port_->name() + ": no answer within " + format_number(wait_s) +
-                                     " s; check power, cable and baud rate"};
-      }
-      if (bytes.empty()) return "";
-      if (buffer_.size() + bytes.size() > 65536) throw malformed("?", buffer_);
-      buffer_ += bytes;
-    }
+    link_.drain();
+    port_.write(line + "\n");
   }
 
   void require_ok(const std::string& question, const std::string& line) const {
     if (line == "ok") return;
     if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
-      throw Error{Fault::protocol, port_->name() + ": '" + question + "' was refused with " + line};
+      throw Error{Fault::protocol, port_.name() + ": '" + question + "' was refused with " + line};
     }
-    throw malformed(question, line);
+    throw link_.malformed(question, line);
   }
 
   void order(const std::string& line) {
     send(line);
-    std::string answer = next_line(timeout_s, true);
-    while (answer.front() == '[') answer = next_line(timeout_s, true);  // "[MSG:Caution: Unlocked]"
+    std::string answer = link_.need_line(timeout_s);
+    while (answer.front() == '[') answer = link_.need_line(timeout_s);  // "[MSG:Caution: Unlocked]"
     require_ok(line, answer);
     stop_order_.beat();
   }
@@ -240,10 +211,10 @@ class GrblStage final : public Stage {
 
   // "<Jog|MPos:12.000,0.000,0.000|FS:600,0>"
   std::string status() {
-    port_->write("?");
-    std::string line = next_line(timeout_s, true);
-    while (line == "ok") line = next_line(timeout_s, true);
-    if (line.front() != '<' || line.back() != '>') throw malformed("?", line);
+    port_.write("?");
+    std::string line = link_.need_line(timeout_s);
+    while (line == "ok") line = link_.need_line(timeout_s);
+    if (line.front() != '<' || line.back() != '>') throw link_.malformed("?", line);
     stop_order_.beat();
     return line;
   }
@@ -256,7 +227,7 @@ class GrblStage final : public Stage {
     const auto value = parts.size() == 3 ? parse_number(parts[axis_]) : std::nullopt;
     if (!value || !std::isfinite(*value)) {
       throw Error{Fault::protocol,
-                  port_->name() + ": status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
+                  port_.name() + ": status '" + report.substr(0, 60) + "' has no machine position; set $10=1"};
     }
     return *value;
   }
@@ -265,17 +236,17 @@ class GrblStage final : public Stage {
     // Cancels the jog; the LF ends half a line of the dead tool, and the second cancel what that may have started. The
     // reset stops whatever is left.
     const std::string bytes = jog_cancel + "\n" + jog_cancel + "!" + soft_reset;
-    stop_order_.give(bytes, port_->handle());
+    stop_order_.give(bytes, port_.handle());
   }
 
-  std::unique_ptr<Port> port_;
+  LineLink link_;
+  Port& port_;
   Clock& clock_;
   int axis_;
   StopOrder stop_order_;
   std::string greeting_ = "Grbl";
   std::string version_;
   std::string given_name_;
-  std::string buffer_;
   std::map<std::string, double> settings_;
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;

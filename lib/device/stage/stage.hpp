@@ -1,4 +1,4 @@
-// The rotation stage as the tools see it; one backend per file (gcs_stage, tic_stage, grbl_stage).
+// The rotation stage as the tools see it; one backend per file (gcs_stage, tic_stage, grbl_stage, zaber_stage).
 #pragma once
 
 #include <memory>

@@ -216,7 +216,7 @@ class SimGcs final : public SimController {
 
 SimFault parse_sim_fault(const std::string& text) {
   static const std::vector<std::string> kinds{"garbage", "truncated", "late",       "silent", "wrong-sender",
-                                              "error",   "unplug",    "power-loss", "block"};
+                                              "error",   "unplug",    "power-loss", "block",  "stall"};
   const std::size_t at = text.find('@');
   SimFault fault{text.substr(0, at), at == std::string::npos ? "" : text.substr(at + 1), 1};
   const std::size_t colon = fault.command.find(':');

@@ -15,7 +15,7 @@ namespace vam::sim {
 /// garbage: random bytes instead of the answer · truncated: half the answer and no LF · late: 3 s later · silent: never
 /// wrong-sender: as if controller 7 had answered · error: the command is refused · unplug: the cable is pulled, motion
 /// goes on · power-loss: the controller dies and the stage coasts to a stop · block: the
-/// stage is held fast while the controller talks on.
+/// stage is held fast while the controller talks on · stall: the same, and a Zaber controller says so.
 struct SimFault {
   std::string kind;
   std::string command;
@@ -36,6 +36,7 @@ struct SimGcsSettings {
   std::uint64_t seed = 1;
   int address = 1;
   bool reset_at_open = false;  // GRBL, as most boards do by the DTR line: greets, and counts from where it stands
+  bool old_firmware = false;   // Zaber: 6.28, which takes no speed with a motion
   double log_period_s = 0.01;  // of the true angle, while the stage moves
   std::vector<SimFault> faults;
 };

@@ -18,25 +18,9 @@ using namespace vam::sim;
 
 namespace {
 
-struct GrblLab {
-  explicit GrblLab(const SimGcsSettings& sim = {})
-      : device(make_sim_grbl(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })) {}
-  void open() {
-    stage = make_grbl_stage(make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, 0, nullptr);
-  }
-  bool truly_moves() {
-    device->advance(clock.now_s());
-    bool moves = false;
-    for (const auto& line : log) {
-      if (line["event"] == "moving") moves = true;
-      if (line["event"] == "standing") moves = false;
-    }
-    return moves;
-  }
-  VirtualClock clock;
-  std::vector<Json> log;
-  std::shared_ptr<SimDevice> device;
-  std::unique_ptr<Stage> stage;
+struct GrblLab : StageLab {
+  explicit GrblLab(const SimGcsSettings& sim = {}) : StageLab(make_sim_grbl, sim) {}
+  void open() { stage = make_grbl_stage(port(), clock, 0, nullptr); }
 };
 
 }  // namespace

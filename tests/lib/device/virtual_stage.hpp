@@ -22,12 +22,17 @@ class SharedDevice final : public sim::SimDevice {
   std::shared_ptr<sim::SimDevice> device_;
 };
 
-struct VirtualStage {
-  explicit VirtualStage(const sim::SimGcsSettings& sim = {}, const GcsSettings& gcs = {})
-      : device(sim::make_sim_gcs(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })),
-        stage(make_gcs_stage(sim::make_sim_port(std::make_unique<SharedDevice>(device), clock), clock, gcs, "1",
-                             nullptr)) {}
+/// A simulated controller, its log, and the stage that is opened on it.
+struct StageLab {
+  using MakeSim = std::unique_ptr<sim::SimDevice> (*)(const sim::SimGcsSettings&, double, sim::SimLog);
+  StageLab(MakeSim make, const sim::SimGcsSettings& sim)
+      : device(make(sim, clock.now_s(), [this](const Json& line) { log.push_back(line); })) {}
+  StageLab(const StageLab&) = delete;
+  StageLab& operator=(const StageLab&) = delete;
 
+  [[nodiscard]] std::unique_ptr<Port> port() {
+    return sim::make_sim_port(std::make_unique<SharedDevice>(device), clock);
+  }
   /// The last of "moving" and "standing" in the simulator's own log.
   [[nodiscard]] bool truly_moves() {
     device->advance(clock.now_s());
@@ -50,6 +55,13 @@ struct VirtualStage {
   std::vector<Json> log;
   std::shared_ptr<sim::SimDevice> device;
   std::unique_ptr<Stage> stage;
+};
+
+struct VirtualStage : StageLab {
+  explicit VirtualStage(const sim::SimGcsSettings& sim = {}, const GcsSettings& gcs = {})
+      : StageLab(sim::make_sim_gcs, sim) {
+    stage = make_gcs_stage(port(), clock, gcs, "1", nullptr);
+  }
 };
 
 }  // namespace vam::device
