@@ -12,6 +12,7 @@
 #include "sim/controllers/grbl.hpp"
 #include "sim/controllers/options.hpp"
 #include "sim/controllers/pty_host.hpp"
+#include "sim/controllers/relay.hpp"
 #include "sim/controllers/zaber.hpp"
 
 namespace {
@@ -41,6 +42,9 @@ cli::Manual manual() {
        "be powered and referenced, and rejects commands with the error codes of the controller.",
        "Its log is the reference for tests of the tools: one JSON line per received command, per start, standstill and "
        "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
+       "With --protocol relay it is the dead-man relay of vam-devices(7), which opens 0.3 s after the last heartbeat; "
+       "the "
+       "log says when and why.",
        "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded, whose path "
        "--shim prints."},
       {{"Identify a simulated stage",
@@ -74,8 +78,10 @@ void declare(cli::App& app, Options& options) {
   app.option("--max", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.");
   app.option("--at", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
   app.group("Serial line");
-  app.choice("--protocol", options.protocol, {"gcs", "grbl", "zaber"},
-             "A PI controller, a GRBL 1.1 board with the stage on axis X, or a Zaber rotary stage.");
+  app.choice(
+      "--protocol", options.protocol, {"gcs", "grbl", "zaber", "relay"},
+      "A PI controller, a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man relay of "
+      "a lamp.");
   app.option("--latency", "MS", options.latency_ms, {0, 1000}, "Time from question to answer.");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
              "Additional random time, before and after the angle is sampled.");
@@ -133,6 +139,7 @@ void run(Options& options) {
   for (const auto& fault : options.faults) options.stage.faults.push_back(sim::parse_sim_fault(fault));
   const auto make = options.protocol == "grbl"    ? sim::make_sim_grbl
                     : options.protocol == "zaber" ? sim::make_sim_zaber
+                    : options.protocol == "relay" ? sim::make_sim_relay
                                                   : sim::make_sim_gcs;
   const auto stage = make(options.stage, device::real_clock().now_s(), sim::file_sim_log(options.log));
   sim::Pty pty;

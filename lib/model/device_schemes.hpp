@@ -20,6 +20,8 @@ inline constexpr std::array stage_schemes{DeviceScheme{"gcs", "PATH"}, DeviceSch
 inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP"}, DeviceScheme{"v4l2", "PATH"},
                                            DeviceScheme{"replay", "PLACE"}, DeviceScheme{"sim", ""}};
 
+inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH"}, DeviceScheme{"sim", ""}};
+
 /// "a:PATH, b:SERIAL or sim:", of a table whose rows have a scheme and a place.
 [[nodiscard]] std::string forms_of(const auto& table) {
   std::string forms;

@@ -27,6 +27,7 @@ struct Projector {
   std::string orientation = "normal";   // normal, flip-columns, flip-rows, rotate-180
   double latency_ms = 0;                // from a vertical blank to the light
   double max_led_current_percent = 40;  // of the light engine; more is refused
+  std::string relay;                    // dead-man relay on the lamp's power; empty: none
 };
 
 struct Vial {

@@ -3,6 +3,7 @@
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
+#include "device/open/relay.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/os/realtime.hpp"
 
@@ -11,6 +12,8 @@ namespace vam::project {
 Live::Live(const LiveOptions& options, const std::string& output, const device::DisplayMode& wanted)
     : options_(options), log_(options.log), clock_(device::real_clock()) {
   if (options.with_parent) device::end_with_parent();
+  relay_ = device::open_relay(options.relay, &guardian_);
+  if (relay_ != nullptr) log_("relay", relay_->identify());
   if (!options.light.empty()) light_ = device::open_light(options.light, options.max_led_current_percent, &guardian_);
   display_ = device::open_display(output, wanted, clock_, &guardian_);
   const auto mode = display_->mode();
@@ -26,10 +29,16 @@ void Live::add(const GreyImage& levels) {
   ++frames_;
 }
 
+// From here on each flip is a heartbeat.
+void Live::begin() {
+  device::hurry(device::Urgency::driver);
+  if (relay_ != nullptr) relay_->close();
+}
+
 device::PlayTally Live::play(double speed_deg_s, int turns) {
   const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
                                               : device::followed_angle(options_.follow, clock_);
-  device::hurry(device::Urgency::driver);
+  begin();
   device::PlayPlan plan;
   plan.frames_per_turn = frames_;
   plan.turns = turns;
@@ -41,11 +50,12 @@ device::PlayTally Live::play(double speed_deg_s, int turns) {
 }
 
 device::PlayTally Live::play_through(double hold_s, bool forever) {
-  device::hurry(device::Urgency::driver);
+  begin();
   return ended(device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger()));
 }
 
 device::PlayTally Live::ended(const device::PlayTally& tally) {
+  if (relay_ != nullptr) relay_->open();
   log_("end", {{"flips", tally.flips}, {"lit", tally.lit}, {"missed", tally.missed}});
   return tally;
 }
@@ -53,6 +63,7 @@ device::PlayTally Live::ended(const device::PlayTally& tally) {
 std::function<void(const device::FlipRecord&)> Live::logger() {
   return [this](const device::FlipRecord& record) {
     guardian_.beat();
+    if (relay_ != nullptr) relay_->beat();
     log_.at(record.flip.time_s, "flip", device::to_json(record));
   };
 }

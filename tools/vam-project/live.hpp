@@ -9,6 +9,7 @@
 
 #include "device/os/event_log.hpp"
 #include "device/projector/player.hpp"
+#include "device/safety/relay.hpp"
 #include "io/image/frame_sink.hpp"
 #include "vam-project/options.hpp"
 
@@ -28,6 +29,7 @@ class Live {
   device::PlayTally play_through(double hold_s, bool forever);
 
  private:
+  void begin();
   device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();
 
@@ -35,6 +37,7 @@ class Live {
   device::Guardian guardian_;  // first: it forks before any thread, window or device
   device::EventLog log_;
   device::Clock& clock_;
+  std::unique_ptr<device::Relay> relay_;
   std::unique_ptr<device::LightEngine> light_;
   std::unique_ptr<device::Display> display_;
   int frames_ = 0;

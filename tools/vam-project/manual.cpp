@@ -68,7 +68,12 @@ cli::Manual manual() {
        "or misses too many flips, the screen is black and the light engine dark within 100 ms, by a child process, the "
        "guardian. This is software and no interlock: install a hardware interlock that cuts the lamp. A closed window "
        "shows the desktop behind it, so make that black and keep the pointer on another screen. The LED current never "
-       "exceeds projector.max_led_current_percent. After a print on drm:, Linux may return its text console to the "
+       "exceeds projector.max_led_current_percent. With projector.relay, a relay on the lamp's supply hears a "
+       "heartbeat "
+       "as long as frames are flipped, and opens by itself otherwise, even when the machine has died; without its "
+       "answer "
+       "there is no light (vam-devices(7) has its firmware). After a print on drm:, Linux may return its text console "
+       "to the "
        "screen: "
        "keep the console elsewhere (kernel option fbcon=map:) and use --light, which is then in standby, or a shutter.",
        "Priority. As root, or with permission for a real-time priority of 2 (see vam-stage(1)), the flips and the "

@@ -115,6 +115,7 @@ model::Printer settle(Options& options) {
     throw Error{Fault::usage, "--bits: " + std::to_string(bits) + " is not one of 1, 2, 4, 8, 10, 16"};
   }
   options.live.max_led_current_percent = printer.projector.max_led_current_percent;
+  options.live.relay = printer.projector.relay;
   if (!options.live.latency_ms) options.live.latency_ms = printer.projector.latency_ms;
   return printer;
 }

@@ -19,6 +19,7 @@ struct LiveOptions {
   std::string log;
   std::optional<double> latency_ms;
   double max_led_current_percent = 0;
+  std::string relay;
   double allowed_missed = device::PlayPlan{}.allowed_missed;
   double allowed_missed_lit = device::PlayPlan{}.allowed_missed_lit;
   std::optional<int> frames_per_turn;

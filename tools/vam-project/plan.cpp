@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "device/open/display.hpp"
 #include "device/open/light.hpp"
+#include "device/open/relay.hpp"
 #include "device/os/clock.hpp"
 #include "device/port/lines.hpp"
 #include "io/exr/stack.hpp"
@@ -66,6 +67,10 @@ void say_devices(const Options& options, const model::Printer& printer) {
   }
   say("display", options.output + " " + std::to_string(mode.columns) + " x " + std::to_string(mode.rows) + " at " +
                      format_number(mode.hz, 4) + " Hz");
+  if (const auto relay = device::open_relay(options.live.relay, &guardian)) {
+    say("relay", options.live.relay + ", opens " + format_number(relay->identify()["limit_ms"]) +
+                     " ms after the last heartbeat");
+  }
   if (options.live.light.empty()) return say("engine", "none is named (--light)");
   const auto light = device::open_light(options.live.light, options.live.max_led_current_percent, &guardian);
   say("engine", options.live.light + identity_text(light->identify()));

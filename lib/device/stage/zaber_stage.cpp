@@ -35,8 +35,7 @@ struct Flag {
   const char* meaning;
 };
 constexpr std::array flags_known{Flag{"FD", "driver disabled: too hot or too high a current"},
-                                 Flag{"FQ", "encoder error"},
-                                 Flag{"FS", "stalled and stopped"},
+                                 Flag{"FQ", "encoder error"}, Flag{"FS", "stalled and stopped"},
                                  Flag{"FE", "limit sensor not reached or faulty"},
                                  Flag{"WL", "unexpected limit sensor; the stage may have slipped"}};
 

@@ -46,6 +46,7 @@ const std::vector<PrinterField> fields{
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
     {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "delay from vertical blank to light output", -1000, 1000},
     {"projector", "max_led_current_percent", at<&Printer::projector, &Projector::max_led_current_percent>, "maximum LED current of the light engine, in per cent of its full current", 0, 100},
+    {"projector", "relay", at<&Printer::projector, &Projector::relay>, "dead-man relay on the lamp's power: " + comment_on(model::relay_schemes), 0, 0, false, {}, schemes_of(model::relay_schemes)},
     {"vial", "radius_mm", at<&Printer::vial, &Vial::radius_mm>, "outer radius", 0, 1e6, true},
     {"vial", "wall_mm", at<&Printer::vial, &Vial::wall_mm>, "0: glass and resin matched", 0, 1e6},
     {"vial", "index_glass", at<&Printer::vial, &Vial::index_glass>, "refractive index", 1, 4},

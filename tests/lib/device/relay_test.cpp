@@ -1,0 +1,100 @@
+#include "device/safety/relay.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "fault_of.hpp"
+#include "sim/controllers/relay.hpp"
+#include "virtual_stage.hpp"
+
+using namespace vam;
+using namespace vam::device;
+using namespace vam::sim;
+
+namespace {
+
+struct RelayLab : StageLab {
+  explicit RelayLab(const SimGcsSettings& sim = {}) : StageLab(make_sim_relay, sim), relay(port(), clock, nullptr) {}
+  /// Beats at every flip of a 60 Hz screen.
+  void show(double seconds) {
+    for (const double end_s = clock.now_s() + seconds; clock.now_s() < end_s;) {
+      clock.sleep_until(clock.now_s() + 1.0 / 60);
+      relay.beat();
+    }
+  }
+  std::string state() {
+    device->advance(clock.now_s());
+    std::string last = "open";
+    for (const auto& line : log) {
+      if (line["event"] == "closed") last = "closed";
+      if (line["event"] == "open") last = "open: " + line["reason"].get<std::string>();
+    }
+    return last;
+  }
+  Relay relay;
+};
+
+}  // namespace
+
+TEST_CASE("A relay is closed while it hears a heartbeat, and no longer") {
+  RelayLab lab;
+  CHECK(lab.relay.identify()["limit_ms"] == 300);
+  CHECK(lab.relay.identify().at("model") == "relay (simulated)");
+  CHECK(lab.state() == "open");
+  lab.relay.close();
+  lab.show(5);
+  CHECK(lab.state() == "closed");
+  lab.relay.open();
+  CHECK(lab.state() == "open: order");
+  lab.relay.close();
+  lab.show(0.5);
+  const double last_s = lab.clock.now_s();
+  lab.clock.sleep_until(last_s + 0.24);  // the last heartbeat may be 50 ms old
+  CHECK(lab.state() == "closed");
+  lab.clock.sleep_until(last_s + 0.31);
+  CHECK(lab.state() == "open: heartbeat");
+  // It stays open, and the print is told.
+  CHECK(error_of([&] { lab.show(1); }, Fault::protocol).find("has cut the lamp") != std::string::npos);
+  CHECK(lab.state() == "open: heartbeat");
+}
+
+TEST_CASE("No light without an answer of the relay") {
+  struct Case {
+    const char* kind;
+    const char* command;
+    int occurrence;
+    Fault fault;
+  };
+  const std::vector<Case> cases{{"garbage", "?", 1, Fault::protocol}, {"silent", "A", 1, Fault::busy},
+                                {"error", "A", 1, Fault::busy},       {"late", "A", 1, Fault::busy},
+                                {"unplug", "A", 1, Fault::absent},    {"garbage", "H", 9, Fault::protocol},
+                                {"unplug", "H", 9, Fault::absent},    {"power-loss", "H", 9, Fault::absent}};
+  for (const auto& [kind, command, occurrence, fault] : cases) {
+    CAPTURE(kind);
+    CAPTURE(command);
+    SimGcsSettings sim;
+    sim.faults.push_back({kind, command, occurrence});
+    CHECK(fault_of([&] {
+            RelayLab lab(sim);
+            lab.relay.close();
+            lab.show(2);
+          }) == fault);
+  }
+  // One answer that is lost is none of its business: the next one comes before the time is over.
+  SimGcsSettings sim;
+  sim.faults.push_back({"silent", "H", 9});
+  RelayLab lab(sim);
+  lab.relay.close();
+  lab.show(2);
+  CHECK(lab.state() == "closed");
+}
+
+TEST_CASE("Another device is not taken for a relay") {
+  VirtualClock clock;
+  CHECK(fault_of([&] { Relay(make_sim_port(make_sim_gcs({}, clock.now_s(), {}), clock), clock, nullptr); }) ==
+        Fault::busy);
+}
