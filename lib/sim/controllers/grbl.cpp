@@ -1,3 +1,5 @@
+// Sources, named beside each behaviour: "Interface", "Jogging", "Commands" and "Configuration" are the pages of GRBL
+// 1.1's wiki (github.com/gnea/grbl/wiki), "limits.c" is its own source.
 #include "sim/controllers/grbl.hpp"
 
 #include <array>
@@ -22,7 +24,7 @@ class SimGrbl final : public SimController {
     for (const char c : bytes) {
       if (silent()) return;
       if (c == '?') {
-        asked_while_homing_ = homing_;  // reports pause
+        asked_while_homing_ = homing_;  // reports pause: limits.c, limits_go_home, looks at reset and door only
         if (!homing_) reply("?", "?", status());
       } else if (c == '\x85') {
         cancel();
@@ -51,11 +53,13 @@ class SimGrbl final : public SimController {
     answer_spoilt(fault, fault == "error" ? "error:9\r\n" : text, "");
   }
 
+  // Commands, "0x85": decelerates and leaves the state of jogging; without effect in another one.
   void cancel() {
     arrive("0x85", "0x85");
     if (motor_.moving() && !homing_) motor_.halt();
   }
 
+  // Commands, "0x18": during motion it is an alarm, since the position may be lost; the greeting follows.
   void reset() {
     arrive("0x18", "0x18");
     alarm_ = motor_.moving();
@@ -65,6 +69,7 @@ class SimGrbl final : public SimController {
     answer("\r\nGrbl 1.1h ['$' for help]\r\n");
   }
 
+  // Interface, status reports: with $10=1 the position is the machine's, in units, the feed per minute.
   std::string status() const {
     const char* state = alarm_ ? "Alarm" : homing_ ? "Home" : motor_.moving() ? "Jog" : "Idle";
     std::array<char, 120> text{};
@@ -73,6 +78,7 @@ class SimGrbl final : public SimController {
     return text.data();
   }
 
+  // Configuration: rates are in units per minute ($110), accelerations in units per second squared ($120).
   std::string settings_text() const {
     std::array<char, 200> text{};
     std::snprintf(text.data(), text.size(), "$10=1\r\n$20=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n", 0,
@@ -80,6 +86,7 @@ class SimGrbl final : public SimController {
     return text.data();
   }
 
+  // Interface: a board that is reset by the opened port greets, and counts from where it stands.
   void handle(const std::string& line) {
     if (settings_.reset_at_open && !std::exchange(greeted_, true)) {
       motor_.set_angle(0);
@@ -104,7 +111,8 @@ class SimGrbl final : public SimController {
     reply(line, command, "error:20\r\n");
   }
 
-  // "$J=G53 G90 X360.0000 F600.000"
+  // "$J=G53 G90 X360.0000 F600.000". Jogging: error 15 beyond the travel, 9 in alarm or while it homes; the feed is
+  // held to the largest rate.
   void jog(const std::string& line) {
     std::optional<double> target_deg;
     std::optional<double> feed;
