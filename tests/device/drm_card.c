@@ -2,7 +2,8 @@
 // the screens eDP-1 (on, by CRTC 31), HDMI-A-1 (64 x 48 at 60 Hz, off) and HDMI-A-2 (nothing plugged in).
 // $FAKE_DRM is a folder: "log" receives a JSON line for every image with the vertical blank at which it is on, "memory"
 // is the card's. $FAKE_DRM_FAULT=KIND[:N] spoils something, at the N-th page flip (buffer for no-memory) and after it:
-// not-master, no-memory, no-mode, gamma (stays as it is), busy, lost (to another master), gone, silent (no event), late
+// not-master, no-memory, no-mode, gamma (stays as it is), limited
+// (range of RGB stays as it is), no-properties (the connector has none), busy, lost (to another master), gone, silent (no event), late
 // (the event comes after 0.3 s), skip (every N-th flip is one blank late).
 #define _GNU_SOURCE
 #include <errno.h>
@@ -34,6 +35,7 @@ static struct Card {
   unsigned buffers, flips;
   unsigned handle_of[BUFFERS];  // framebuffer numbers begin at 100
   uint16_t gamma[3][GAMMA];
+  uint64_t properties[2];  // Broadcast RGB: automatic, which is limited for a television; max bpc
 } *card;
 static int event_end = -1;  // the kernel's end of the card
 
@@ -171,6 +173,45 @@ static int gamma_table(struct drm_mode_crtc_lut *table, int set) {
   return 0;
 }
 
+// Properties of HDMI-A-1, as Linux documents them (drm-kms, "Standard Connector Properties" and "HDMI Specific Connector
+// Properties"): "Broadcast RGB" is Automatic, Full or Limited 16:235 and begins as Automatic; "max bpc" is a range.
+enum { BROADCAST = 301, MAX_BPC = 302 };
+static int list_properties(struct drm_mode_obj_get_properties *all) {
+  const uint32_t have = all->obj_id == HDMI && fault("no-properties") == 0 ? 2 : 0;
+  if (all->count_props >= have && all->prop_values_ptr != 0)
+    memcpy((void *)(uintptr_t)all->prop_values_ptr, card->properties, have * sizeof *card->properties);
+  copy_ids(all->props_ptr, &all->count_props, (uint32_t[]){BROADCAST, MAX_BPC}, have);
+  return 0;
+}
+
+static int describe_property(struct drm_mode_get_property *about) {
+  static const struct drm_mode_property_enum ranges[] = {{0, "Automatic"}, {1, "Full"}, {2, "Limited 16:235"}};
+  static const uint64_t bits[] = {6, 12};
+  const int broadcast = about->prop_id == BROADCAST;
+  strcpy(about->name, broadcast ? "Broadcast RGB" : "max bpc");
+  about->flags = broadcast ? DRM_MODE_PROP_ENUM : DRM_MODE_PROP_RANGE;
+  const uint32_t values = broadcast ? 3 : 2;
+  const uint32_t names = broadcast ? 3 : 0;
+  if (about->count_values >= values && about->values_ptr != 0) {
+    for (uint32_t i = 0; i < values; ++i)
+      ((uint64_t *)(uintptr_t)about->values_ptr)[i] = broadcast ? ranges[i].value : bits[i];
+  }
+  if (names > 0 && about->count_enum_blobs >= names && about->enum_blob_ptr != 0)
+    memcpy((void *)(uintptr_t)about->enum_blob_ptr, ranges, sizeof ranges);
+  about->count_values = values;
+  about->count_enum_blobs = names;
+  return 0;
+}
+
+static int set_property(const struct drm_mode_connector_set_property *wish) {
+  const int broadcast = wish->prop_id == BROADCAST;
+  if (!broadcast && (wish->value < 6 || wish->value > 12)) return refuse(EINVAL);
+  if (!(broadcast && fault("limited") != 0)) card->properties[broadcast ? 0 : 1] = wish->value;
+  note(now_s(), "\"event\":\"property\",\"full_range\":%d,\"bpc\":%d", card->properties[0] == 1,
+       (int)card->properties[1]);
+  return 0;
+}
+
 static int answer(unsigned long request, void *argument) {
   if (spoils("gone", card->flips + 1)) return refuse(ENODEV);
   switch (request) {
@@ -188,6 +229,12 @@ static int answer(unsigned long request, void *argument) {
     }
     case DRM_IOCTL_MODE_GETCONNECTOR:
       return connector(argument);
+    case DRM_IOCTL_MODE_OBJ_GETPROPERTIES:
+      return list_properties(argument);
+    case DRM_IOCTL_MODE_GETPROPERTY:
+      return describe_property(argument);
+    case DRM_IOCTL_MODE_SETPROPERTY:
+      return set_property(argument);
     case DRM_IOCTL_MODE_GETENCODER: {
       struct drm_mode_get_encoder *encoder = argument;
       if (encoder->encoder_id < ENCODER) return refuse(ENOENT);
@@ -205,7 +252,7 @@ static int answer(unsigned long request, void *argument) {
     case DRM_IOCTL_MODE_CREATE_DUMB: {
       struct drm_mode_create_dumb *dumb = argument;
       if (spoils("no-memory", card->buffers + 1)) return refuse(ENOMEM);
-      if (dumb->width != COLUMNS || dumb->height != ROWS || dumb->bpp != 32) return refuse(EINVAL);
+      if (dumb->width > COLUMNS || dumb->height > ROWS || dumb->bpp != 32) return refuse(EINVAL);
       dumb->handle = ++card->buffers;
       dumb->pitch = PITCH;
       dumb->size = PITCH * ROWS;
@@ -228,8 +275,8 @@ static int answer(unsigned long request, void *argument) {
       const struct drm_mode_crtc *crtc = argument;
       if (fault("no-mode") != 0) return refuse(EINVAL);
       if (spoils("lost", card->flips)) return refuse(EACCES);
-      note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"shade\":\"%s\"", crtc->fb_id,
-           crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, shade(crtc->fb_id));
+      note(now_s(), "\"event\":\"mode\",\"framebuffer\":%u,\"crtc\":%u,\"connector\":%u,\"columns\":%u,\"shade\":\"%s\"",
+           crtc->fb_id, crtc->crtc_id, *(const uint32_t *)(uintptr_t)crtc->set_connectors_ptr, crtc->mode.hdisplay, shade(crtc->fb_id));
       return 0;
     }
     case DRM_IOCTL_MODE_PAGE_FLIP:
@@ -245,6 +292,7 @@ __attribute__((constructor)) static void power_on(void) {
   if (getenv("FAKE_DRM") == NULL) return;
   card = mmap(NULL, sizeof *card, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   card->origin_s = now_s();
+  card->properties[1] = 12;
 }
 
 static int is_card(int fd) {

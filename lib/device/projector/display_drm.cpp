@@ -39,8 +39,9 @@ struct Buffer {
 
 class DrmDisplay final : public Display {
  public:
-  DrmDisplay(const std::string& connector, Clock& clock, Guardian* guardian)
-      : clock_(clock), guardian_(guardian), output_(open_drm_output(connector)), name_("drm:" + connector) {
+  DrmDisplay(const std::string& connector, const std::string& mode, std::optional<int> bits, Clock& clock,
+             Guardian* guardian)
+      : clock_(clock), guardian_(guardian), output_(open_drm_output(connector, mode)), name_("drm:" + connector) {
     if (drmSetMaster(output_.card) != 0) {
       const std::string why = reason();
       close(output_.card);
@@ -52,6 +53,8 @@ class DrmDisplay final : public Display {
     black_ = load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * mode_.rows));
     if (!show_black()) throw Error{Fault::absent, name_ + ": the connector rejects its own mode" + reason()};
     straighten_gamma(output_, name_);
+    send_full_range(output_, name_);
+    if (bits) limit_bits(output_, name_, *bits);
   }
 
   // Black stays on until the last copy of the card's handle is closed: master is not given up before the guardian has
@@ -194,10 +197,11 @@ class DrmDisplay final : public Display {
 
 std::unique_ptr<Display> open_drm_display(const Address& address, const DisplayMode&, Clock& clock,
                                           Guardian* guardian) {
-  address.allow({});
+  address.allow({"mode", "bpc"});
   auto lock = std::make_unique<DeviceLock>("drm-" + address.place);
   if (guardian != nullptr) guardian->keep(lock->handle());
-  auto display = std::make_unique<DrmDisplay>(address.place, clock, guardian);
+  auto display = std::make_unique<DrmDisplay>(address.place, address.word("mode", ""), address.integer("bpc", 6, 16),
+                                              clock, guardian);
   display->hold(std::move(lock));
   return display;
 }

@@ -5,9 +5,11 @@
 #include <xf86drm.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -22,6 +24,8 @@ struct Free {
   void operator()(drmModeConnector* connector) const { drmModeFreeConnector(connector); }
   void operator()(drmModeEncoder* encoder) const { drmModeFreeEncoder(encoder); }
   void operator()(drmModeCrtc* crtc) const { drmModeFreeCrtc(crtc); }
+  void operator()(drmModeObjectProperties* all) const { drmModeFreeObjectProperties(all); }
+  void operator()(drmModePropertyRes* property) const { drmModeFreeProperty(property); }
 };
 template <class Thing>
 using Handle = std::unique_ptr<Thing, Free>;
@@ -58,7 +62,58 @@ drmModeModeInfo preferred_mode(const drmModeConnector& connector) {
   return best != end ? *best : *begin;
 }
 
-bool find_output(int card, const std::string& wanted, DrmOutput& output, std::vector<std::string>& seen) {
+double rate_hz(const drmModeModeInfo& mode) { return mode.clock * 1000.0 / (mode.htotal * mode.vtotal); }
+
+std::string size_of(const drmModeModeInfo& mode) {
+  return std::to_string(mode.hdisplay) + "x" + std::to_string(mode.vdisplay);
+}
+
+// The first of that size, or the one nearest to that rate: 59.94 Hz are written 60, too.
+drmModeModeInfo mode_called(const drmModeConnector& connector, const std::string& wanted) {
+  if (wanted.empty()) return preferred_mode(connector);
+  const std::size_t at = wanted.find('@');
+  const bool any_rate = at == std::string::npos;
+  const double hz = any_rate ? 0 : parse_number(wanted.substr(at + 1)).value_or(0);
+  const drmModeModeInfo* best = nullptr;
+  double best_off_hz = 0.5;
+  std::set<std::string> known;
+  for (int i = 0; i < connector.count_modes; ++i) {
+    const drmModeModeInfo& mode = connector.modes[i];
+    known.insert(size_of(mode) + "@" + format_number(rate_hz(mode), 4));
+    const double off_hz = any_rate ? 0 : std::abs(rate_hz(mode) - hz);
+    if (size_of(mode) != wanted.substr(0, at) || off_hz >= best_off_hz) continue;
+    best = &mode;
+    best_off_hz = off_hz;
+  }
+  if (best != nullptr) return *best;
+  throw Error{Fault::usage, "drm:" + connector_name(connector) + ": no mode " + wanted +
+                                "; the screen has: " + join({known.begin(), known.end()}, ", ")};
+}
+
+struct Property {
+  Handle<drmModePropertyRes> about;  // null: the connector has none of this name
+  std::uint64_t value = 0;
+};
+
+Property property_of(const DrmOutput& output, const std::string& name) {
+  const Handle<drmModeObjectProperties> all(
+      drmModeObjectGetProperties(output.card, output.connector, DRM_MODE_OBJECT_CONNECTOR));
+  for (std::uint32_t i = 0; all && i < all->count_props; ++i) {
+    Handle<drmModePropertyRes> about(drmModeGetProperty(output.card, all->props[i]));
+    if (about && name == about->name) return {std::move(about), all->prop_values[i]};
+  }
+  return {};
+}
+
+bool set_property(const DrmOutput& output, const std::string& name, std::uint64_t value) {
+  const Property before = property_of(output, name);
+  if (before.value == value) return true;
+  drmModeConnectorSetProperty(output.card, output.connector, before.about->prop_id, value);
+  return property_of(output, name).value == value;
+}
+
+bool find_output(int card, const std::string& wanted, const std::string& mode, DrmOutput& output,
+                 std::vector<std::string>& seen) {
   const Handle<drmModeRes> resources(drmModeGetResources(card));
   if (!resources) return false;
   for (int i = 0; i < resources->count_connectors; ++i) {
@@ -67,7 +122,7 @@ bool find_output(int card, const std::string& wanted, DrmOutput& output, std::ve
     const bool connected = connector->connection == DRM_MODE_CONNECTED && connector->count_modes > 0;
     seen.push_back(connector_name(*connector) + (connected ? "" : " (nothing connected)"));
     if (!connected || connector_name(*connector) != wanted) continue;
-    output = {card, connector->connector_id, crtc_for(card, *resources, *connector), preferred_mode(*connector)};
+    output = {card, connector->connector_id, crtc_for(card, *resources, *connector), mode_called(*connector, mode)};
     return output.crtc != 0;
   }
   return false;
@@ -97,17 +152,38 @@ std::vector<DrmScreen> drm_screens(int card) {
   return screens;
 }
 
-DrmOutput open_drm_output(const std::string& connector) {
+DrmOutput open_drm_output(const std::string& connector, const std::string& mode) {
   std::vector<std::string> seen;
   for (const auto& path : drm_cards()) {
     const int card = open(path.c_str(), O_RDWR | O_CLOEXEC);
     if (card < 0) continue;
     DrmOutput output;
-    if (find_output(card, connector, output, seen)) return output;
+    if (find_output(card, connector, mode, output, seen)) return output;
     close(card);
   }
   throw Error{Fault::absent, "drm:" + connector + ": no such connected screen" +
                                  (seen.empty() ? "; no GPU can be opened" : "; connectors: " + join(seen, ", "))};
+}
+
+void send_full_range(const DrmOutput& output, const std::string& name) {
+  const std::string property = "Broadcast RGB";
+  const Property range = property_of(output, property);
+  for (int i = 0; range.about && i < range.about->count_enums; ++i) {
+    if (std::string(range.about->enums[i].name) != "Full") continue;
+    if (set_property(output, property, range.about->enums[i].value)) return;
+    throw Error{Fault::protocol, name +
+                                     ": the GPU does not send full-range RGB, so that grey is not linear; use another "
+                                     "connector"};
+  }
+}
+
+void limit_bits(const DrmOutput& output, const std::string& name, int bits) {
+  const std::string property = "max bpc";
+  if (!property_of(output, property).about) {
+    throw Error{Fault::usage, name + ": the GPU knows no number of bits per colour (max bpc); leave out bpc"};
+  }
+  if (set_property(output, property, static_cast<std::uint64_t>(bits))) return;
+  throw Error{Fault::protocol, name + ": the GPU refuses " + std::to_string(bits) + " bits per colour"};
 }
 
 void straighten_gamma(const DrmOutput& output, const std::string& name) {
