@@ -17,6 +17,7 @@ from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
 SCHEME = sys.argv[2]
 OPTIONS = {"gcs": "?baud=115200"}.get(SCHEME, "")
 ANGLE_QUERY = {"gcs": "POS?", "grbl": "?", "zaber": "get pos"}[SCHEME]
+TRAVEL = ["--min", "-900000", "--max", "900000"]  # of a Zaber stage, whose position counts on from trial to trial
 LANES = 3  # trials at the same time, each with a table of its own: mostly they wait
 
 
@@ -31,7 +32,8 @@ def standing(event):
 def simulator(folder, *options):
     log = os.path.join(folder, "truth")
     open(log, "w").close()
-    process = subprocess.Popen(["vam-sim-stage", "--protocol", SCHEME, "--acceleration", "2000", "--log", log, "--die-with-parent", *options],
+    process = subprocess.Popen(["vam-sim-stage", "--protocol", SCHEME, "--acceleration", "2000", *TRAVEL, "--log", log,
+                                "--die-with-parent", *options],
                                stdout=subprocess.PIPE, text=True)
     return process, process.stdout.readline().strip(), Log(log)
 
