@@ -27,10 +27,13 @@ double farthest_mm(const SparseVolume& volume, float above) {
     if (tile.isVoxelValue()) continue;  // by leaves
     if (*tile > above) farthest = std::max(farthest, reach(tile.getBoundingBox()));
   }
+  LeafStore::Values room;
   for (auto leaf = state.sparse->tree().cbeginLeaf(); leaf; ++leaf) {
     if (reach(leaf->getNodeBoundingBox()) <= farthest) continue;
-    for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel) {
-      if (*voxel > above) farthest = std::max(farthest, reach({voxel.getCoord(), voxel.getCoord()}));
+    const float* values = state.leaves->values(*leaf, room);
+    for (openvdb::Index n = 0; n < LeafStore::Leaf::SIZE; ++n) {
+      const openvdb::Coord at = leaf->offsetToGlobalCoord(n);
+      if (values[n] > above) farthest = std::max(farthest, reach({at, at}));
     }
   }
   return farthest;

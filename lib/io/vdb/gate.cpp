@@ -100,8 +100,9 @@ void require_values(const std::string& path, const SparseVolume& volume, const P
     if (*tile >= promise.low && *tile <= promise.high) continue;
     refuse_voxel(path, volume.name(), tile.getCoord() - first, *tile, promise);
   }
+  LeafStore::Values room;
   for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf) {
-    const float* values = leaf->buffer().data();
+    const float* values = volume.state().leaves->values(*leaf, room);
     const int place = first_outside(values, promise);
     if (place < 512)
       refuse_voxel(path, volume.name(), leaf->origin() + in_block(place) - first, values[place], promise);

@@ -105,7 +105,7 @@ class PassingGrid : public FloatGrid {
   }
 
   void send(const Leaf& leaf, VoxelSealer& voxels) const {
-    const LeafRecord record = record_of(leaf);
+    const LeafRecord record = record_of(leaf, leaf.buffer().data());
     if (seals_) voxels.add(record);
     if (!shown_) return;
     check(all_finite(record.values.data(), Leaf::SIZE));

@@ -41,21 +41,24 @@ void VoxelSealer::begin(const openvdb::FloatTree& tree) {
   }
 }
 
-LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf) {
+LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf, const float* values) {
   LeafRecord record;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled at once
   record.corner = {leaf.origin().x(), leaf.origin().y(), leaf.origin().z()};
   record.padding = 0;
   for (openvdb::Index word = 0; word < record.active.size(); ++word) {
     record.active[word] = leaf.valueMask().getWord<openvdb::Index64>(word);
   }
-  std::copy_n(leaf.buffer().data(), record.values.size(), record.values.data());
+  std::copy_n(values, record.values.size(), record.values.data());
   return record;
 }
 
-void seal(openvdb::FloatGrid& sparse) {
+void seal(openvdb::FloatGrid& sparse, const LeafStore& leaves) {
   VoxelSealer voxels;
   voxels.begin(sparse.constTree());
-  for (auto leaf = sparse.constTree().cbeginLeaf(); leaf; ++leaf) voxels.add(record_of(*leaf));
+  LeafStore::Values room;
+  for (auto leaf = sparse.constTree().cbeginLeaf(); leaf; ++leaf) {
+    voxels.add(record_of(*leaf, leaves.values(*leaf, room)));
+  }
   sparse.insertMeta(facts_seal_key, openvdb::StringMetadata(seal_text(facts_digest(sparse))));
   sparse.insertMeta(values_seal_key, openvdb::StringMetadata(seal_text(voxels.digest())));
 }

@@ -25,8 +25,6 @@ using openvdb::Coord;
 using openvdb::CoordBBox;
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
-using Accessor = openvdb::tree::ValueAccessor<Tree, false>;
-using ConstAccessor = openvdb::tree::ValueAccessor<const Tree, false>;
 
 constexpr int edge = Leaf::DIM;
 constexpr int shift = Leaf::LOG2DIM;
@@ -107,13 +105,16 @@ Leaf::NodeMaskType active_mask(const float* values, float background) {
   return mask;
 }
 
-Block block_at(const Coord& at, const Slab& slab, const float* in, const Tree& tree, ConstAccessor& accessor) {
+Block block_at(const Coord& at, const Slab& slab, const float* in, const SparseVolume::State& state,
+               ConstAccessor& accessor) {
+  const float background = state.sparse->background();
   const CoordBBox part = slab.part(at);
+  LeafStore::Values room;
   float values[Leaf::SIZE] = {};
   if (part.volume() < Leaf::SIZE) {
     const Leaf* old = accessor.probeConstLeaf(at);
     if (old != nullptr) {
-      std::copy_n(old->buffer().data(), Leaf::SIZE, values);
+      std::copy_n(state.leaves->values(*old, room), Leaf::SIZE, values);
     } else {
       std::fill_n(values, Leaf::SIZE, accessor.getValue(at));
     }
@@ -129,18 +130,24 @@ Block block_at(const Coord& at, const Slab& slab, const float* in, const Tree& t
                                 std::to_string(at.z()) + " and on is not a finite number"};
   }
   if (is_one_value(values)) return block;
-  block.leaf = std::make_unique<Leaf>(at, tree.background(), false);
+  block.leaf = std::make_unique<Leaf>(at, background, false);
   std::copy_n(values, Leaf::SIZE, block.leaf->buffer().data());
-  block.leaf->setValueMask(active_mask(values, tree.background()));
+  block.leaf->setValueMask(active_mask(values, background));
   return block;
 }
 
-void hang_in(Block& block, const Coord& at, float background, Accessor& accessor) {
+void hang_in(Block& block, const Coord& at, const SparseVolume::State& state, Accessor& accessor) {
+  const float background = state.sparse->background();
+  const Leaf* old = accessor.probeConstLeaf(at);
   if (block.leaf) {
+    state.leaves->add(*block.leaf, old);
     accessor.addLeaf(block.leaf.release());
-  } else if (block.value != background) {
+    return;
+  }
+  if (old != nullptr) state.leaves->remove(*old);
+  if (block.value != background) {
     accessor.addTile(1, at, block.value, true);
-  } else if (accessor.probeConstLeaf(at) != nullptr || accessor.getValue(at) != background) {
+  } else if (old != nullptr || accessor.getValue(at) != background) {
     accessor.addTile(1, at, background, false);
   }
 }
@@ -200,10 +207,11 @@ void SparseVolume::read_slices(int k0, int count, float* out) const {
   const Tree& tree = state_->sparse->constTree();
   parallel_for(slab.rows(), [&](int row) {
     ConstAccessor accessor(tree);
+    LeafStore::Values room;
     for (int i = 0; i < slab.blocks.x(); ++i) {
       const Coord at = slab.origin(row, i);
       const Leaf* leaf = accessor.probeConstLeaf(at);
-      const float* values = leaf != nullptr ? leaf->buffer().data() : nullptr;
+      const float* values = leaf != nullptr ? state_->leaves->values(*leaf, room) : nullptr;
       const float tile = leaf != nullptr ? 0.0F : accessor.getValue(at);
       for_rows(slab.part(at), slab.box, [&](int x, int y, int z, int n, std::size_t to) {
         if (values == nullptr) {
@@ -224,18 +232,25 @@ void SparseVolume::write_slices(int k0, int count, const float* in) {
   parallel_for(slab.rows(), [&](int row) {
     ConstAccessor accessor(tree);
     for (int i = 0; i < slab.blocks.x(); ++i) {
-      rows[row].push_back(block_at(slab.origin(row, i), slab, in, tree, accessor));
+      rows[row].push_back(block_at(slab.origin(row, i), slab, in, *state_, accessor));
     }
   });
   Accessor accessor(tree);
   for (int row = 0; row < slab.rows(); ++row) {
     for (int i = 0; i < slab.blocks.x(); ++i) {
       Block& block = rows[row][i];
-      hang_in(block, slab.origin(row, i), tree.background(), accessor);
+      hang_in(block, slab.origin(row, i), *state_, accessor);
     }
   }
 }
 
-void SparseVolume::prune() { openvdb::tools::prune(state_->sparse->tree()); }
+void SparseVolume::prune() {
+  Tree& tree = state_->sparse->tree();
+  if (state_->leaves->spilt()) {
+    openvdb::tools::pruneTiles(tree);  // leaves of one value were never hung in
+  } else {
+    openvdb::tools::prune(tree);
+  }
+}
 
 }  // namespace vam::io

@@ -20,7 +20,6 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
-using Accessor = openvdb::tree::ValueAccessor<FloatGrid::TreeType, false>;
 
 class Builder {
  public:
@@ -38,15 +37,17 @@ class Builder {
     SparseVolume::State& state = volume.state();
     state.first = head.first;
     if (const auto owner = by_name_.find(head.shares); !head.shares.empty() && owner != by_name_.end()) {
-      state.sparse = FloatGrid::create(owner->second->treePtr());
+      state.sparse = FloatGrid::create(owner->second->sparse->treePtr());
+      state.leaves = owner->second->leaves;
     }
     state.sparse->setTransform(transform);
-    by_name_[head.unique_name] = state.sparse;
+    by_name_[head.unique_name] = &state;
     volume.history = std::move(head.facts.history);
     volume.units = std::move(head.facts.units);
     volume.metadata = std::move(head.facts.metadata);
     volume.level_set = head.facts.level_set;
     accessor_ = std::make_unique<Accessor>(state.sparse->tree());
+    leaves_ = state.leaves.get();
   }
 
   void other(const std::string& text) { others_ += " " + text; }
@@ -68,13 +69,16 @@ class Builder {
     for (openvdb::Index word = 0; word < words.size(); ++word) active.getWord<openvdb::Index64>(word) = words[word];
     made->setValueMask(active);
     in_.get(made->buffer().data(), Leaf::SIZE * sizeof(float));
-    if (accessor_) accessor_->addLeaf(made.release());
+    if (!accessor_) return;
+    leaves_->add(*made, accessor_->probeConstLeaf(made->origin()));
+    accessor_->addLeaf(made.release());
   }
 
  private:
   Receiver& in_;
-  std::map<std::string, FloatGrid::Ptr> by_name_;  // the unique name of the archive; the last of that name
+  std::map<std::string, const SparseVolume::State*> by_name_;  // the unique name of the archive; the last of that name
   std::unique_ptr<Accessor> accessor_;
+  LeafStore* leaves_ = nullptr;  // of that tree
   std::string others_;
 };
 

@@ -1,19 +1,19 @@
-#include <openvdb/io/Stream.h>
-#include <openvdb/tree/NodeManager.h>
+#include <openvdb/io/Archive.h>
+#include <openvdb/io/GridDescriptor.h>
+#include <openvdb/openvdb.h>
 
+#include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <map>
+#include <memory>
 #include <sstream>
-#include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "base/error.hpp"
-#include "io/stream/finite.hpp"
 #include "io/stream/stream.hpp"
 #include "io/stream/stream_buffers.hpp"
-#include "io/vdb/private/archive.hpp"
 #include "io/vdb/private/facts.hpp"
 #include "io/vdb/private/grid.hpp"
 #include "io/vdb/private/seals.hpp"
@@ -26,11 +26,78 @@ namespace {
 using openvdb::Coord;
 using openvdb::FloatGrid;
 
-// Archive::write is what io::File and io::Stream both call; those two do not notice a full disk, or cannot seek.
-struct Archive : openvdb::io::Archive {
-  void put(std::ostream& stream, const openvdb::GridCPtrVec& grids, bool seekable) const {
-    write(stream, grids, seekable);
+// Archive::write() does the same, but looks at the values of all leaves at once, to tell other programs their sizes
+// (which they find without, and newer versions of OpenVDB no longer do).
+class ArchiveToWrite : public openvdb::io::Archive {
+ public:
+  explicit ArchiveToWrite(std::uint32_t compression) { setCompression(compression); }
+
+  void put(std::ostream& stream, const std::vector<SparseVolume>& volumes, bool seekable) {
+    openvdb::io::StreamMetadata::Ptr about = std::make_shared<openvdb::io::StreamMetadata>();
+    openvdb::io::setStreamMetadataPtr(stream, about, false);
+    writeHeader(stream, seekable);
+    openvdb::MetaMap().writeMeta(stream);
+    const auto count = static_cast<std::int32_t>(volumes.size());
+    stream.write(reinterpret_cast<const char*>(&count), sizeof count);
+    for (const SparseVolume& volume : volumes) {
+      openvdb::io::setDataCompression(stream, compression());
+      put(stream, volume.state(), seekable);
+    }
+    openvdb::io::clearStreamMetadataPtr(stream);
   }
+
+ private:
+  void put(std::ostream& stream, const SparseVolume::State& state, bool seekable) {
+    FloatGrid& grid = *state.sparse;
+    openvdb::io::GridDescriptor about(unique(grid.getName()), grid.type(), false);
+    const auto parent = written_.find(&grid.tree());
+    if (parent != written_.end()) about.setInstanceParentName(parent->second);
+    about.writeHeader(stream);
+    const std::streamoff offsets = seekable ? std::streamoff{stream.tellp()} : 0;
+    about.writeStreamPos(stream);
+    if (seekable) about.setGridPos(stream.tellp());
+    setGridCompression(stream, grid);
+    with_statistics(grid).writeMeta(stream);
+    grid.writeTransform(stream);
+    if (parent == written_.end()) {
+      grid.writeTopology(stream);
+      if (seekable) about.setBlockPos(stream.tellp());
+      put_leaves(stream, state);
+      written_[&grid.tree()] = about.uniqueName();
+    }
+    if (!seekable) return;
+    about.setEndPos(stream.tellp());
+    stream.seekp(offsets, std::ios_base::beg);
+    about.writeStreamPos(stream);
+    about.seekToEnd(stream);
+  }
+
+  // Each as it comes out of the store, in the order of the tree.
+  static void put_leaves(std::ostream& stream, const SparseVolume::State& state) {
+    LeafStore::Values room;
+    LeafStore::Leaf whole(Coord(0), 0.0F);
+    for (auto leaf = state.sparse->constTree().cbeginLeaf(); leaf; ++leaf) {
+      whole.setValueMask(leaf->valueMask());
+      std::copy_n(state.leaves->values(*leaf, room), room.size(), whole.buffer().data());
+      whole.writeBuffers(stream, false);
+    }
+  }
+
+  [[nodiscard]] openvdb::MetaMap with_statistics(FloatGrid& grid) const {
+    const openvdb::GridBase::Ptr facts = grid.copy();  // shares the tree
+    facts->addStatsMetadata();
+    facts->insertMeta(FloatGrid::META_FILE_COMPRESSION,
+                      openvdb::StringMetadata(openvdb::io::compressionToString(compression())));
+    return *facts;
+  }
+
+  std::string unique(const std::string& name) {
+    const int before = names_[name]++;
+    return name.empty() || before > 0 ? openvdb::io::GridDescriptor::addSuffix(name, before) : name;
+  }
+
+  std::map<std::string, int> names_;
+  std::map<const openvdb::TreeBase*, std::string> written_;
 };
 
 void set_metadata(SparseVolume& volume) {
@@ -47,7 +114,7 @@ void set_metadata(SparseVolume& volume) {
   sparse.insertMeta(shape_key, openvdb::Vec3IMetadata(openvdb::Vec3i(grid.nx, grid.ny, grid.nz)));
   const Coord& first = volume.state().first;
   if (first != Coord(0)) sparse.insertMeta(first_key, openvdb::Vec3IMetadata(first.asVec3i()));
-  seal(sparse);
+  seal(sparse, *volume.state().leaves);
 }
 
 // OpenVDB marks every archive with a random UUID, so that no two runs would give the same bytes. Here it follows from
@@ -57,7 +124,7 @@ constexpr std::uint64_t uuid_offset = 21;  // after magic (8), format (4), libra
 std::string uuid_of(const openvdb::GridCPtrVec& grids) {
   std::ostringstream facts;
   for (const auto& grid : grids) {
-    facts << grid->activeVoxelCount() << ' ' << grid->baseTree().leafCount() << ' ' << grid->transform();
+    facts << grid->baseTree().activeVoxelCount() << ' ' << grid->baseTree().leafCount() << ' ' << grid->transform();
     for (auto it = grid->beginMeta(); it != grid->endMeta(); ++it)
       facts << it->first << ' ' << it->second->str() << ' ';
   }
@@ -77,6 +144,8 @@ std::string uuid_of(const openvdb::GridCPtrVec& grids) {
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes) {
   openvdb::initialize();
   OutputFile file(path);
+  const std::uint32_t blosc = file.is_stream() ? openvdb::io::COMPRESS_NONE : openvdb::io::COMPRESS_BLOSC;
+  const std::uint32_t compression = openvdb::io::COMPRESS_ACTIVE_MASK | blosc;
   openvdb::GridCPtrVec grids;
   for (SparseVolume& volume : volumes) {
     volume.prune();
@@ -87,10 +156,7 @@ void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes) 
   buffer.replace(uuid_offset, uuid_of(grids));
   std::ostream stream(&buffer);
   stream.exceptions(std::ios_base::badbit | std::ios_base::failbit);
-  Archive archive;
-  const std::uint32_t blosc = file.is_stream() ? openvdb::io::COMPRESS_NONE : openvdb::io::COMPRESS_BLOSC;
-  archive.setCompression(openvdb::io::COMPRESS_ACTIVE_MASK | blosc);
-  archive.put(stream, grids, !file.is_stream());
+  ArchiveToWrite(compression).put(stream, volumes, !file.is_stream());
   stream.flush();
   file.commit();
 }

@@ -3,8 +3,10 @@
 
 #include <openvdb/openvdb.h>
 
+#include <memory>
 #include <string>
 
+#include "io/vdb/private/leaf_store.hpp"
 #include "io/vdb/vdb.hpp"
 
 namespace vam::io {
@@ -13,6 +15,7 @@ struct SparseVolume::State {
   std::string name;
   model::Grid grid;
   openvdb::FloatGrid::Ptr sparse;
+  std::shared_ptr<LeafStore> leaves = std::make_shared<LeafStore>();  // of the tree, which grids may share
   openvdb::Coord first;  // index of voxel (0, 0, 0) in `sparse`; not 0 in files of other programs
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "io/stream/seal.hpp"
+#include "io/vdb/private/leaf_store.hpp"
 #include "io/vdb/private/passage.hpp"
 
 namespace vam::io {
@@ -40,10 +41,10 @@ void for_tiles(const openvdb::FloatTree& tree, const Take& take) {
   }
 }
 
-[[nodiscard]] LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf);
+[[nodiscard]] LeafRecord record_of(const openvdb::FloatTree::LeafNodeType& leaf, const float* values);
 
 /// Puts both into the metadata; everything else must be in place.
-void seal(openvdb::FloatGrid& sparse);
+void seal(openvdb::FloatGrid& sparse, const LeafStore& leaves);
 
 struct GridSeals {
   Digest facts;

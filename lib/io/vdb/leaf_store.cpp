@@ -1,0 +1,50 @@
+#include "io/vdb/private/leaf_store.hpp"
+
+#include <cstdint>
+
+namespace vam::io {
+
+namespace {
+
+constexpr std::size_t leaf_bytes = sizeof(LeafStore::Values);
+
+std::uint64_t offset_of(openvdb::Index32 place) { return (std::uint64_t{place} - 1) * leaf_bytes; }
+
+}  // namespace
+
+const float* LeafStore::values(const Leaf& leaf, Values& room) const {
+  if (leaf.transientData() == 0) return leaf.buffer().data();
+  file_->read(offset_of(leaf.transientData()), room.data(), leaf_bytes);
+  return room.data();
+}
+
+void LeafStore::add(Leaf& leaf, const Leaf* old) {
+  if (old != nullptr) remove(*old);
+  if (in_memory_ < most_in_memory) {
+    ++in_memory_;
+    leaf.setTransientData(0);
+    return;
+  }
+  if (file_ == nullptr) file_ = std::make_unique<ScratchFile>();
+  openvdb::Index32 place = places_ + 1;
+  if (free_.empty()) {
+    ++places_;
+  } else {
+    place = free_.back();
+    free_.pop_back();
+  }
+  file_->write(offset_of(place), leaf.buffer().data(), leaf_bytes);
+  leaf.setTransientData(place);
+  Leaf::Buffer gone(openvdb::PartialCreate(), 0.0F);
+  leaf.swap(gone);
+}
+
+void LeafStore::remove(const Leaf& leaf) {
+  if (leaf.transientData() == 0) {
+    --in_memory_;
+  } else {
+    free_.push_back(leaf.transientData());
+  }
+}
+
+}  // namespace vam::io

@@ -1,0 +1,47 @@
+// Private to the VDB files: where the values of a tree's leaves are, some in memory and the others in a scratch file.
+#pragma once
+
+#include <openvdb/openvdb.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "io/stream/scratch_file.hpp"
+
+namespace vam::io {
+
+/// Ways into a tree that remember the nodes above its leaves alone: OpenVDB's usual ones touch the values of every leaf
+/// that they pass, and give an emptied one its memory again.
+using Accessor = openvdb::tree::ValueAccessor2<openvdb::FloatTree, false, 1, 2>;
+using ConstAccessor = openvdb::tree::ValueAccessor2<const openvdb::FloatTree, false, 1, 2>;
+
+/// The first leaves of a tree keep their values, 32 MiB; those of all others go into the file, and OpenVDB has the
+/// leaf without them: values() finds them again, nothing else may read them. A leaf's transient data is its place in
+/// the file, from 1 on.
+class LeafStore {
+ public:
+  using Leaf = openvdb::FloatTree::LeafNodeType;
+  using Values = std::array<float, Leaf::SIZE>;
+  static constexpr std::size_t most_in_memory = 16384;
+
+  /// 512 values, in the leaf or in `room`. Any threads at once.
+  [[nodiscard]] const float* values(const Leaf& leaf, Values& room) const;
+
+  /// A leaf with its values comes into the tree, instead of `old` if there was one there. Throws Fault::no_output and
+  /// io as ScratchFile does.
+  void add(Leaf& leaf, const Leaf* old);
+  /// A leaf leaves the tree.
+  void remove(const Leaf& leaf);
+
+  /// Whether leaves without values are in the tree.
+  [[nodiscard]] bool spilt() const { return file_ != nullptr; }
+
+ private:
+  std::size_t in_memory_ = 0;
+  openvdb::Index32 places_ = 0;  // of the file
+  std::vector<openvdb::Index32> free_;
+  std::unique_ptr<ScratchFile> file_;
+};
+
+}  // namespace vam::io
