@@ -1,4 +1,6 @@
 // vam-dose: simulates the dose of a print.
+#include <malloc.h>
+
 #include "base/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
@@ -40,6 +42,8 @@ void run(const cli::App& app, Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Images of rows come and go among slabs that stay: each in pages of its own, or the gaps count as memory in use.
+  mallopt(M_MMAP_THRESHOLD, 1 << 18);
   cli::App app(dose_tool::manual());
   Options options;
   declare(app, options);

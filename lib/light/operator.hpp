@@ -14,6 +14,22 @@ struct Shape {
   bool operator==(const Shape&) const = default;
 };
 
+/// Slabs [first, end) of a grid, or of its rows of light.
+struct SlabRange {
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
+
+/// The slabs of a grid, or of its rows of light, from number `first` on.
+template <class SlabType>
+struct Window {
+  std::size_t first = 0;
+  std::span<SlabType> slabs;
+  [[nodiscard]] std::size_t end() const { return first + slabs.size(); }
+  /// By its number in the grid.
+  [[nodiscard]] SlabType& operator[](std::size_t slab) const { return slabs[slab - first]; }
+};
+
 /// A* takes projections to dose, A is its transpose. Both work on a pass at once: up to four slabs (64
 /// slices), or the whole grid where light couples slices. Dose: fluence summed over a turn; absorbed energy is mu times
 /// it [physics §4].
@@ -39,10 +55,18 @@ class Operator {
   /// Whether slice k is lit by row k in the first place. Else any row may light it in some frame.
   [[nodiscard]] virtual bool rows_are_slices() const { return true; }
 
+  /// The rows of light that give dose in these slabs of objects; their own where slices are not coupled.
+  [[nodiscard]] virtual SlabRange lit_by(const SlabRange& objects) const { return objects; }
+
   /// sinograms = A objects.
   virtual void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const = 0;
   /// objects = A* sinograms: the relative dose.
   virtual void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const = 0;
+  /// A* for a part of a grid whose slices are coupled: `sinograms` has the rows lit_by() the objects, or more. The same
+  /// bytes as of the whole grid where the objects begin with a multiple of 4 slabs and end with one or with the grid.
+  virtual void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
+    adjoint(sinograms.slabs, objects.slabs);
+  }
   /// Multiplies by the approximate inverse of A A* (ramp), in place: adjoint(filter(forward(f))) is about f.
   virtual void filter(std::span<Slab> sinograms) const = 0;
   /// Multiplies by an approximate inverse of A A* that is symmetric and positive definite, in place: the ramp, kept

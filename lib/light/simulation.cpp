@@ -7,8 +7,8 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
-#include "light/beam.hpp"
 #include "light/insert.hpp"
+#include "light/private/simulation_state.hpp"
 
 namespace vam::light {
 
@@ -23,12 +23,13 @@ void require_shape(std::span<const Image> images, Shape shape, const std::string
   }
 }
 
+}  // namespace
+
 std::vector<Slab> slabs_of(std::span<const Image> images, Shape shape, const std::string& what) {
   require_shape(images, shape, what);
   return packed(images, shape.width, shape.height);
 }
 
-/// The operator's unknowns for the light that is shown.
 std::vector<Slab> collapsed(std::span<const Image> sinograms, const Operator& light) {
   const Shape shape = light.sinogram();
   std::vector<Slab> rows = slabs((sinograms.size() + lanes - 1) / lanes, shape.width, shape.height);
@@ -39,26 +40,15 @@ std::vector<Slab> collapsed(std::span<const Image> sinograms, const Operator& li
   return rows;
 }
 
-}  // namespace
-
-/// The light, and its operator where no insert stands in its way.
-struct Simulation::State {
-  model::Grid grid;
-  double resin_mm = 0;
-  Beam beam;
-  std::unique_ptr<Operator> clear;
-
-  /// One slice of a slab; outside the resin there is nothing that takes a dose.
-  [[nodiscard]] Image in_resin(const Slab& slab, std::size_t lane) const {
-    Image image(grid.nx, grid.ny);
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        if (std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm) image(i, j) = slab.at(i, j)[lane];
-      }
+Image Simulation::State::in_resin(const Slab& slab, std::size_t lane) const {
+  Image image(grid.nx, grid.ny);
+  for (int j = 0; j < grid.ny; ++j) {
+    for (int i = 0; i < grid.nx; ++i) {
+      if (std::hypot(grid.x_mm(i), grid.y_mm(j)) < resin_mm) image(i, j) = slab.at(i, j)[lane];
     }
-    return image;
   }
-};
+  return image;
+}
 
 Simulation::Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment,
                        const model::StackInfo& info, const model::Grid& grid, Climb climb)
@@ -81,7 +71,7 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
   std::unique_ptr<Operator> around;
   if (!inserts.empty()) {
     bodies = slabs_of(inserts, state.clear->object(), "insert");
-    around = make_operator(state.beam, bodies);
+    around = state.around(bodies);
   }
   const Operator& light = around ? *around : *state.clear;
   const std::vector<Slab> rows = collapsed(sinograms, light);

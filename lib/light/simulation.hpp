@@ -28,13 +28,15 @@ class Simulation {
              const model::Grid& grid, Climb climb = Climb::follow);
   ~Simulation();
   /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
-  /// of the grid; otherwise any slices with their own sinograms.
+  /// of the grid, as DoseStream does with less memory; otherwise any slices with their own sinograms.
   [[nodiscard]] bool climbs() const;
   /// Throws Fault::data for images of other sizes.
   void dose(std::span<const Image> sinograms, std::span<Image> doses, std::span<const Image> inserts = {}) const;
 
+  struct State;  // private/simulation_state.hpp
+  [[nodiscard]] const State& state() const { return *state_; }
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

@@ -111,14 +111,14 @@ void TileLight::each_voxel(const Visit& visit) const {
   }
 }
 
-void TileLight::load_voxels(std::span<const Slab> objects) {
+void TileLight::load_voxels(const Window<const Slab>& objects) {
   clear_voxels();
   each_voxel([&](int i, int j, std::size_t slab, std::size_t at, int used) {
     std::copy_n(objects[slab].at(i, j), used, voxels_.data() + at);
   });
 }
 
-void TileLight::store_voxels(std::span<Slab> objects) const {
+void TileLight::store_voxels(const Window<Slab>& objects) const {
   each_voxel([&](int i, int j, std::size_t slab, std::size_t at, int used) {
     float* to = objects[slab].at(i, j);
     std::copy_n(voxels_.data() + at, used, to);
@@ -148,7 +148,7 @@ bool TileLight::find_posed_taps(int frame) {
 }
 
 /// The taps of all rays, and the columns and rows that they take from.
-bool TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
+bool TileLight::find_taps(const RayNodes& nodes, int angle, const SlabRange& rows) {
   if (rays_.posed()) {
     if (!find_posed_taps(angle)) return false;
   } else {
@@ -158,22 +158,22 @@ bool TileLight::find_taps(const RayNodes& nodes, int angle, std::size_t slabs) {
   if (!rays_.climbs()) {
     row_ = chunk_.slice();
     rows_ = chunk_.width();
-    lit_first_ = 0;
-    lit_end_ = static_cast<int>(slabs) * lanes;
+    lit_first_ = static_cast<int>(rows.first) * lanes;
+    lit_end_ = static_cast<int>(rows.end) * lanes;
     return true;
   }
   taps_.first_row = std::floor(taps_.first_row);
   row_ = static_cast<int>(taps_.first_row);
   const int needed = static_cast<int>(taps_.last_row - taps_.first_row) + 2;
   rows_ = (needed + lanes - 1) / lanes * lanes;
-  lit_first_ = rays_.first_row();
-  lit_end_ = std::min(static_cast<int>(slabs) * lanes, rays_.end_row());
+  lit_first_ = std::max(static_cast<int>(rows.first) * lanes, rays_.first_row());
+  lit_end_ = std::min(static_cast<int>(rows.end) * lanes, rays_.end_row());
   return true;
 }
 
 /// visit(slab's pixel, place in the tile's light, columns, rows): the lit pixels of the tile, slab by slab.
 template <class SlabType, class Visit>
-void TileLight::each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const {
+void TileLight::each_piece(int angle, const Window<SlabType>& sinograms, const Visit& visit) const {
   const int dark = std::max(0, rays_.padding() - taps_.first_cell);  // columns before the first
   const int column = taps_.first_cell + dark - rays_.padding();
   const int count = std::min(columns_ - dark, rays_.columns() - column);
@@ -188,7 +188,7 @@ void TileLight::each_piece(int angle, std::span<SlabType> sinograms, const Visit
   }
 }
 
-void TileLight::fetch(int angle, std::span<const Slab> sinograms) {
+void TileLight::fetch(int angle, const Window<const Slab>& sinograms) {
   light_.assign(product(columns_, rows_), 0.0F);
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
   each_piece(angle, sinograms, [&](const float* from, std::size_t at, int columns, int rows) {
@@ -196,7 +196,7 @@ void TileLight::fetch(int angle, std::span<const Slab> sinograms) {
   });
 }
 
-void TileLight::put_back(int angle, std::span<Slab> sinograms) const {
+void TileLight::put_back(int angle, const Window<Slab>& sinograms) const {
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));
   each_piece(angle, sinograms, [&](float* to, std::size_t at, int columns, int rows) {
     Kernels::best().add(light_.data() + at, columns, rows, rows_, next, to);
@@ -216,9 +216,10 @@ bool TileLight::shadowed(int angle) const {
 /// How far the light of the tile's pixels reaches, and how far in the voxels are on the rays of their columns.
 void TileLight::cast_shadow(int angle) {
   ends_.assign(product(columns_, rows_), InsertShadow::unhindered);
-  each_piece(angle, shadow_.ends(), [&](const float* from, std::size_t at, int columns, int rows) {
-    Kernels::best().copy(from, columns, rows, rows_, 0, ends_.data() + at);
-  });
+  each_piece(angle, Window<const Slab>{0, shadow_.ends()},
+             [&](const float* from, std::size_t at, int columns, int rows) {
+               Kernels::best().copy(from, columns, rows, rows_, 0, ends_.data() + at);
+             });
   const model::Grid& grid = rays_.setup().grid;
   depth_.assign(product(taps_.taps, taps_.pitch), 0.0F);
   for (int e = 0; e < count(); ++e) {
@@ -237,8 +238,8 @@ TileColumns TileLight::columns() {
   return {light_.data(), ends_.empty() ? nullptr : ends_.data(), depth_.data(), rows_};
 }
 
-void TileLight::take(const RayNodes& nodes, int angle, std::span<const Slab> sinograms) {
-  if (!find_taps(nodes, angle, sinograms.size())) return;
+void TileLight::take(const RayNodes& nodes, int angle, const Window<const Slab>& sinograms) {
+  if (!find_taps(nodes, angle, {sinograms.first, sinograms.end()})) return;
   fetch(angle, sinograms);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
@@ -246,8 +247,8 @@ void TileLight::take(const RayNodes& nodes, int angle, std::span<const Slab> sin
                          voxels_.data() + voxel_gap);
 }
 
-void TileLight::give(const RayNodes& nodes, int angle, std::span<Slab> sinograms) {
-  if (!find_taps(nodes, angle, sinograms.size())) return;
+void TileLight::give(const RayNodes& nodes, int angle, const Window<Slab>& sinograms) {
+  if (!find_taps(nodes, angle, {sinograms.first, sinograms.end()})) return;
   light_.assign(product(columns_, rows_), 0.0F);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);

@@ -31,12 +31,12 @@ InverseLight inverse_of(const VialRays& rays) {
 }
 
 /// Slabs in groups of as many as may share rays: 4, 2 or 1.
-std::vector<Chunk> chunks(std::size_t slabs, int widest) {
+std::vector<Chunk> chunks(const SlabRange& slabs, int widest) {
   std::vector<Chunk> all;
   const std::size_t most = static_cast<std::size_t>(widest / lanes);
-  for (std::size_t first = 0; first < slabs; first += all.back().slabs) {
+  for (std::size_t first = slabs.first; first < slabs.end; first += all.back().slabs) {
     std::size_t count = most;
-    while (count > slabs - first) count /= 2;
+    while (count > slabs.end - first) count /= 2;
     all.push_back({first, count});
   }
   return all;
@@ -84,7 +84,7 @@ VialOperator::VialOperator(const VialSetup& setup, std::span<const Slab> inserts
 
 /// visit(nodes, chunk, tiles) for every tile and slab once.
 template <class Visit>
-void VialOperator::each_chunk(std::size_t slabs, const Visit& visit) const {
+void VialOperator::each_chunk(const SlabRange& slabs, const Visit& visit) const {
   RayNodes buffer;
   for (const int slices : {lanes, 2 * lanes, 4 * lanes}) {
     std::vector<int> tiles;
@@ -105,7 +105,7 @@ double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.
 void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   for (Slab& slab : sinograms) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
   const auto blocks = angle_blocks(sinogram().height);
-  each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
+  each_chunk({0, objects.size()}, [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
     parallel_for(static_cast<int>(blocks.size()), [&](int b) {
       TileLight light(rays_, shadow_);
       const auto [first, end] = blocks[b];
@@ -113,27 +113,45 @@ void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinogr
         const Tile& tile = tiles_[t];
         if (tile.voxels.empty()) continue;
         light.enter(t, tile, chunk);
-        light.load_voxels(objects);
-        for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
+        light.load_voxels({0, objects});
+        for (int angle = first; angle < end; ++angle) light.give(nodes, angle, {0, sinograms});
       }
     });
   });
 }
 
-/// Tiles are shared among the threads.
 void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
-  const int angles = sinogram().height;
-  each_chunk(objects.size(), [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
-    parallel_for(static_cast<int>(tiles.size()), [&](int item) {
-      TileLight light(rays_, shadow_);
-      const int t = tiles[item];
-      const Tile& tile = tiles_[t];
-      light.enter(t, tile, chunk);
-      light.clear_voxels();
-      for (int angle = 0; angle < angles && !tile.voxels.empty(); ++angle) light.take(nodes, angle, sinograms);
-      light.store_voxels(objects);
-    });
+  adjoint_within({0, sinograms}, {0, objects});
+}
+
+SlabRange VialOperator::lit_by(const SlabRange& objects) const {
+  if (!rays_.climbs()) return objects;
+  const auto all = static_cast<std::size_t>((rays_.setup().rows + lanes - 1) / lanes);
+  RowRange rows{rays_.setup().rows, 0};
+  each_chunk(objects, [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>&) {
+    const RowRange here = rays_.rows_to(nodes, chunk.slice(), chunk.width());
+    rows = {std::min(rows.first, here.first), std::max(rows.end, here.end)};
   });
+  if (rows.first >= rows.end) return {all, all};
+  return {static_cast<std::size_t>(rows.first / lanes), static_cast<std::size_t>((rows.end + lanes - 1) / lanes)};
+}
+
+/// Tiles are shared among the threads.
+void VialOperator::adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
+  const int angles = sinogram().height;
+  each_chunk({objects.first, objects.end()},
+             [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
+               parallel_for(static_cast<int>(tiles.size()), [&](int item) {
+                 TileLight light(rays_, shadow_);
+                 const int t = tiles[item];
+                 const Tile& tile = tiles_[t];
+                 light.enter(t, tile, chunk);
+                 light.clear_voxels();
+                 for (int angle = 0; angle < angles && !tile.voxels.empty(); ++angle)
+                   light.take(nodes, angle, sinograms);
+                 light.store_voxels(objects);
+               });
+             });
 }
 
 void VialOperator::expand(const Slab& sinogram, Slab& image) const {

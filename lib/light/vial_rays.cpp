@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -130,6 +131,34 @@ bool VialRays::lit(int first, int slices, int frame) const {
   const auto most = static_cast<double>(most_row_);
   return top * (top > 0 ? most : least) > row_mm(first_row_ - 1) &&
          bottom * (bottom > 0 ? least : most) < row_mm(end_row_);
+}
+
+/// Light of a row falls on the next slices, too, and rays are interpolated between nodes.
+RowRange VialRays::rows_to(const RayNodes& nodes, int first, int slices) const {
+  if (posed()) return posed_rows_to(first, slices);
+  float low = std::numeric_limits<float>::max();
+  float high = std::numeric_limits<float>::lowest();
+  for (const RayNode& node : nodes) {
+    const float half = 0.5F * static_cast<float>(slices - 1) * node.zoom;
+    low = std::min(low, node.row - half);
+    high = std::max(high, node.row + half);
+  }
+  return {std::clamp(static_cast<int>(std::floor(low)) - 1, first_row_, end_row_),
+          std::clamp(static_cast<int>(std::ceil(high)) + 2, first_row_, end_row_)};
+}
+
+RowRange VialRays::posed_rows_to(int first, int slices) const {
+  const auto least = static_cast<double>(least_row_);
+  const auto most = static_cast<double>(most_row_);
+  const model::Range lift = model::lift_mm(setup_.poses);
+  const double bottom = height_mm(first) + lift.least;
+  const double top = height_mm(first + slices - 1) + lift.most;
+  const auto row_at = [&](double z_mm) {
+    return std::clamp((z_mm - setup_.first_row_mm) / setup_.grid.voxel_mm, -2.0, setup_.rows + 2.0);
+  };
+  return {
+      std::clamp(static_cast<int>(std::floor(row_at(bottom * (bottom > 0 ? least : most)))) - 1, first_row_, end_row_),
+      std::clamp(static_cast<int>(std::ceil(row_at(top * (top > 0 ? most : least)))) + 2, first_row_, end_row_)};
 }
 
 HeightScale VialRays::posed_scale(int first, int slices, int frame) const {

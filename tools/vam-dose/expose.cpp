@@ -1,16 +1,17 @@
 #include "vam-dose/expose.hpp"
 
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "light/blur.hpp"
 #include "light/dose_grid.hpp"
+#include "light/dose_stream.hpp"
 #include "light/simulation.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/shown.hpp"
@@ -80,20 +81,19 @@ light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& sim
                                const light::DisplayRange& light, const std::vector<double>& turns, int slices,
                                Insert& insert, Blurred& sink) {
   light::LightSeen seen;
+  const std::vector<Image> inserts = insert.slices(0, slices);
   Progress progress("dose", in.info().count);
-  io::ReadAhead reader(in, batch);
-  std::vector<Image> rows;
+  io::ReadAhead reader(in, lanes / 2);
+  light::DoseStream stream(simulation, inserts, [&](Image dose) { sink.add(dose); });
   for (std::vector<Image> some = reader.next(); !some.empty(); some = reader.next()) {
     light::shine(light, some, seen);
     weigh(turns, some);
-    progress.tick(static_cast<long>(some.size()));
-    std::move(some.begin(), some.end(), std::back_inserter(rows));
+    const auto count = static_cast<long>(some.size());
+    stream.push(std::move(some));
+    progress.tick(count);
   }
-  std::vector<Image> doses(static_cast<std::size_t>(slices));
-  const std::vector<Image> inserts = insert.slices(0, slices);
-  simulation.dose(rows, doses, inserts);
+  stream.finish();
   insert.look_for_dark(simulation, 0, inserts);
-  for (Image& dose : doses) sink.add(dose);
   sink.finish();
   return seen;
 }

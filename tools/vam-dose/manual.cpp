@@ -67,8 +67,12 @@ cli::Manual manual() {
       {"Accuracy: chief-ray doses agree with a sum over individual rays to 1e-3. The dose of a voxel is the mean over "
        "its volume, across the beam exactly for pixels of uniform intensity, along the axis linear between rows. "
        "Outside the radius that is lit from all sides, rays form caustics; doses there are accurate to some per cent.",
-       "Memory: the dose volume, the volume of --like, and three batches of 64 slices; where rays climb, all "
-       "sinograms and the dose once more.",
+       "Memory, where rays climb: 90 slices of dose; the light of 64 slices and of those around them whose rows reach "
+       "them, 4 bytes a lit column and angle; 48 images of the stack; the table of rays, 90 bytes for each of 1440 "
+       "directions and of the voxels from the axis to the corner of the grid (8 times as many beyond the writable "
+       "radius); 0.3 bytes a voxel; and 0.1 GiB. Of dose and --like the voxels beyond 32 MiB lie in a scratch file in "
+       "$TMPDIR, else /var/tmp. Around an insert 8 bytes a voxel and all of the light are added. Elsewhere, three "
+       "batches of 64 slices and images.",
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "8; Kelly et al., Volumetric additive manufacturing via tomographic reconstruction, Science 2019, eq 1."},
       {"vam-optimize", "vam-resample", "vam-score", "vam-view"}};

@@ -8,7 +8,9 @@ namespace vam::dose_tool {
 
 Sink::Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, int first,
            std::optional<model::Circle> judged)
-    : volume_(volume), target_(place.target), insert_(insert), next_(first), judged_(judged) {}
+    : volume_(volume), target_(place.target), insert_(insert), next_(first), judged_(judged) {
+  buffer_.reserve(8 * volume.grid().slice_size());
+}
 
 void Sink::add(Image& dose) {
   const std::vector<Image> inserts = insert_.slices(next_ + pending_, 1);

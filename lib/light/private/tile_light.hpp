@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/slab.hpp"
+#include "light/operator.hpp"
 #include "light/private/insert_shadow.hpp"
 #include "light/private/rays_kernel.hpp"
 #include "light/private/vial_rays.hpp"
@@ -41,25 +42,25 @@ class TileLight {
   void enter(int tile, const Tile& rays, const Chunk& chunk);
   /// What the voxels take and give from now on.
   void clear_voxels() { std::fill(voxels_.begin(), voxels_.end(), 0.0F); }
-  void load_voxels(std::span<const Slab> objects);
-  void store_voxels(std::span<Slab> objects) const;
+  void load_voxels(const Window<const Slab>& objects);
+  void store_voxels(const Window<Slab>& objects) const;
 
   /// Voxels += light of a stage angle.
-  void take(const RayNodes& nodes, int angle, std::span<const Slab> sinograms);
+  void take(const RayNodes& nodes, int angle, const Window<const Slab>& sinograms);
   /// Its transpose: light += voxels.
-  void give(const RayNodes& nodes, int angle, std::span<Slab> sinograms);
+  void give(const RayNodes& nodes, int angle, const Window<Slab>& sinograms);
 
  private:
   template <class Visit>
   void each_voxel(const Visit& visit) const;
   /// False where no light comes.
-  bool find_taps(const RayNodes& nodes, int angle, std::size_t slabs);
+  bool find_taps(const RayNodes& nodes, int angle, const SlabRange& rows);
   bool find_posed_taps(int frame);
   void make_room(std::size_t pitch);
   template <class SlabType, class Visit>
-  void each_piece(int angle, std::span<SlabType> sinograms, const Visit& visit) const;
-  void fetch(int angle, std::span<const Slab> sinograms);
-  void put_back(int angle, std::span<Slab> sinograms) const;
+  void each_piece(int angle, const Window<SlabType>& sinograms, const Visit& visit) const;
+  void fetch(int angle, const Window<const Slab>& sinograms);
+  void put_back(int angle, const Window<Slab>& sinograms) const;
   void cast_shadow(int angle);
   [[nodiscard]] bool shadowed(int angle) const;
   [[nodiscard]] TileColumns columns();

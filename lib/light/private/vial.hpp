@@ -29,6 +29,8 @@ class VialOperator final : public Operator {
   [[nodiscard]] bool rows_are_slices() const override { return !rays_.posed(); }
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
+  [[nodiscard]] SlabRange lit_by(const SlabRange& objects) const override;
+  void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const override;
   void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
   void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
   void expand(const Slab& sinogram, Slab& image) const override;
@@ -36,7 +38,7 @@ class VialOperator final : public Operator {
 
  private:
   template <class Visit>
-  void each_chunk(std::size_t slabs, const Visit& visit) const;
+  void each_chunk(const SlabRange& slabs, const Visit& visit) const;
 
   VialRays rays_;
   std::vector<Tile> tiles_;

@@ -9,6 +9,12 @@
 
 namespace vam::light {
 
+/// Rows [first, end) of light.
+struct RowRange {
+  int first = 0;
+  int end = 0;
+};
+
 /// A pixel is a box of even intensity; it leaves fluence T * density * e^{-mu path} [RAY21 eq 8, in three dimensions:
 /// physics §11] at the voxels on its ray. The mean over a voxel's shadow is exact across the columns, and linear
 /// between rows.
@@ -59,6 +65,9 @@ class VialRays {
   /// Where `count` rays, whole blocks of them, take light from: one node each, and one more.
   void find_posed_taps(const RayNodes& nodes, int count, int frame, int slices, RayTaps& taps) const;
 
+  /// The rows that these slices take light from, `nodes` those at_slices(); with poses, in any frame, rather too many.
+  [[nodiscard]] RowRange rows_to(const RayNodes& nodes, int first, int slices) const;
+
   /// The rows that may be lit.
   [[nodiscard]] int first_row() const { return first_row_; }
   [[nodiscard]] int end_row() const { return end_row_; }
@@ -81,6 +90,7 @@ class VialRays {
   void require_moderate_rays(RayNodes& nodes) const;
   void note_columns();
   void note_rows();
+  [[nodiscard]] RowRange posed_rows_to(int first, int slices) const;
 
   VialSetup setup_;
   RayTable table_;

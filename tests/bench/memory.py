@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Do vam-dose and vam-score keep to the memory that their manuals say? Peak RSS for a gyroid of three voxel sizes.
+
+    python3 tests/bench/memory.py [BUILD [VOXEL_MM...]]
+
+The default voxels give volumes of 10, 40 and 130 million. Exit status 1 if a process takes more than its formula.
+"""
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+BUILD = os.path.abspath((sys.argv[1:] or ["build/release"])[0])
+VOXELS = [float(v) for v in sys.argv[2:]] or [0.0705, 0.0445, 0.03]
+COLUMNS, PIXEL_MM, ANGLES, RESIN_MM, REACH_MM, HEIGHT_MM = 1024, 0.065, 360, 12.7, 8.3, 12.4  # the built-in printer
+MIB = 1 << 20
+
+
+def run(tool, *words):
+    """Peak RSS in MiB, of the process or of its child."""
+    child = subprocess.Popen([BUILD + "/bin/" + tool, *words], stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(child.pid, 0)
+    child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode != 0:
+        sys.exit("%s: status %d" % (tool, child.returncode))
+    return usage.ru_maxrss / 1024
+
+
+def formulas(voxel):
+    """Million voxels of the dose, and the MiB of the manuals' formulas."""
+    side = 2 * REACH_MM / voxel
+    rows = HEIGHT_MM / voxel
+    slice_bytes = 4 * side * side
+    topology = 0.3 * side * side * rows
+    reach_rows = 16 * math.ceil(64 / 16 + 2 + 0.5 / voxel / 16)  # rays climb by 0.25 mm at the ends of 12.4 mm
+    light = 4 * reach_rows * ANGLES * 2 * RESIN_MM / PIXEL_MM
+    images = 48 * 4 * COLUMNS * ANGLES
+    corner = min(RESIN_MM, math.sqrt(2) * REACH_MM)
+    table = 90 * 1440 * (REACH_MM + 8 * (corner - REACH_MM)) / voxel
+    dose = 90 * slice_bytes + light + images + table + topology + 0.1 * 1024 * MIB
+    score = 32 * slice_bytes + topology + 0.15 * 1024 * MIB
+    return side * side * rows / 1e6, dose / MIB, score / MIB
+
+
+def main():
+    os.chdir(tempfile.mkdtemp())
+    kept = True
+    for voxel in VOXELS:
+        voxels, most_dose, most_score = formulas(voxel)
+        run("vam-slice", "--shape", "gyroid:height=%g" % HEIGHT_MM, "--extent", "writable", "--voxel", str(voxel), "-o",
+            "part.vdb")
+        run("vam-optimize", "part.vdb", "--method", "dose-norm", "-o", "light.exr")
+        dose = run("vam-dose", "light.exr", "--like", "part.vdb", "-o", "dose.vdb")
+        score = run("vam-score", "dose.vdb", "--target", "part.vdb")
+        print("%.0f million voxels: vam-dose %.0f MiB of %.0f, vam-score %.0f MiB of %.0f" %
+              (voxels, dose, most_dose, score, most_score), flush=True)
+        kept = kept and dose <= most_dose and score <= most_score
+    return 0 if kept else 1
+
+
+sys.exit(main())
