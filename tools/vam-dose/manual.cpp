@@ -71,8 +71,8 @@ cli::Manual manual() {
        "them, 4 bytes a lit column and angle; 48 images of the stack; the table of rays, 90 bytes for each of 1440 "
        "directions and of the voxels from the axis to the corner of the grid (8 times as many beyond the writable "
        "radius); 0.3 bytes a voxel; and 0.1 GiB. Of dose and --like the voxels beyond 32 MiB lie in a scratch file in "
-       "$TMPDIR, else /var/tmp. Around an insert 8 bytes a voxel and all of the light are added. Elsewhere, three "
-       "batches of 64 slices and images.",
+       "$TMPDIR, else /var/tmp. Around an insert 24 bytes a voxel, the whole stack and three times the light "
+       "of its lit columns are added. Where rays stay level: three batches of 64 slices and images.",
        "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
        "8; Kelly et al., Volumetric additive manufacturing via tomographic reconstruction, Science 2019, eq 1."},
       {"vam-optimize", "vam-resample", "vam-score", "vam-view"}};
