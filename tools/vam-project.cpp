@@ -1,4 +1,5 @@
 // vam-project: projector frames from sinograms, for files or a screen; one frame per time step of the turning stage.
+#include "base/error.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/exr/stack.hpp"
@@ -29,7 +30,11 @@ void run(const cli::App& app, Options& options) {
   if (!options.freeze.empty()) return freeze(options, printer);
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);
-  if (!options.pattern.plan.name.empty()) return show_pattern(app, options, printer.projector);
+  if (!options.pattern.plan.name.empty()) {
+    if (options.only_plan) throw Error{Fault::usage, "--plan: is of a print, not of a --pattern; omit one"};
+    if (options.input != "-") throw Error{Fault::usage, options.input + ": give either SINOGRAM or --pattern"};
+    return show_pattern(app, options, printer.projector);
+  }
   if (options.only_plan) return print_plan(options, printer);
   if (live) return device::interruptible([&] { print_live(app, options, printer); });
   if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);

@@ -29,6 +29,8 @@ fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 # Test patterns, to files and to a dry run.
 fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
 fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
+fails 64 'plan: is of a print' vam-project --pattern star --plan -o null:
+fails 64 'either SINOGRAM or --pattern' vam-project sino.exr --pattern star -o star/
 for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
 ok 'a dry run reports the pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows

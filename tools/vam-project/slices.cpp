@@ -97,7 +97,7 @@ bool is_folder(const std::string& path) {
 
 Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
                       const SliceStack& slices) {
-  for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow"}) {
+  for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow", "--from"}) {
     if (!app.given(option)) continue;
     throw Error{Fault::usage, std::string(option) + ": " + slices.name +
                                   " contains slices, which are shown once, by time; omit the option"};
