@@ -95,6 +95,15 @@ await lit; kill -KILL $printing; wait $printing 2>/dev/null
 for tool in vam-project vam-stage; do await sh -c "! pgrep -x $tool -f killed/printer.toml >/dev/null"; done
 ok 'a killed print is resumed' print --resume killed --run rest
 is 'for its last turn' "$(grep -o '"turns":[0-9]*,"from_deg":[0-9]*' rest/events.jsonl | cut -d, -f1) $(json rest/summary.json outcome)" '"turns":1 done'
+# One that was calibrated needs no records to be resumed: its settings hold them. Its devices must be the same.
+cp -r killed known; vam-stage identify --printer killed/printer.toml >known/stage.json; echo '{"edges": 1}' >known/calibration.json
+ok 'a calibrated print is resumed with its own settings' dry --resume known --run rest2
+is 'its records go along' "$(cat rest2/calibration.json)" '{"edges": 1}'
+is 'by its plan' "$(dry --resume known --plan | grep ^records)" 'records    as in known/printer.toml'
+sed -i 's/"serial": "/&9/' known/stage.json
+fails 65 'known: its stage was another one' dry --resume known --run rest3
+cp -r killed cut; printf '{"event":"flip","t_monotonic_s":9,"frame":1,"angle_deg":7' >>cut/flips.jsonl
+is 'a line that its death cut does not count' "$(print --resume cut --plan 2>&1 | grep ^exposure)" "$(print --resume killed --plan 2>&1 | grep ^exposure)"
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
 ok 'the dose of a run' dose whole.dose '--shown whole'
 ok 'that of a killed one' dose killed.dose '--shown killed'
