@@ -23,7 +23,7 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
-  io::refuse_two_stdins({options.input, options.like});
+  io::refuse_two_stdins({options.input, options.like, options.poses});
   io::refuse_same_file(options.input, options.output);
 
   io::StackReader in(options.input);
@@ -33,7 +33,7 @@ void run(const cli::App& app, Options& options) {
   io::SparseVolume volume = empty_volume(app, place, printer, info);
   const dose_tool::Exposed exposed = expose(in, info, options, printer, place, volume);
 
-  const dose_tool::Unit unit = unit_of(exposed, options, printer);
+  const dose_tool::Unit unit = unit_of(exposed, options, printer, info);
   convert(volume, unit);
   io::write_volume(options.output, volume);
   io::write_report(options.report, "vam-dose/1", figures(exposed, unit, options, printer, info));

@@ -23,7 +23,8 @@ using optimize_tool::Options;
 using optimize_tool::Scene;
 
 void refuse_same_files(const Options& options) {
-  for (const auto* input : {&options.input, &options.init, &options.weights, &options.tolerances}) {
+  for (const auto* input :
+       {&options.input, &options.init, &options.weights, &options.tolerances, &options.poses, &options.wobble}) {
     if (!input->empty()) io::refuse_same_file(*input, options.output);
   }
 }
@@ -33,7 +34,7 @@ void run(const cli::App& app, Options& options) {
   settle(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
-  io::refuse_two_stdins({options.input, options.weights, options.tolerances, options.init});
+  io::refuse_two_stdins({options.input, options.weights, options.tolerances, options.init, options.poses});
   refuse_same_files(options);
   settle_response(app, options);
 
@@ -67,7 +68,7 @@ void run(const cli::App& app, Options& options) {
   sink.finish();
   std::optional<optimize::Trials> trials;
   if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
-  publish(outcome, trials, printer, options);
+  publish(outcome, trials, printer, info, options);
   sink.commit();
   if (checkpoint) checkpoint->remove();
 }

@@ -14,7 +14,8 @@ double window_middle(const model::DoseMetrics& doses) {
   return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
 }
 
-ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer) {
+ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer,
+                           double turns_of_frames) {
   constexpr double most_turns = 1e6;
   constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns is given 3
   const double critical = *printer.resin.critical_dose_mj_cm3;
@@ -26,8 +27,9 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
                                  "; the part cannot be printed at this intensity"};
   }
   ExposurePlan plan;
-  plan.turns = static_cast<int>(std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding))));
-  plan.multiplier = std::min(1.0, critical / (middle * plan.turns));
+  const double showings = std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding)));
+  plan.turns = static_cast<int>(std::lround(showings * turns_of_frames));
+  plan.multiplier = std::min(1.0, critical / (middle * showings));
   plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
   return plan;

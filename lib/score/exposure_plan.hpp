@@ -23,9 +23,10 @@ struct ExposurePlan {
 
 /// The fewest whole turns at which full light brings the critical dose into the middle half of the process window, and
 /// the fraction of full light, at most 1, that puts it in the middle or as near as full light can [physics §4]. `doses`
-/// times `mj_cm3` are those of one turn in full light. Throws Fault::data when the middle is not positive, or when the
-/// turns are more than a million. The printer must have a critical dose.
-[[nodiscard]] ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer);
+/// times `mj_cm3` are those of all frames once in full light, which takes `turns_of_frames`. Throws Fault::data when
+/// the middle is not positive, or when they are shown more than a million times. The printer must have a critical dose.
+[[nodiscard]] ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer,
+                                         double turns_of_frames = 1);
 
 /// turns, seconds, multiplier and peak_intensity_mw_cm2, into a report.
 void add_to(Json& figures, const ExposurePlan& plan);

@@ -45,6 +45,17 @@ fails 64 'not those of one turn that repeats' vam-project sink.exr --turns 2 -o 
 fails 64 'do not return to the first one' vam-dose sink.exr --like part.vdb --exposure-plan --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 -o plan.vdb
 
+resin="--set resin.absorption_per_mm=0.01 --set resin.critical_dose_mj_cm3=100"
+vam-optimize --method fbp --angles 60 --poses sink.csv $resin part.vdb -o once.exr --report once.json
+is "frames that are shown once have no turns to plan" "$(grep -c '"turns"' once.json)" 0
+vam-optimize --method fbp --angles 60 --poses wobble.csv $resin part.vdb -o again.exr --report again.json
+is "those that repeat do" "$(grep -c '"turns"' again.json)" 1
+slow="--set resin.diffusion_mm2_s=0.0001 --set stage.turns=9"
+vam-dose sink.exr $slow --size 5 -o one.vdb --report one.json
+vam-dose plain.exr $slow --size 5 -o nine.vdb --report nine.json
+holds "they diffuse for their own turn" "($(json nine.json blur_sigma_mm) / $(json one.json blur_sigma_mm)) ^ 2 > 3 "
+fails 64 'standard input' vam-optimize --poses - - -o none.exr
+
 # A helix: three turns for a part that is three pictures high
 picture="--set projector.columns=240 --set projector.rows=40 --set projector.pixel_mm=0.1 --set projector.axis_column=119.5 --set projector.axis_row=19.5 --set projector.lens_distance_mm=120"
 fails 65 'any-height' vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $picture -o tall.vdb

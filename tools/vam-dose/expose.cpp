@@ -13,6 +13,7 @@
 #include "light/dose_grid.hpp"
 #include "light/dose_stream.hpp"
 #include "light/simulation.hpp"
+#include "optics/frames.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/shown.hpp"
 #include "vam-dose/sink.hpp"
@@ -98,13 +99,18 @@ light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& sim
   return seen;
 }
 
-}  // namespace
-
-double blur_mm(const Options& options, const model::Printer& printer) {
+/// Diffusion lasts as long as the print: as many turns as were shown, as frames that are shown once take, or as the
+/// stage makes.
+double blur_mm(const Options& options, const model::Printer& printer, const model::StackInfo& info,
+               double shown_turns) {
   if (options.no_blur) return 0;
-  const double seconds = options.seconds.value_or(model::seconds_of(printer.stage, printer.stage.turns));
+  const double usual = model::repeat(info.poses) ? printer.stage.turns : optics::turns_of(info);
+  const double turns = options.shown.empty() ? usual : shown_turns;
+  const double seconds = options.seconds.value_or(model::seconds_of(printer.stage, turns));
   return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
 }
+
+}  // namespace
 
 Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options& options, const model::Printer& printer,
                const Place& place, io::SparseVolume& volume) {
@@ -125,7 +131,8 @@ Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options&
 
   Exposed exposed;
   for (const double t : turns) exposed.shown_turns += t / static_cast<double>(turns.size());
-  Blurred blurred(blur_mm(options, printer) / place.grid.voxel_mm, sink);
+  exposed.blur_mm = blur_mm(options, printer, info, exposed.shown_turns);
+  Blurred blurred(exposed.blur_mm / place.grid.voxel_mm, sink);
   exposed.climbs = simulation.climbs();
   exposed.light = exposed.climbs ? expose_volume(in, simulation, light, turns, place.grid.nz, insert, blurred)
                                  : expose_slices(in, simulation, light, turns, first, insert, blurred);

@@ -20,13 +20,11 @@ struct Exposed {
   light::LightSeen light;
   double shown_turns = 0;  // mean over the stage angles, with --shown
   bool climbs = false;     // rays that climb were followed
+  double blur_mm = 0;      // standard deviation of the blur by beam and resin; 0 if neglected
   score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
 };
-
-/// Standard deviation in mm of the blur by beam and resin; 0 if neglected.
-[[nodiscard]] double blur_mm(const Options& options, const model::Printer& printer);
 
 /// `info`: of the stack, with the poses to judge it by. Fills the volume, a batch of slices at a time, in units of
 /// intensity times radian. Warns of negative intensities and of part voxels that are in shadow.

@@ -6,6 +6,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "optics/frames.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -14,7 +15,7 @@ namespace vam::dose_tool {
 namespace {
 
 score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
-                            const Options& options) {
+                            double turns_of_frames, const Options& options) {
   if (doses.part == 0 || doses.void_ == 0) {
     throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " part voxels and " +
                                  std::to_string(doses.void_) + " void voxels; --exposure-plan requires both"};
@@ -23,16 +24,17 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
     warn("exposure: void receives up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 per turn, part from " +
          format_number(scale * doses.min_part, 4) + "; there is no process window, the plan is for the best threshold");
   }
-  return score::plan_exposure(doses, scale, printer);
+  return score::plan_exposure(doses, scale, printer, turns_of_frames);
 }
 
 }  // namespace
 
-Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer) {
+Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer,
+             const model::StackInfo& light) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
   Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, {}};
-  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, options);
+  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, optics::turns_of(light), options);
   return unit;
 }
 
@@ -78,7 +80,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;
-  report["blur_sigma_mm"] = blur_mm(options, printer);
+  report["blur_sigma_mm"] = exposed.blur_mm;
   report["absorption_per_mm"] = printer.resin.absorption_per_mm;
   // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.
   report["absorption_for_shortest_print_per_mm"] = 1 / model::resin_radius_mm(printer.vial);

@@ -20,7 +20,8 @@ struct Unit {
 
 /// Absolute when the resin has a critical dose. Throws Fault::data when an exposure is to be planned for a target
 /// without part or void; warns when there is no process window.
-[[nodiscard]] Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer);
+[[nodiscard]] Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer,
+                           const model::StackInfo& light);
 
 /// The volume in that unit.
 void convert(io::SparseVolume& volume, const Unit& unit);

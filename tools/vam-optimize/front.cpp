@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "optics/frames.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "vam-optimize/sink.hpp"
@@ -23,15 +24,15 @@ optimize::Show make_show(const model::Printer& printer, const Options& options) 
 }
 
 std::string front_csv(const std::vector<optimize::FrontPoint>& front, const model::Printer& printer,
-                      const Options& options) {
+                      const model::StackInfo& info, const Options& options) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   std::ostringstream csv;
   csv << "max_intensity,seconds,turns,pw,ver,iou,peak\n";
   for (const optimize::FrontPoint& point : front) {
     csv << format_number(point.max_intensity) << ",";
     const double full_scale = options.full_scale.value_or(point.peak);
-    if (per_radian && full_scale > 0 && score::window_middle(point.metrics) > 0) {
-      const auto plan = score::plan_exposure(point.metrics, *per_radian / full_scale, printer);
+    if (per_radian && model::repeat(info.poses) && full_scale > 0 && score::window_middle(point.metrics) > 0) {
+      const auto plan = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info));
       csv << format_number(plan.seconds) << "," << plan.turns;
     } else {
       csv << ",";

@@ -16,6 +16,6 @@ namespace vam::optimize_tool {
 /// The columns max_intensity,seconds,turns,pw,ver,iou,peak, a line for each limit; seconds and turns are empty unless
 /// the resin is known.
 [[nodiscard]] std::string front_csv(const std::vector<optimize::FrontPoint>& front, const model::Printer& printer,
-                                    const Options& options);
+                                    const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
+#include "optics/frames.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "vam-optimize/front.hpp"
@@ -30,26 +31,28 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
 }
 
-/// Turns and seconds at full grey, of a resin that is known.
+/// Turns and seconds at full grey, of a resin that is known. Frames that are shown once have no number of turns to
+/// plan.
 void add_exposure(Json& report, const optimize::VolumeOutcome& outcome, const model::Printer& printer,
-                  const Options& options) {
+                  const model::StackInfo& info, const Options& options) {
+  if (!model::repeat(info.poses)) return;
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
   if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return;
-  add_to(report, score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer));
+  add_to(report, score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info)));
 }
 
 }  // namespace
 
 void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials,
-             const model::Printer& printer, const Options& options) {
+             const model::Printer& printer, const model::StackInfo& info, const Options& options) {
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
-  if (!options.tradeoff.empty()) io::write_text(options.tradeoff, front_csv(outcome.front, printer, options));
+  if (!options.tradeoff.empty()) io::write_text(options.tradeoff, front_csv(outcome.front, printer, info, options));
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();
-  add_exposure(report, outcome, printer, options);
+  add_exposure(report, outcome, printer, info, options);
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
   io::write_report(options.report, "vam-optimize/1", report);
 }

@@ -84,8 +84,8 @@ optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
   }
   constexpr double sure = 0.95;  // the middle of the window may lie a little below the threshold that was aimed at
   const double threshold = options.demands.window.threshold();
-  return {.most = sure * *options.turns * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3,
-          .of_even = 0};
+  const double showings = *options.turns * scene.turn.angles / static_cast<double>(scene.frames());
+  return {.most = sure * showings * threshold * *per_radian / *scene.printer.resin.critical_dose_mj_cm3, .of_even = 0};
 }
 
 }  // namespace

@@ -71,6 +71,10 @@ TEST_CASE("full light for fewer turns will do where the critical dose is still i
   const ExposurePlan two = plan_exposure(window(44, 54), 1, printer);  // 100 is within 2 x (46.5 ... 51.5)
   CHECK(two.turns == 2);
   CHECK(two.multiplier == 1);
+  const ExposurePlan helix = plan_exposure(window(44, 54), 1, printer, 3);  // frames of three turns, twice
+  CHECK(helix.turns == 3 * two.turns);
+  CHECK(helix.multiplier == two.multiplier);
+  CHECK(helix.seconds == doctest::Approx(3 * two.seconds));
   const ExposurePlan three = plan_exposure(window(4.2, 5.2), 10, printer);  // 100 is beyond 2 x (44.5 ... 49.5)
   CHECK(three.turns == 3);
   CHECK(three.multiplier == doctest::Approx(100 / (3 * 47.0)));
