@@ -41,6 +41,7 @@ quiet "frames of light with poses" vam-project sink.exr $sixty -o frames/ --repo
 is "one turn, whatever stage.turns is" "$(vam-project sink.exr $sixty --set stage.turns=3 -o three/ --report three.json; json three.json frames)" 60
 fails 64 'shown once' vam-project sink.exr $sixty --turns 2 -o two/
 quiet "a wobble repeats" vam-project wobble.exr $sixty --turns 2 -o two/
+fails 64 'not those of one turn that repeats' vam-project sink.exr --plan --turns 2 -o null:
 fails 64 'not those of one turn that repeats' vam-project sink.exr --turns 2 -o null:
 fails 64 'do not return to the first one' vam-dose sink.exr --like part.vdb --exposure-plan --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 -o plan.vdb

@@ -29,6 +29,9 @@ fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log
 # Test patterns, to files and to a dry run.
 fails 64 'did you mean grid' vam-project --pattern gridd -o grid/
 fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
+fails 64 'whole turns' vam-project part.exr -o null: --plan --turns 1.5
+fails 64 'from: 720 degrees are not within the 2 turns' vam-project part.exr -o null: --turns 2 --from 720
+fails 64 'from: 720 degrees are not within the 2 turns' vam-project part.exr -o null: --plan --turns 2 --from 720
 fails 64 'plan: is of a print' vam-project --pattern star --plan -o null:
 fails 64 'either SINOGRAM or --pattern' vam-project sino.exr --pattern star -o star/
 for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-project --pattern $pattern -o $pattern/; done

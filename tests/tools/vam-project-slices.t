@@ -39,6 +39,7 @@ holds "shown for 53 / 200 s, about 16 blanks" "$(json live.json lit_flips) >= 10
 fails 64 'both set the slice rate' vam-project slices.exr $screen --fps 5 --print-speed 1000 -o x/
 fails 64 'levels does not state its slice height; give --fps' vam-project levels $screen --print-speed 1000 -o x/
 fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o x/
+fails 64 'plan: slices.exr contains slices' vam-project slices.exr $screen --plan -o null:
 fails 64 'from: slices.exr contains slices' vam-project slices.exr $screen --from 90 -o null: --log why
 fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o null: --log why
 vam-slice --shape disc-grid --voxel 0.4 | vam-sinogram --filter ram-lak --negative clip | vam-resample | vam-project --bits 8 --speed 120 --fps 2 -o turn.exr

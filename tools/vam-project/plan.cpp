@@ -15,6 +15,8 @@
 #include "io/exr/stack.hpp"
 #include "score/exposure.hpp"
 #include "vam-project/match.hpp"
+#include "vam-project/print.hpp"
+#include "vam-project/slices.hpp"
 #include "vam-project/turn.hpp"
 
 namespace vam::project {
@@ -76,13 +78,19 @@ void say_devices(const Options& options, const model::Printer& printer) {
   say("engine", options.live.light + identity_text(light->identify()));
 }
 
+[[noreturn]] void refuse_slices(const std::string& input) {
+  throw Error{Fault::usage, "--plan: " + input + " contains slices, which are shown once, by time; omit the option"};
+}
+
 }  // namespace
 
 void print_plan(const Options& options, const model::Printer& printer) {
+  if (is_folder(options.input)) refuse_slices(options.input);
   io::StackReader reader(options.input);
   const model::StackInfo info = reader.info();
+  if (info.kind == model::Kind::frames) refuse_slices(options.input);
   require_printer(options, info, printer);
-  const double turns = options.turns.value_or(printer.stage.turns);
+  const int turns = turns_to_show(options, info, printer);
   const double full_scale =
       options.peak.value_or(read_light(options, reader, printer.projector).peak) / options.intensity;
   const int frames = options.live.frames_per_turn.value_or(info.height);
@@ -90,7 +98,7 @@ void print_plan(const Options& options, const model::Printer& printer) {
   say("frames", std::to_string(frames) + " a turn, " + std::to_string(projector.columns) + " x " +
                     std::to_string(projector.rows) + ", " + std::to_string(projector.bits) + " bits; at most " +
                     format_number(memory_mb(info, projector, frames), 4) + " MB of memory");
-  say("exposure", format_number(turns) + (turns == 1 ? " turn at " : " turns at ") +
+  say("exposure", std::to_string(turns) + (turns == 1 ? " turn at " : " turns at ") +
                       format_number(printer.stage.speed_deg_s) +
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
   say("light", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for " +

@@ -33,14 +33,8 @@ void play_slices(const cli::App& app, const Options& options, const model::Print
   write_report(options, report, sink.tally);
 }
 
-int whole_turns(const Options& options, const model::Printer& printer) {
-  const double turns = options.turns.value_or(printer.stage.turns);
-  if (turns == std::floor(turns)) return static_cast<int>(turns);
-  throw Error{Fault::usage, "--turns: a live print needs whole turns, not " + format_number(turns)};
-}
-
 // A screen shows one turn's frames again and again, and nothing here lifts the vial.
-void require_one_turn(const Options& options, const model::StackInfo& info, int turns) {
+void require_one_turn(const Options& options, const model::StackInfo& info, double turns) {
   if (info.poses.empty() ||
       (std::abs(optics::turns_of(info) - 1) < 1e-6 && (turns == 1 || model::repeat(info.poses)))) {
     return;
@@ -52,9 +46,9 @@ void require_one_turn(const Options& options, const model::StackInfo& info, int 
 }
 
 // One turn's frames into the display, then the print: the angle of the stage chooses the frame.
-void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, int turns,
-                io::StackReader& reader, Live& live) {
-  require_one_turn(options, reader.info(), turns);
+void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
+                Live& live) {
+  const int turns = turns_to_show(options, reader.info(), printer);
   const auto differences = require_printer(options, reader.info(), printer);
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.peak.value_or(light.peak);
@@ -73,8 +67,20 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
 
 }  // namespace
 
+int turns_to_show(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
+  const double turns = options.turns.value_or(printer.stage.turns);
+  if (turns != std::floor(turns)) {
+    throw Error{Fault::usage, "--turns: a live print needs whole turns, not " + format_number(turns)};
+  }
+  if (options.live.from_deg >= 360 * turns) {
+    throw Error{Fault::usage, "--from: " + format_number(options.live.from_deg) + " degrees are not within the " +
+                                  format_number(turns) + " turns of the print, which would stay black"};
+  }
+  require_one_turn(options, info, turns);
+  return static_cast<int>(turns);
+}
+
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {
-  const int turns = whole_turns(options, printer);
   if (options.live.follow == "-" && options.input == "-") {
     throw Error{Fault::usage,
                 "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
@@ -86,7 +92,7 @@ void print_live(const cli::App& app, const Options& options, const model::Printe
     if (reader.info().kind == model::Kind::frames) {
       return play_slices(app, options, printer, slices_of(options.input, reader), live);
     }
-    play_turns(app, options, printer, turns, reader, live);
+    play_turns(app, options, printer, reader, live);
   });
 }
 
