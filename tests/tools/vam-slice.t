@@ -130,7 +130,7 @@ fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-c
 fails 65 'vial.s inner radius' vam-slice cube.stl --insert far.stl --no-centre -o x.vdb
 fails 65 'black' vam-slice black -o x.vdb
 fails 66 'missing.stl' vam-slice missing.stl -o x.vdb
-fails 66 'printer' vam-slice cube.stl --printer none.toml -o x.vdb
+fails 66 'none.toml: cannot open' vam-slice cube.stl --printer none.toml -o x.vdb
 fails 64 'cube.stl' vam-slice cube.stl -o cube.stl
 fails 73 'no/such' vam-slice cube.stl -o no/such/x.vdb
 fails 74 'full' vam-slice cube.stl -o /dev/full
