@@ -12,7 +12,7 @@
 #include "base/text.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/depth_to_axis.hpp"
 
 namespace vam::light {
 

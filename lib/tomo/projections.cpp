@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/depth_to_axis.hpp"
 
 namespace vam::tomo {
 

@@ -6,7 +6,7 @@
 
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
-#include "light/private/vial.hpp"
+#include "light/private/vial_operator.hpp"
 #include "optics/writable.hpp"
 
 namespace {

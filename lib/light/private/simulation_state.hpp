@@ -8,7 +8,7 @@
 
 #include "base/image.hpp"
 #include "base/slab.hpp"
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 #include "light/operator.hpp"
 #include "light/simulation.hpp"
 

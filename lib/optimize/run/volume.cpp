@@ -6,7 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "light/blurred.hpp"
+#include "light/blurred_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/private/even_dose.hpp"
 #include "optimize/run/private/finished.hpp"

@@ -1,3 +1,5 @@
+#include "light/blurred_operator.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -7,8 +9,7 @@
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
 #include "light/blur.hpp"
-#include "light/blurred.hpp"
-#include "light/private/parallel.hpp"
+#include "light/private/parallel_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"

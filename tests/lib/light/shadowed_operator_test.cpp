@@ -1,3 +1,5 @@
+#include "light/private/shadowed_operator.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -5,8 +7,7 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/private/attenuated.hpp"
-#include "light/private/shadowed.hpp"
+#include "light/private/attenuated_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "oracle/part_2d.hpp"

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "light/private/vial.hpp"
+#include "light/private/vial_operator.hpp"
 
 namespace parts {
 

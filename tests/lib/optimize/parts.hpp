@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/run_method.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 #include "light/simulation.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 #include "light/simulation.hpp"
 #include "model/tolerances.hpp"
 #include "optimize/methods/tolerant.hpp"

@@ -1,4 +1,4 @@
-#include "tomo/absorption.hpp"
+#include "tomo/depth_to_axis.hpp"
 
 #include <cmath>
 

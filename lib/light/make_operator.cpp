@@ -1,4 +1,4 @@
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 
 #include <cmath>
 #include <string>
@@ -6,10 +6,10 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "light/private/attenuated.hpp"
-#include "light/private/parallel.hpp"
-#include "light/private/shadowed.hpp"
-#include "light/private/vial.hpp"
+#include "light/private/attenuated_operator.hpp"
+#include "light/private/parallel_operator.hpp"
+#include "light/private/shadowed_operator.hpp"
+#include "light/private/vial_operator.hpp"
 
 namespace vam::light {
 

@@ -1,11 +1,11 @@
-#include "light/private/shadowed.hpp"
+#include "light/private/shadowed_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/depth_to_axis.hpp"
 #include "tomo/trapezoid.hpp"
 
 namespace vam::light {

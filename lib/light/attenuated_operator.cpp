@@ -1,11 +1,11 @@
-#include "light/private/attenuated.hpp"
+#include "light/private/attenuated_operator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/per_slice.hpp"
 #include "model/circle.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/depth_to_axis.hpp"
 
 namespace vam::light {
 

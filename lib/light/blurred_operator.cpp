@@ -1,4 +1,4 @@
-#include "light/blurred.hpp"
+#include "light/blurred_operator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "light/private/parallel.hpp"
+#include "light/private/parallel_operator.hpp"
 
 #include <algorithm>
 #include <cmath>

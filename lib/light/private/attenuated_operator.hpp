@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "light/beam.hpp"
+#include "light/make_operator.hpp"
 #include "light/operator.hpp"
 #include "light/private/inverse.hpp"
 #include "tomo/projections.hpp"
