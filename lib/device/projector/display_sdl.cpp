@@ -1,5 +1,3 @@
-#include <SDL.h>
-
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
@@ -8,23 +6,24 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "device/projector/display_backends.hpp"
+#include "device/projector/private/sdl_library.hpp"
 
 namespace vam::device {
 
 namespace {
 
 Error refused(const std::string& doing) {
-  return {Fault::absent, "sdl: cannot " + doing + " (" + SDL_GetError() + ")"};
+  return {Fault::absent, "sdl: cannot " + doing + " (" + sdl::api().SDL_GetError() + ")"};
 }
 
 struct WindowCloser {
-  void operator()(SDL_Window* window) const { SDL_DestroyWindow(window); }
+  void operator()(SDL_Window* window) const { sdl::api().SDL_DestroyWindow(window); }
 };
 struct RendererCloser {
-  void operator()(SDL_Renderer* renderer) const { SDL_DestroyRenderer(renderer); }
+  void operator()(SDL_Renderer* renderer) const { sdl::api().SDL_DestroyRenderer(renderer); }
 };
 struct TextureCloser {
-  void operator()(SDL_Texture* texture) const { SDL_DestroyTexture(texture); }
+  void operator()(SDL_Texture* texture) const { sdl::api().SDL_DestroyTexture(texture); }
 };
 struct Library {
   Library() {
@@ -32,12 +31,12 @@ struct Library {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
       throw Error{Fault::absent, "sdl: cannot reach a desktop; set DISPLAY or WAYLAND_DISPLAY, or use drm:"};
     }
-    SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");            // signals are ours
-    SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");  // a print must not vanish at a click elsewhere
-    if (SDL_Init(SDL_INIT_VIDEO) != 0) throw refused("reach a desktop; set DISPLAY or WAYLAND_DISPLAY");
-    SDL_ShowCursor(SDL_DISABLE);  // before there is a window: a cursor is light, too
+    sdl::api().SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");            // signals are ours
+    sdl::api().SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");  // a print must not vanish at a click elsewhere
+    if (sdl::api().SDL_Init(SDL_INIT_VIDEO) != 0) throw refused("reach a desktop; set DISPLAY or WAYLAND_DISPLAY");
+    sdl::api().SDL_ShowCursor(SDL_DISABLE);  // before there is a window: a cursor is light, too
   }
-  ~Library() { SDL_Quit(); }
+  ~Library() { sdl::api().SDL_Quit(); }
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 };
@@ -46,22 +45,23 @@ class SdlDisplay final : public Display {
  public:
   SdlDisplay(int screen, Clock& clock, Guardian* guardian) : clock_(clock), guardian_(guardian) {
     SDL_Rect bounds{};
-    if (SDL_GetDisplayBounds(screen, &bounds) != 0) {
+    if (sdl::api().SDL_GetDisplayBounds(screen, &bounds) != 0) {
       throw Error{Fault::absent, "sdl:" + std::to_string(screen) + ": no such screen; number of screens: " +
-                                     std::to_string(SDL_GetNumVideoDisplays())};
+                                     std::to_string(sdl::api().SDL_GetNumVideoDisplays())};
     }
     SDL_DisplayMode current{};
-    SDL_GetCurrentDisplayMode(screen, &current);
+    sdl::api().SDL_GetCurrentDisplayMode(screen, &current);
     mode_ = {bounds.w, bounds.h, current.refresh_rate > 0 ? static_cast<double>(current.refresh_rate) : 60.0};
-    window_.reset(SDL_CreateWindow("vam-project", bounds.x, bounds.y, bounds.w, bounds.h,
-                                   SDL_WINDOW_BORDERLESS | SDL_WINDOW_FULLSCREEN_DESKTOP | SDL_WINDOW_ALWAYS_ON_TOP));
+    window_.reset(
+        sdl::api().SDL_CreateWindow("vam-project", bounds.x, bounds.y, bounds.w, bounds.h,
+                                    SDL_WINDOW_BORDERLESS | SDL_WINDOW_FULLSCREEN_DESKTOP | SDL_WINDOW_ALWAYS_ON_TOP));
     if (!window_) throw refused("open a window");
-    renderer_.reset(SDL_CreateRenderer(window_.get(), -1, SDL_RENDERER_PRESENTVSYNC));
+    renderer_.reset(sdl::api().SDL_CreateRenderer(window_.get(), -1, SDL_RENDERER_PRESENTVSYNC));
     if (!renderer_) throw refused("draw");
-    texture_.reset(SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING,
-                                     mode_.columns, mode_.rows));
+    texture_.reset(sdl::api().SDL_CreateTexture(renderer_.get(), SDL_PIXELFORMAT_ARGB8888, SDL_TEXTUREACCESS_STREAMING,
+                                                mode_.columns, mode_.rows));
     if (!texture_) throw refused("draw");
-    SDL_DisableScreenSaver();
+    sdl::api().SDL_DisableScreenSaver();
     origin_s_ = clock_.now_s();
     next_s_ = origin_s_;
     present(-1);
@@ -87,7 +87,7 @@ class SdlDisplay final : public Display {
     draw(index);
     watch(index >= 0);
     answer_events();
-    SDL_RenderPresent(renderer_.get());
+    sdl::api().SDL_RenderPresent(renderer_.get());
     pace();
     if (index < 0) unwatch();
     const double now_s = clock_.now_s();
@@ -99,20 +99,20 @@ class SdlDisplay final : public Display {
 
  private:
   void draw(int index) {
-    SDL_SetRenderDrawColor(renderer_.get(), 0, 0, 0, 255);
-    SDL_RenderClear(renderer_.get());
+    sdl::api().SDL_SetRenderDrawColor(renderer_.get(), 0, 0, 0, 255);
+    sdl::api().SDL_RenderClear(renderer_.get());
     if (index < 0) return;
     void* pixels = nullptr;
     int pitch = 0;
-    if (SDL_LockTexture(texture_.get(), nullptr, &pixels, &pitch) != 0) throw refused("draw");
+    if (sdl::api().SDL_LockTexture(texture_.get(), nullptr, &pixels, &pitch) != 0) throw refused("draw");
     const auto& bytes = frames_[index];
     for (int y = 0; y < mode_.rows; ++y) {
       auto* row = reinterpret_cast<std::uint32_t*>(static_cast<char*>(pixels) + static_cast<std::ptrdiff_t>(y) * pitch);
       const auto* from = bytes.data() + static_cast<std::ptrdiff_t>(y) * mode_.columns;
       for (int x = 0; x < mode_.columns; ++x) row[x] = 0xFF000000U | from[x] * 0x010101U;
     }
-    SDL_UnlockTexture(texture_.get());
-    SDL_RenderCopy(renderer_.get(), texture_.get(), nullptr, nullptr);
+    sdl::api().SDL_UnlockTexture(texture_.get());
+    sdl::api().SDL_RenderCopy(renderer_.get(), texture_.get(), nullptr, nullptr);
   }
 
   // A screen without a vertical blank (a virtual one, or a driver that ignores the wish) returns at once: then the
@@ -128,7 +128,7 @@ class SdlDisplay final : public Display {
 
   static void answer_events() {
     SDL_Event event{};
-    while (SDL_PollEvent(&event) != 0) {
+    while (sdl::api().SDL_PollEvent(&event) != 0) {
       const bool escape = event.type == SDL_KEYDOWN && event.key.keysym.sym == SDLK_ESCAPE;
       if (escape || event.type == SDL_QUIT) std::raise(SIGINT);
     }

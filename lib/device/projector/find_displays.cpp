@@ -1,6 +1,5 @@
 #include "device/projector/find_displays.hpp"
 
-#include <SDL.h>
 #include <fcntl.h>
 #include <unistd.h>
 #include <xf86drm.h>
@@ -9,8 +8,10 @@
 #include <cstdlib>
 #include <string>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "device/projector/private/drm_output.hpp"
+#include "device/projector/private/sdl_library.hpp"
 
 namespace vam::device {
 
@@ -48,22 +49,22 @@ void add_drm(std::vector<Found>& found) {
 // Without a desktop SDL would count an invisible screen.
 void add_sdl(std::vector<Found>& found) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
-  SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
-  if (SDL_Init(SDL_INIT_VIDEO) != 0) {
-    found.push_back(
-        {"display", "sdl:0", "", std::string("the desktop cannot be reached (") + SDL_GetError() + "); check DISPLAY"});
+  sdl::api().SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
+  if (sdl::api().SDL_Init(SDL_INIT_VIDEO) != 0) {
+    found.push_back({"display", "sdl:0", "",
+                     std::string("the desktop cannot be reached (") + sdl::api().SDL_GetError() + "); check DISPLAY"});
     return;
   }
-  for (int n = 0; n < SDL_GetNumVideoDisplays(); ++n) {
+  for (int n = 0; n < sdl::api().SDL_GetNumVideoDisplays(); ++n) {
     SDL_DisplayMode mode{};
-    if (SDL_GetCurrentDisplayMode(n, &mode) != 0) continue;
-    const char* name = SDL_GetDisplayName(n);
+    if (sdl::api().SDL_GetCurrentDisplayMode(n, &mode) != 0) continue;
+    const char* name = sdl::api().SDL_GetDisplayName(n);
     found.push_back({"display", "sdl:" + std::to_string(n),
                      size_text(mode.w, mode.h, mode.refresh_rate > 0 ? mode.refresh_rate : 60) +
                          (name != nullptr ? std::string(", ") + name : ""),
                      ""});
   }
-  SDL_Quit();
+  sdl::api().SDL_Quit();
 }
 
 }  // namespace
@@ -71,7 +72,11 @@ void add_sdl(std::vector<Found>& found) {
 std::vector<Found> find_displays() {
   std::vector<Found> found;
   add_drm(found);
-  add_sdl(found);
+  try {
+    add_sdl(found);
+  } catch (const Error& missing) {
+    found.push_back({"display", "sdl:0", "", missing.what()});
+  }
   return found;
 }
 

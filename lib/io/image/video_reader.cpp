@@ -38,7 +38,8 @@ Slices judged_slices(const std::uint8_t* bytes, std::size_t size, bool checksums
     const std::size_t slice = (std::size_t{at[0]} << 16 | std::size_t{at[1]} << 8 | at[2]) + footer;
     if (slice > size) return Slices::broken;
     size -= slice;
-    right = right && (!checksums || av_crc(av_crc_get_table(AV_CRC_32_IEEE), 0, bytes + size, slice) == 0);
+    right = right &&
+            (!checksums || av::api().av_crc(av::api().av_crc_get_table(AV_CRC_32_IEEE), 0, bytes + size, slice) == 0);
   }
   return right ? Slices::right : Slices::wrong;
 }
@@ -51,40 +52,42 @@ struct VideoReader::State {
   AVFormatContext* container = nullptr;
   int stream = -1;
   av::Codec codec;
-  av::AvFrame frame{av_frame_alloc()};
-  av::Packet packet{av_packet_alloc()};
+  av::AvFrame frame{av::api().av_frame_alloc()};
+  av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t announced = 0;  // frames; 0: not known
   std::int64_t packets = 0;
 
-  ~State() { avformat_close_input(&container); }
+  ~State() { av::api().avformat_close_input(&container); }
 
   int check(int status, const char* what) const { return av::check(status, Fault::data, path, what); }
 
   void open() {
-    av::check(avformat_open_input(&container, path.c_str(), nullptr, nullptr), Fault::data, path, "opening the video");
-    check(avformat_find_stream_info(container, nullptr), "reading the video");
+    av::check(av::api().avformat_open_input(&container, path.c_str(), nullptr, nullptr), Fault::data, path,
+              "opening the video");
+    check(av::api().avformat_find_stream_info(container, nullptr), "reading the video");
     const AVCodec* decoder = nullptr;
-    stream = check(av_find_best_stream(container, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0), "finding a video stream");
+    stream = check(av::api().av_find_best_stream(container, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0),
+                   "finding a video stream");
     const AVStream& found = *container->streams[stream];
-    codec.reset(avcodec_alloc_context3(decoder));
-    check(avcodec_parameters_to_context(codec.get(), found.codecpar), "video decoder");
-    check(avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
+    codec.reset(av::api().avcodec_alloc_context3(decoder));
+    check(av::api().avcodec_parameters_to_context(codec.get(), found.codecpar), "video decoder");
+    check(av::api().avcodec_open2(codec.get(), decoder, nullptr), "video decoder");
     format = {codec->width, codec->height, bits_of(codec->pix_fmt), av_q2d(found.avg_frame_rate), ""};
     if (format.bits == 0) throw Error{Fault::data, path + ": not a grey video of 8, 10 or 16 bits"};
     const bool steady = container->nb_streams == 1 && av_cmp_q(found.avg_frame_rate, found.r_frame_rate) == 0;
     if (codec->codec_id == AV_CODEC_ID_FFV1 && steady && container->duration > 0) {
       announced = std::llround(static_cast<double>(container->duration) / AV_TIME_BASE * format.fps);
     }
-    if (const AVDictionaryEntry* entry = av_dict_get(container->metadata, "comment", nullptr, 0))
+    if (const AVDictionaryEntry* entry = av::api().av_dict_get(container->metadata, "comment", nullptr, 0))
       format.comment = entry->value;
   }
 
   // The next packet of the stream; false at the end.
   bool read_packet() {
-    int status = av_read_frame(container, packet.get());
+    int status = av::api().av_read_frame(container, packet.get());
     while (status >= 0 && packet->stream_index != stream) {
-      av_packet_unref(packet.get());
-      status = av_read_frame(container, packet.get());
+      av::api().av_packet_unref(packet.get());
+      status = av::api().av_read_frame(container, packet.get());
     }
     if (status != AVERROR_EOF) check(status, "reading the video");
     if (status >= 0) check_packet();
@@ -108,7 +111,7 @@ struct VideoReader::State {
   // Feeds packets until the decoder has a frame; false at the end.
   bool decode() {
     for (;;) {
-      const int status = avcodec_receive_frame(codec.get(), frame.get());
+      const int status = av::api().avcodec_receive_frame(codec.get(), frame.get());
       if (status == AVERROR_EOF) return false;
       if (status != AVERROR(EAGAIN)) {
         check(status, "decoding the video");
@@ -116,8 +119,8 @@ struct VideoReader::State {
         return true;
       }
       const bool more = read_packet();
-      check(avcodec_send_packet(codec.get(), more ? packet.get() : nullptr), "decoding the video");
-      av_packet_unref(packet.get());
+      check(av::api().avcodec_send_packet(codec.get(), more ? packet.get() : nullptr), "decoding the video");
+      av::api().av_packet_unref(packet.get());
     }
   }
 };
@@ -125,7 +128,7 @@ struct VideoReader::State {
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
   if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": no such file"};
   require_whole_matroska(path);
-  av_log_set_level(AV_LOG_QUIET);
+  av::api().av_log_set_level(AV_LOG_QUIET);
   state_->path = path;
   state_->open();
 }
@@ -152,7 +155,7 @@ bool VideoReader::next(GreyImage& image) {
 int count_video_frames(const std::string& path) {
   VideoReader reader(path);
   int count = 0;
-  for (; reader.state_->read_packet(); ++count) av_packet_unref(reader.state_->packet.get());
+  for (; reader.state_->read_packet(); ++count) av::api().av_packet_unref(reader.state_->packet.get());
   return count;
 }
 

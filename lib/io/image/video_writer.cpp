@@ -77,16 +77,16 @@ struct VideoWriter::State {
   AVFormatContext* container = nullptr;
   AVStream* stream = nullptr;
   av::Codec codec;
-  av::AvFrame frame{av_frame_alloc()};
-  av::Packet packet{av_packet_alloc()};
+  av::AvFrame frame{av::api().av_frame_alloc()};
+  av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t written = 0;
 
   State(const std::string& path, const VideoFormat& wanted)
       : format(wanted), lossless(path.ends_with(".mkv")), sink(path) {}
   ~State() {
-    avformat_free_context(container);
-    if (io != nullptr) av_freep(&io->buffer);
-    avio_context_free(&io);
+    av::api().avformat_free_context(container);
+    if (io != nullptr) av::api().av_freep(&io->buffer);
+    av::api().avio_context_free(&io);
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -97,58 +97,59 @@ struct VideoWriter::State {
   }
 
   void open_container() {
-    check(avformat_alloc_output_context2(&container, nullptr, lossless ? "matroska" : "mp4", nullptr),
+    check(av::api().avformat_alloc_output_context2(&container, nullptr, lossless ? "matroska" : "mp4", nullptr),
           "video container");
-    io = avio_alloc_context(static_cast<unsigned char*>(av_malloc(buffer_bytes)), buffer_bytes, 1, &sink, nullptr,
-                            EncoderSink::on_write, sink.file.is_stream() ? nullptr : EncoderSink::on_seek);
+    io = av::api().avio_alloc_context(static_cast<unsigned char*>(av::api().av_malloc(buffer_bytes)), buffer_bytes, 1,
+                                      &sink, nullptr, EncoderSink::on_write,
+                                      sink.file.is_stream() ? nullptr : EncoderSink::on_seek);
     container->pb = io;
     container->flags |= AVFMT_FLAG_BITEXACT;  // no library version, no random identifiers
-    av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
+    av::api().av_dict_set(&container->metadata, "comment", format.comment.c_str(), 0);
   }
 
   void open_codec() {
     const AVCodec* encoder =
-        lossless ? avcodec_find_encoder(AV_CODEC_ID_FFV1) : avcodec_find_encoder_by_name("libx264");
+        lossless ? av::api().avcodec_find_encoder(AV_CODEC_ID_FFV1) : av::api().avcodec_find_encoder_by_name("libx264");
     if (encoder == nullptr)
       throw Error{Fault::absent, sink.file.name() + ": this libavcodec has no H.264 encoder (libx264); write .mkv"};
-    codec.reset(avcodec_alloc_context3(encoder));
+    codec.reset(av::api().avcodec_alloc_context3(encoder));
     codec->width = lossless ? format.width : format.width + format.width % 2;
     codec->height = lossless ? format.height : format.height + format.height % 2;
     codec->pix_fmt = pixel_format(lossless, format.bits);
     codec->color_range = AVCOL_RANGE_JPEG;
-    codec->framerate = av_d2q(format.fps, 1000000);
+    codec->framerate = av::api().av_d2q(format.fps, 1000000);
     codec->time_base = av_inv_q(codec->framerate);
     codec->thread_count = 1;  // x264's bytes depend on it
     codec->flags |= AV_CODEC_FLAG_BITEXACT;
     if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     if (lossless) {
       codec->gop_size = 1;  // every frame stands alone
-      av_opt_set_int(codec.get(), "level", 3, 0);
+      av::api().av_opt_set_int(codec.get(), "level", 3, 0);
       codec->slices = 4;
-      av_opt_set_int(codec->priv_data, "slicecrc", 1, 0);
+      av::api().av_opt_set_int(codec->priv_data, "slicecrc", 1, 0);
     } else {
-      av_opt_set(codec->priv_data, "preset", "veryfast", 0);
-      av_opt_set(codec->priv_data, "crf", "16", 0);
+      av::api().av_opt_set(codec->priv_data, "preset", "veryfast", 0);
+      av::api().av_opt_set(codec->priv_data, "crf", "16", 0);
     }
-    check(avcodec_open2(codec.get(), encoder, nullptr), "video encoder");
+    check(av::api().avcodec_open2(codec.get(), encoder, nullptr), "video encoder");
   }
 
   void open_stream() {
-    stream = avformat_new_stream(container, nullptr);
+    stream = av::api().avformat_new_stream(container, nullptr);
     stream->time_base = codec->time_base;
     stream->avg_frame_rate = codec->framerate;
-    check(avcodec_parameters_from_context(stream->codecpar, codec.get()), "video stream");
+    check(av::api().avcodec_parameters_from_context(stream->codecpar, codec.get()), "video stream");
     AVDictionary* options = nullptr;
     // MP4 keeps its index at the end and seeks back; on a pipe it must come in fragments.
-    if (!lossless && sink.file.is_stream()) av_dict_set(&options, "movflags", "frag_keyframe+empty_moov", 0);
-    const int status = avformat_write_header(container, &options);
-    av_dict_free(&options);
+    if (!lossless && sink.file.is_stream()) av::api().av_dict_set(&options, "movflags", "frag_keyframe+empty_moov", 0);
+    const int status = av::api().avformat_write_header(container, &options);
+    av::api().av_dict_free(&options);
     check(status, "video header");
     frame->format = codec->pix_fmt;
     frame->width = codec->width;
     frame->height = codec->height;
     frame->color_range = codec->color_range;
-    check(av_frame_get_buffer(frame.get(), 0), "video frame");
+    check(av::api().av_frame_get_buffer(frame.get(), 0), "video frame");
   }
 
   void fill(const GreyImage& image) {
@@ -172,15 +173,15 @@ struct VideoWriter::State {
   }
 
   void send(const AVFrame* next) {
-    check(avcodec_send_frame(codec.get(), next), "video encoding");
+    check(av::api().avcodec_send_frame(codec.get(), next), "video encoding");
     for (;;) {
-      const int status = avcodec_receive_packet(codec.get(), packet.get());
+      const int status = av::api().avcodec_receive_packet(codec.get(), packet.get());
       if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
       check(status, "video encoding");
       packet->stream_index = 0;
       packet->duration = 1;
-      av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
-      check(av_interleaved_write_frame(container, packet.get()), "writing the video");
+      av::api().av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+      check(av::api().av_interleaved_write_frame(container, packet.get()), "writing the video");
     }
   }
 };
@@ -189,7 +190,7 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   if (!path.ends_with(".mkv") && !path.ends_with(".mp4")) {
     throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (lossy preview)"};
   }
-  av_log_set_level(AV_LOG_QUIET);
+  av::api().av_log_set_level(AV_LOG_QUIET);
   state_ = std::make_unique<State>(path, format);
   state_->open_container();
   state_->open_codec();
@@ -204,7 +205,7 @@ void VideoWriter::write(const GreyImage& image) {
     throw Error{Fault::bug, s.sink.file.name() + ": frame " + std::to_string(s.written) +
                                 " has another size or depth than the video"};
   }
-  s.check(av_frame_make_writable(s.frame.get()), "video frame");
+  s.check(av::api().av_frame_make_writable(s.frame.get()), "video frame");
   s.fill(image);
   s.frame->pts = s.written++;
   s.send(s.frame.get());
@@ -213,8 +214,8 @@ void VideoWriter::write(const GreyImage& image) {
 void VideoWriter::commit() {
   State& s = *state_;
   s.send(nullptr);
-  s.check(av_write_trailer(s.container), "ending the video");
-  avio_flush(s.io);
+  s.check(av::api().av_write_trailer(s.container), "ending the video");
+  av::api().avio_flush(s.io);
   s.check(0, "ending the video");
   s.sink.file.commit();
 }

@@ -1,25 +1,18 @@
 // Private to video_*.cpp: libav's objects with owners, and its status codes as Errors.
 #pragma once
 
-extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/crc.h>
-#include <libavutil/imgutils.h>
-#include <libavutil/opt.h>
-}
-
 #include <memory>
 #include <string>
 
 #include "base/error.hpp"
+#include "io/image/private/av_library.hpp"
 
 namespace vam::io::av {
 
 struct Free {
-  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(AVCodecContext* context) const { api().avcodec_free_context(&context); }
+  void operator()(AVFrame* frame) const { api().av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { api().av_packet_free(&packet); }
 };
 using Codec = std::unique_ptr<AVCodecContext, Free>;
 using AvFrame = std::unique_ptr<AVFrame, Free>;
@@ -29,7 +22,7 @@ using Packet = std::unique_ptr<AVPacket, Free>;
 inline int check(int status, Fault fault, const std::string& name, const char* what) {
   if (status >= 0) return status;
   char words[AV_ERROR_MAX_STRING_SIZE];
-  av_strerror(status, static_cast<char*>(words), sizeof words);
+  api().av_strerror(status, static_cast<char*>(words), sizeof words);
   throw Error{fault, name + ": " + what + " failed: " + static_cast<char*>(words)};
 }
 

@@ -1,0 +1,28 @@
+// SDL, loaded when a desktop is asked for its screens: with X11, Wayland and sound it is 40 libraries. Its header says
+// what the functions are; nothing is linked.
+#pragma once
+
+#include <SDL.h>
+
+// Every function of SDL that is called.
+// clang-format off
+#define VAM_SDL_FUNCTIONS(X)                                                                                  \
+  X(SDL_CreateRenderer) X(SDL_CreateTexture) X(SDL_CreateWindow) X(SDL_DestroyRenderer) X(SDL_DestroyTexture) \
+  X(SDL_DestroyWindow) X(SDL_DisableScreenSaver) X(SDL_GetCurrentDisplayMode) X(SDL_GetDisplayBounds)         \
+  X(SDL_GetDisplayName) X(SDL_GetError) X(SDL_GetNumVideoDisplays) X(SDL_Init) X(SDL_LockTexture)             \
+  X(SDL_PollEvent) X(SDL_Quit) X(SDL_RenderClear) X(SDL_RenderCopy) X(SDL_RenderPresent) X(SDL_SetHint)       \
+  X(SDL_SetRenderDrawColor) X(SDL_ShowCursor) X(SDL_UnlockTexture)
+// clang-format on
+
+namespace vam::device::sdl {
+
+struct Api {
+#define VAM_POINTER(name) decltype(&::name) name;
+  VAM_SDL_FUNCTIONS(VAM_POINTER)
+#undef VAM_POINTER
+};
+
+/// Throws Fault::absent when the machine does not have it.
+const Api& api();
+
+}  // namespace vam::device::sdl
