@@ -5,8 +5,8 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "io/settings/response_file.hpp"
 #include "printer.hpp"
+#include "response.hpp"
 
 namespace vam::curethrough {
 
@@ -56,12 +56,11 @@ Print resolve(const PrintOptions& options, double slice_um) {
   if (options.critical_dose_mj_cm3) process.critical_dose_mj_cm3 = *options.critical_dose_mj_cm3;
   process.max_intensity_mw_cm2 = projector.max_intensity_mw_cm2;
   process.min_intensity_mw_cm2 = projector.min_intensity_mw_cm2;
+  print.response = tool::response_of(projector);
   if (!projector.response.empty()) {
-    print.response = resin::Response(io::read_response(projector.response));
     process.min_intensity_mw_cm2 = print.response.intensity(0) * process.max_intensity_mw_cm2;
   }
   print.limits = resin::limits_of(process);
-  if (projector.response.empty()) print.response = resin::projector_response(projector);
   return print;
 }
 

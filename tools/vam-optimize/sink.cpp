@@ -1,14 +1,11 @@
 #include "vam-optimize/sink.hpp"
 
-#include "io/settings/response_file.hpp"
+#include "response.hpp"
 
 namespace vam::optimize_tool {
 
 resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
-  const auto& file = printer.projector.response;
-  const auto response =
-      file.empty() ? resin::projector_response(printer.projector) : resin::Response(io::read_response(file));
-  return {response, bits};
+  return {tool::response_of(printer.projector), bits};
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)

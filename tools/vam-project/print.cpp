@@ -34,7 +34,7 @@ void play_slices(const cli::App& app, const Options& options, const model::Print
 }
 
 // A screen shows one turn's frames again and again, and nothing here lifts the vial.
-void require_one_turn(const Options& options, const model::StackInfo& info, double turns) {
+void require_repeating_poses(const Options& options, const model::StackInfo& info, double turns) {
   if (info.poses.empty() ||
       (std::abs(optics::turns_of(info) - 1) < 1e-6 && (turns == 1 || model::repeat(info.poses)))) {
     return;
@@ -76,7 +76,7 @@ int turns_to_show(const Options& options, const model::StackInfo& info, const mo
     throw Error{Fault::usage, "--from: " + format_number(options.live.from_deg) + " degrees are not within the " +
                                   format_number(turns) + " turns of the print, which would stay black"};
   }
-  require_one_turn(options, info, turns);
+  require_repeating_poses(options, info, turns);
   return static_cast<int>(turns);
 }
 

@@ -7,8 +7,8 @@
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "io/settings/response_file.hpp"
 #include "optics/frames.hpp"
+#include "response.hpp"
 
 namespace vam::project {
 
@@ -22,14 +22,9 @@ void warn_clipped(const resin::LightTally& tally) {
 
 }  // namespace
 
-resin::Response response_of(const model::Projector& projector) {
-  if (projector.response.empty()) return resin::projector_response(projector);
-  return resin::Response(io::read_response(projector.response));
-}
-
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
                        io::FrameSink& sink) {
-  const resin::GreyLevels levels(response_of(projector), projector.bits);
+  const resin::GreyLevels levels(tool::response_of(projector), projector.bits);
   std::vector<resin::LightTally> tallies(static_cast<std::size_t>(frames.count));
   const auto develop = [&](int n, io::ProjectorFrame& frame) {
     if (!frames.in_order) frame.intensity = frames.light(n);

@@ -20,8 +20,6 @@ struct Frames {
   bool in_order = false;
 };
 
-[[nodiscard]] resin::Response response_of(const model::Projector& projector);
-
 /// All frames through the grey levels into the sink, a few at a time; `scale` takes the light to fractions of full.
 /// Warns of what was clipped.
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
