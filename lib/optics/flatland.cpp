@@ -77,7 +77,7 @@ void FlatlandSlice::check() const {
 
 float FlatlandSlice::peak() const { return *std::max_element(nearest_.values.begin(), nearest_.values.end()); }
 
-Image FlatlandSlice::frame(double angle_deg, double span_deg) const {
+Image FlatlandSlice::frame(double angle_deg, double span_deg, const Image&) const {
   return smear(projection_at(nearest_, info_, angle_deg, span_deg), info_.pixel_mm, angle_deg * rad_per_deg, canvas_);
 }
 

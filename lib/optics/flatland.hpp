@@ -50,7 +50,8 @@ class FlatlandSlice {
   void check() const;
 
   [[nodiscard]] float peak() const;
-  [[nodiscard]] Image frame(double angle_deg, double span_deg) const;
+  /// As FrameComposer::frame, but in memory of its own.
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, const Image& former = {}) const;
 
  private:
   std::string subject_;

@@ -169,8 +169,11 @@ void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* 
   for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
 }
 
-Image FrameComposer::frame(double angle_deg, double span_deg) const {
-  Image image(place_.columns, place_.rows);
+Image FrameComposer::frame(double angle_deg, double span_deg, Image former) const {
+  Image image = std::move(former);
+  image.width = place_.columns;
+  image.height = place_.rows;
+  image.values.assign(static_cast<std::size_t>(place_.columns) * place_.rows, 0.0F);
   const Taps angles = sample_taps((angle_deg - info_.angle_start_deg) / info_.angle_step_deg,
                                   span_deg / std::abs(info_.angle_step_deg));
   const int count = static_cast<int>(slices_.size());

@@ -58,8 +58,8 @@ class FrameComposer {
   /// What the projector must show around one stage angle, over the span that the stage turns meanwhile, in the units of
   /// the stack: interpolated between the sinogram's angles, or averaged over those that the span covers; likewise from
   /// slices to rows. The stack is repeated turn by turn, but for poses that do not return to the first one: beyond the
-  /// ends the last frame holds. Many threads may ask at once.
-  [[nodiscard]] Image frame(double angle_deg, double span_deg) const;
+  /// ends the last frame holds. The image is made in the memory of a former one. Many threads may ask at once.
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, Image former = {}) const;
 
  private:
   struct Slice {

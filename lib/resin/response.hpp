@@ -70,8 +70,9 @@ struct LightTally {
 /// Multiplies by scale and clips at full intensity, 1.
 LightTally limit_to_full(Image& image, float scale);
 
-/// Every pixel's nearest level. Intensities are fractions of full; beyond what the projector can do they are clamped.
-[[nodiscard]] GreyImage to_levels(const Image& intensity, const GreyLevels& levels);
+/// Every pixel's nearest level, in the memory of a former image. Intensities are fractions of full; beyond what the
+/// projector can do they are clamped.
+void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& image);
 
 /// What the projector gives for these levels, as fractions of full intensity.
 [[nodiscard]] Image to_intensity(const GreyImage& image, const GreyLevels& levels);

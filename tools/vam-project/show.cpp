@@ -1,6 +1,8 @@
 #include "vam-project/show.hpp"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "base/json.hpp"
@@ -27,24 +29,24 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
   const resin::GreyLevels levels(tool::response_of(projector), projector.bits);
   std::vector<resin::LightTally> tallies(static_cast<std::size_t>(frames.count));
   const auto develop = [&](int n, io::ProjectorFrame& frame) {
-    if (!frames.in_order) frame.intensity = frames.light(n);
+    if (!frames.in_order) frame.intensity = frames.light(n, std::move(frame.intensity));
     frame.time_s = n / frames.fps;
     frame.angle_deg = n * frames.step_deg;
     tallies[n] = resin::limit_to_full(frame.intensity, scale);
     optics::orient(frame.intensity, projector.orientation);
-    frame.levels = resin::to_levels(frame.intensity, levels);
+    resin::to_levels(frame.intensity, levels, frame.levels);
     if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
   };
   Progress progress("projecting", frames.count);
-  const int batch = 2 * threads();
+  std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(2 * threads(), frames.count)));
+  const int batch = static_cast<int>(shown.size());
   for (int first = 0; first < frames.count; first += batch) {
-    std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(batch, frames.count - first)));
-    const int count = static_cast<int>(shown.size());
+    const int count = std::min(batch, frames.count - first);
     for (int i = 0; i < (frames.in_order ? count : 0); ++i) {
-      shown[i].intensity = frames.light(first + i);
+      shown[i].intensity = frames.light(first + i, std::move(shown[i].intensity));
     }
     parallel_for(count, [&](int i) { develop(first + i, shown[i]); });
-    sink.write(shown);
+    sink.write(std::span(shown).first(count));
     progress.tick(count);
   }
   sink.commit();

@@ -1,6 +1,7 @@
 #include "vam-project/turn.hpp"
 
 #include <memory>
+#include <utility>
 
 #include "base/log.hpp"
 #include "optics/flatland.hpp"
@@ -15,7 +16,7 @@ Light read_light(io::StackReader& reader, const std::shared_ptr<Source>& source)
   Image slice;
   for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source->add(slice, about.z_mm);
   source->check();
-  return {[source](double angle, double span) { return source->frame(angle, span); },
+  return {[source](double angle, double span, Image former) { return source->frame(angle, span, std::move(former)); },
           static_cast<double>(source->peak())};
 }
 
@@ -38,7 +39,8 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
 
 Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {
   return {schedule.count, schedule.fps, schedule.step_deg,
-          [&](int n) { return light.frame(schedule.angle_deg(n), schedule.step_deg); }, false};
+          [&](int n, Image former) { return light.frame(schedule.angle_deg(n), schedule.step_deg, std::move(former)); },
+          false};
 }
 
 }  // namespace vam::project

@@ -13,7 +13,7 @@ namespace vam::project {
 
 /// What to show around a stage angle, over a span of angles, in the units of the stack whose largest value is peak.
 struct Light {
-  std::function<Image(double angle_deg, double span_deg)> frame;
+  std::function<Image(double angle_deg, double span_deg, Image former)> frame;
   double peak = 0;
 };
 

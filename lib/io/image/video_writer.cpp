@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <vector>
 
+#include "base/parallel.hpp"
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/video.hpp"
 #include "io/stream/stream.hpp"
@@ -60,11 +62,14 @@ struct EncoderSink {
   }
 };
 
-// The grey level in 0..255, or itself in the wider formats.
-std::uint16_t stored_level(int level, const GreyImage& image, bool lossless) {
-  if (image.bits < 8) return static_cast<std::uint16_t>(level * 255 / image.full());
-  if (!lossless && image.bits > 8) return static_cast<std::uint16_t>(level >> (image.bits - 8));
-  return static_cast<std::uint16_t>(level);
+// Each grey level in 0..255.
+std::vector<std::uint8_t> stored_bytes(int bits) {
+  const int full = (1 << bits) - 1;
+  std::vector<std::uint8_t> bytes;
+  for (int level = 0; level <= full; ++level) {
+    bytes.push_back(static_cast<std::uint8_t>(bits < 8 ? level * 255 / full : level >> (bits - 8)));
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -72,6 +77,8 @@ std::uint16_t stored_level(int level, const GreyImage& image, bool lossless) {
 struct VideoWriter::State {
   VideoFormat format;
   bool lossless;
+  bool wide;                         // levels as they are, in 16 bits
+  std::vector<std::uint8_t> stored;  // else each level's byte
   EncoderSink sink;
   AVIOContext* io = nullptr;
   AVFormatContext* container = nullptr;
@@ -82,7 +89,11 @@ struct VideoWriter::State {
   std::int64_t written = 0;
 
   State(const std::string& path, const VideoFormat& wanted)
-      : format(wanted), lossless(path.ends_with(".mkv")), sink(path) {}
+      : format(wanted),
+        lossless(path.ends_with(".mkv")),
+        wide(lossless && wanted.bits > 8),
+        stored(stored_bytes(wanted.bits)),
+        sink(path) {}
   ~State() {
     av::api().avformat_free_context(container);
     if (io != nullptr) av::api().av_freep(&io->buffer);
@@ -119,7 +130,8 @@ struct VideoWriter::State {
     codec->color_range = AVCOL_RANGE_JPEG;
     codec->framerate = av::api().av_d2q(format.fps, 1000000);
     codec->time_base = av_inv_q(codec->framerate);
-    codec->thread_count = 1;  // x264's bytes depend on it
+    codec->thread_count = lossless ? threads() : 1;  // x264's bytes depend on it
+    codec->thread_type = FF_THREAD_SLICE;            // FFV1's do not: it has the same slices
     codec->flags |= AV_CODEC_FLAG_BITEXACT;
     if ((container->oformat->flags & AVFMT_GLOBALHEADER) != 0) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     if (lossless) {
@@ -152,18 +164,23 @@ struct VideoWriter::State {
     check(av::api().av_frame_get_buffer(frame.get(), 0), "video frame");
   }
 
+  void fill_row(const std::uint16_t* from, int width, std::uint8_t* row) const {
+    if (format.bits == 8) {  // as they are: many at once
+      std::transform(from, from + width, row, [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+    } else {
+      std::transform(from, from + width, row, [this](std::uint16_t level) { return stored[level]; });
+    }
+  }
+
   void fill(const GreyImage& image) {
-    const bool wide = lossless && format.bits > 8;
     for (int y = 0; y < frame->height; ++y) {
       std::uint8_t* row = frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0];
-      const int from_y = std::min(y, image.height - 1);
-      for (int x = 0; x < frame->width; ++x) {
-        const std::uint16_t level = stored_level(image(std::min(x, image.width - 1), from_y), image, lossless);
-        if (wide) {
-          std::memcpy(row + static_cast<std::ptrdiff_t>(2) * x, &level, sizeof level);
-        } else {
-          row[x] = static_cast<std::uint8_t>(level);
-        }
+      const std::uint16_t* from = image.values.data() + image.index(0, std::min(y, image.height - 1));
+      if (wide) {
+        std::memcpy(row, from, sizeof *from * static_cast<std::size_t>(image.width));
+      } else {
+        fill_row(from, image.width, row);
+        std::fill(row + image.width, row + frame->width, row[image.width - 1]);  // an odd width
       }
     }
     for (int plane = 1; !lossless && plane < 3; ++plane) {  // no colour

@@ -96,7 +96,8 @@ TEST_CASE("images of levels and of intensity are each other's inverse; above ful
   const GreyLevels levels(Response(gamma_table(2.2)), 4);
   vam::Image light(3, 1);
   light.values = {levels.intensity(3), 7.0F, -1.0F};
-  const vam::GreyImage image = to_levels(light, levels);
+  vam::GreyImage image;
+  to_levels(light, levels, image);
   CHECK(image.bits == 4);
   CHECK(image.values == std::vector<std::uint16_t>{3, 15, 0});
   CHECK(to_intensity(image, levels).values == std::vector<float>{levels.intensity(3), 1.0F, 0.0F});
