@@ -83,7 +83,7 @@ void declare(cli::App& app, Options& o) {
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pixel pitch at the axis before binning. Default: the stack's, else camera.pixel_mm.");
   app.option("--axis", "PX", o.axis_column, cli::any,
-             "Column of the axis after binning. Default: camera.axis_column, else found in the views.");
+             "Column of the axis before binning. Default: camera.axis_column, else found in the views.");
   app.option(
       "--tilt", "DEG", o.tilt_deg, {-30, 30},
       "Tilt of the axis, positive with its lower end to the right. Default: camera.tilt_deg, else found in the views.");

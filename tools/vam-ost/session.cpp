@@ -20,6 +20,10 @@ namespace vam::ost_tool {
 
 namespace {
 
+// Users and records count pixels before binning; b binned ones begin where the first of b begins.
+double binned(double px, int binning) { return (px + 0.5) / binning - 0.5; }
+double captured(double px, int binning) { return (px + 0.5) * binning - 0.5; }
+
 std::optional<double> isovalue_of(const Options& o) {
   if (o.resin_record.empty()) return o.isovalue;
   if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
@@ -172,8 +176,8 @@ Json Session::bodies() const { return isovalue_ ? metrology::to_json(bodies_) : 
 
 Json Session::figures(const model::Volume& volume) const {
   const auto& a = axis_;
-  Json json{{"axis_column_px", a.pose.column},
-            {"axis_column_sigma_px", a.column_sigma},
+  Json json{{"axis_column_px", captured(a.pose.column, options_.binning)},
+            {"axis_column_sigma_px", a.column_sigma * options_.binning},
             {"axis_tilt_deg", a.pose.tilt_rad * deg_per_rad},
             {"axis_tilt_sigma_deg", a.tilt_sigma_rad * deg_per_rad},
             {"voxel_mm", volume.grid.voxel_mm},
@@ -192,16 +196,13 @@ std::optional<metrology::Cured> Session::state(const model::Volume& volume) cons
 
 // What the options say, else the calibrated axis, else what the views show.
 void Session::place_axis(std::span<const metrology::CameraView> views) {
-  std::optional<double> column = options_.axis_column;
-  if (!column && printer_.camera.axis_column) {
-    column = (*printer_.camera.axis_column + 0.5) / options_.binning - 0.5;  // it counts pixels as captured
-  }
+  const std::optional<double> column = options_.axis_column ? options_.axis_column : printer_.camera.axis_column;
   const std::optional<double> tilt_deg = options_.tilt_deg ? options_.tilt_deg : printer_.camera.tilt_deg;
   if (!column || !tilt_deg) {
     const auto found = metrology::find_axis(metrology::mean_view(views));
     if (!rig_ || found.column_sigma < axis_.column_sigma) axis_ = found;  // else what is known is better
   }
-  if (column) axis_.pose.column = *column;
+  if (column) axis_.pose.column = binned(*column, options_.binning);
   if (tilt_deg) axis_.pose.tilt_rad = *tilt_deg * rad_per_deg;
 }
 
@@ -210,12 +211,13 @@ void Session::set_up(std::span<const metrology::CameraView> views, double stack_
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
   how.refraction = !options_.no_refraction;
-  if (printer_.camera.axis_row) how.axis_row = (*printer_.camera.axis_row + 0.5) / options_.binning - 0.5;
+  if (printer_.camera.axis_row) how.axis_row = binned(*printer_.camera.axis_row, options_.binning);
   how.non_negative = options_.negative == "clip";
   rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
                                                        axis_.pose, how);
-  note("axis at column " + format_number(axis_.pose.column, 6) + " +- " + format_number(axis_.column_sigma, 2) +
-       " px, tilt " + format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
+  note("axis at column " + format_number(captured(axis_.pose.column, options_.binning), 6) + " +- " +
+       format_number(axis_.column_sigma * options_.binning, 2) + " px, tilt " +
+       format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
        format_number(axis_.tilt_sigma_rad * deg_per_rad, 2) + " deg");
 }
 
