@@ -19,8 +19,8 @@ rm former.exr present.exr
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
 fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
-fails 66 'cannot be opened' $take --frames 1 --follow missing -o views.exr
-fails 69 'cannot be opened' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
+fails 66 'cannot open' $take --frames 1 --follow missing -o views.exr
+fails 69 'cannot open' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
 fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
 vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr --log why 2>said
 is 'what ended it is logged' "$(json why event) $(json why status)" 'error 69'

@@ -104,7 +104,7 @@ holds "larger errors above" "$(json sweep.json points.4.ratio) > 0.1"
 
 # ---- wrong inputs
 fails 64 'no command' vam-curethrough
-fails 65 'the minimum, 120 mW/cm2, must be at least 0 and below the maximum' \
+fails 64 "min-irradiance: 120 mW/cm2 is not below the maximum" \
   vam-curethrough correct ladder.vdb --min-irradiance 120 --max-irradiance 110 -o no.exr
 fails 65 'slice height: 50 um is more than ten absorbance heights' \
   vam-curethrough correct ladder.vdb $light --absorbance-height 4 -o no.exr

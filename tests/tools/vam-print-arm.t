@@ -35,7 +35,7 @@ got=$(sed -n 's/.*that takes \([0-9.]*\) turns/\1/p' dose.txt)
 holds 'turns to the critical dose are those of vam-optimize' "($got - $wanted) ^ 2 < (1e-2 * $wanted) ^ 2"
 plan --screen drm:X --set vial.radius_mm=6 --set stage.device=grbl:/nowhere --views 90 --set 'camera.device=v4l2:/nowhere' >plan.txt 2>errors
 is 'a plan goes on after what is not in order' "$? $(grep -c 'not in order' plan.txt) $(grep -c . errors)" '65 4 4'
-ok 'which is said in a line each' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot be opened" errors'
+ok 'which is said in a line each' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot open" errors'
 plan --set 'stage.device=sim:?travel_deg=360' >plan.txt 2>errors
 is 'travel beyond the limits' "$? $(grep -c 'require travel from .* but the controller allows -360 to 360' errors)" '65 1'
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''

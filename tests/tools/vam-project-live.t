@@ -12,7 +12,7 @@ fails 64 'whole turns' vam-project part.exr -o null: --turns 1.5
 fails 64 'cannot be both' vam-project - -o null: --follow -
 fails 64 'unknown scheme|unknown option' vam-project part.exr -o null:?herz=5 --log why
 fails 64 'out of range' vam-project part.exr -o null: --missed 2
-fails 66 'cannot be opened' vam-project part.exr -o null: --follow missing
+fails 66 'cannot open' vam-project part.exr -o null: --follow missing
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
 fails 64 '47 % is above the limit of 40 %' vam-project part.exr -o null: --light 'sim:?current_percent=47' --log why

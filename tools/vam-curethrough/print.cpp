@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -43,6 +44,12 @@ Print resolve(const PrintOptions& options, double slice_um) {
   model::Projector& projector = print.printer.projector;
   if (options.min_intensity_mw_cm2) projector.min_intensity_mw_cm2 = *options.min_intensity_mw_cm2;
   if (options.max_intensity_mw_cm2) projector.max_intensity_mw_cm2 = *options.max_intensity_mw_cm2;
+  if ((options.min_intensity_mw_cm2 || options.max_intensity_mw_cm2) &&
+      projector.min_intensity_mw_cm2 >= projector.max_intensity_mw_cm2) {
+    throw Error{Fault::usage, "--min-irradiance: " + format_number(projector.min_intensity_mw_cm2) +
+                                  " mW/cm2 is not below the maximum, " + format_number(projector.max_intensity_mw_cm2) +
+                                  " mW/cm2 (--max-irradiance); swap or change them"};
+  }
   if (!options.response.empty()) projector.response = options.response;
 
   resin::Process& process = print.process;

@@ -85,7 +85,7 @@ class V4l2Camera final : public Camera {
       : path_(address.place), settings_(settings), driver_(std::move(driver)), clock_(clock) {
     if (driver_->open(path_.c_str()) < 0) {
       const bool busy = errno == EBUSY;
-      throw Error{busy ? Fault::busy : Fault::absent, path_ + ": cannot be opened (" + std::strerror(errno) + ")"};
+      throw Error{busy ? Fault::busy : Fault::absent, path_ + ": cannot open: " + std::strerror(errno)};
     }
     check_capture();
     choose_format();

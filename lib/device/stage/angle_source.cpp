@@ -51,7 +51,7 @@ class FollowedAngle final : public AngleSource {
  public:
   FollowedAngle(const std::string& path, Clock& clock) : clock_(clock) {
     fd_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd_ < 0) throw Error{Fault::no_input, path + ": cannot be opened (" + std::strerror(errno) + ")"};
+    if (fd_ < 0) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};
   }
   ~FollowedAngle() override { close(fd_); }
 

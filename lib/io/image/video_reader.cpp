@@ -1,3 +1,4 @@
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -126,7 +127,7 @@ struct VideoReader::State {
 };
 
 VideoReader::VideoReader(const std::string& path) : state_(std::make_unique<State>()) {
-  if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": no such file"};
+  if (!std::filesystem::exists(path)) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(ENOENT)};
   require_whole_matroska(path);
   av::api().av_log_set_level(AV_LOG_QUIET);
   state_->path = path;

@@ -1,6 +1,8 @@
 #include "io/settings/response_file.hpp"
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <optional>
 
@@ -37,7 +39,7 @@ void append(model::ResponseTable& table, double grey, double intensity, const st
 
 model::ResponseTable read_response(const std::string& file) {
   std::ifstream stream(file);
-  if (!stream) throw Error{Fault::no_input, file + ": cannot read the response table"};
+  if (!stream) throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
   model::ResponseTable table;
   table.source = file;
   std::string line;

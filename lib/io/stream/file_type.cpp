@@ -56,7 +56,7 @@ std::string file_head(const std::string& path) {
     throw Error{Fault::no_input, path + ": is no regular file; give it on standard input"};
   }
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error{Fault::no_input, path + ": cannot open the file (" + std::strerror(errno) + ")"};
+  if (!stream) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};
   std::string head(look, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(look));
   head.resize(stream.gcount());
