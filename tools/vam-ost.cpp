@@ -6,6 +6,7 @@
 #include "io/settings/report.hpp"
 #include "moved.hpp"
 #include "printer.hpp"
+#include "vam-ost/print.hpp"
 #include "vam-ost/session.hpp"
 
 namespace {
@@ -135,6 +136,7 @@ void declare(cli::App& app, Options& o) {
 
 void once(const cli::App& app, const Options& options) {
   ost_tool::Session session(app, options);
+  ost_tool::Print print(app, options, session.printer().camera);
   io::ViewSource source(options.views, options.step_deg);
   std::vector<metrology::CameraView> views;
   io::CameraFrame frame;
@@ -144,11 +146,13 @@ void once(const cli::App& app, const Options& options) {
   }
   metrology::require_alike(views);
   model::Volume volume = session.reconstruct(views, source.pixel_mm());
-  session.require_print(volume);
+  print.require_in(volume);
   session.write(volume, options.output, source.history());
-  session.keep_print(volume);
-  session.write_print(volume);
-  io::write_report(options.report, "vam-ost/1", session.figures(volume));
+  print.keep(volume);
+  print.write(volume);
+  Json report = session.figures(volume);
+  report.update(print.figures(volume));
+  io::write_report(options.report, "vam-ost/1", report);
 }
 
 void run(const cli::App& app, const Options& options) {

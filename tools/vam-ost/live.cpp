@@ -12,6 +12,7 @@
 #include "io/stream/stream.hpp"
 #include "metrology/ost/sliding_turn.hpp"
 #include "model/conditions.hpp"
+#include "vam-ost/print.hpp"
 #include "vam-ost/session.hpp"
 
 namespace vam::ost_tool {
@@ -42,8 +43,12 @@ std::vector<model::Condition> conditions_of(const Options& options) {
 // Everything that a finished turn leaves behind; true when the print is done.
 class Turns {
  public:
-  Turns(Session& session, const Options& options)
-      : session_(session), options_(options), conditions_(conditions_of(options)), log_(io::open_log(options.log)) {
+  Turns(Session& session, Print& print, const Options& options)
+      : session_(session),
+        print_(print),
+        options_(options),
+        conditions_(conditions_of(options)),
+        log_(io::open_log(options.log)) {
     if (options.output != "-") std::filesystem::create_directories(options.output);
   }
 
@@ -52,12 +57,12 @@ class Turns {
     std::snprintf(name, sizeof name, "scatter-%04d.vdb", index_++);
     if (options_.output != "-")
       session_.write(volume, (std::filesystem::path(options_.output) / name).string(), history);
-    session_.keep_print(volume);
-    session_.write_print(volume);
-    const auto state = session_.state(volume);
+    print_.keep(volume);
+    print_.write(volume);
+    const auto state = print_.state(volume);
     if (state) line.update(metrology::to_json(*state));
     line["dirt"] = session_.dirt();
-    if (!session_.bodies().is_null()) line["bodies"] = session_.bodies();
+    if (const auto bodies = print_.bodies()) line["bodies"] = metrology::to_json(*bodies);
     write_page(options_, index_, line);
     say(line);
     if (conditions_.empty()) return false;
@@ -77,6 +82,7 @@ class Turns {
 
  private:
   Session& session_;
+  Print& print_;
   const Options& options_;
   std::vector<model::Condition> conditions_;
   io::JsonLog log_;
@@ -87,7 +93,8 @@ class Turns {
 
 void live(const cli::App& app, const Options& options) {
   Session session(app, options);
-  Turns turns(session, options);
+  Print print(app, options, session.printer().camera);
+  Turns turns(session, print, options);
   io::ViewSource source(options.views, options.step_deg);
   const double pixel_mm = source.pixel_mm();
   const auto history = source.history();

@@ -8,13 +8,8 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
-#include "io/mesh/file.hpp"
-#include "io/settings/resin_record.hpp"
-#include "metrology/ost/projection_sheet.hpp"
 #include "optics/vial.hpp"
-#include "plot/image_figure.hpp"
 #include "printer.hpp"
-#include "solid/voxel/isosurface.hpp"
 
 namespace vam::ost_tool {
 
@@ -24,26 +19,10 @@ namespace {
 double binned(double px, int binning) { return (px + 0.5) / binning - 0.5; }
 double captured(double px, int binning) { return (px + 0.5) * binning - 0.5; }
 
-std::optional<double> isovalue_of(const Options& o) {
-  if (o.resin_record.empty()) return o.isovalue;
-  if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
-  return io::gelation_isovalue(o.resin_record);
-}
-
 }  // namespace
 
-model::Volume dense(const io::SparseVolume& sparse) {
-  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
-  sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  return volume;
-}
-
 Session::Session(const cli::App& app, const Options& options)
-    : app_(app),
-      options_(options),
-      printer_(tool::load_printer(options.printer)),
-      isovalue_(isovalue_of(options)),
-      rules_{options.pieces_mm3, {}} {
+    : app_(app), options_(options), printer_(tool::load_printer(options.printer)) {
   if (!options.dark.empty()) fields_.dark = io::read_field(options.dark);
   if (!options.flat.empty()) {
     fields_.flat = io::read_field(options.flat);
@@ -52,10 +31,7 @@ Session::Session(const cli::App& app, const Options& options)
     }
   }
   if (options.flat.empty() && !printer_.camera.flat.empty()) fields_.flat = io::read_field(printer_.camera.flat);
-  if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
   (void)optics::camera_view(printer_);  // an impossible bench is no matter of the views
-  constexpr double margin_mm = 1;
-  if (isovalue_ && reference_) rules_.inside = metrology::neighbourhood(*reference_, margin_mm);
 }
 
 metrology::CameraView Session::take(const io::CameraFrame& frame) {
@@ -129,51 +105,6 @@ void Session::say_dirt() const {
   }
 }
 
-void Session::require_print(const model::Volume& volume) const {
-  if (options_.mesh.empty()) return;
-  const float most = *std::max_element(volume.values.begin(), volume.values.end());
-  if (static_cast<double>(most) >= *isovalue_) return;
-  throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
-                               " everywhere; check --isovalue"};
-}
-
-void Session::keep_print(model::Volume& volume) {
-  if (!isovalue_) return;
-  bodies_ = metrology::keep_bodies(volume, *isovalue_, rules_);
-  constexpr double within = 0.75;  // a level on the edge is about half of what is inside
-  if (bodies_.inside > 0 && *isovalue_ > within * bodies_.inside) {
-    warn("isovalue " + format_number(*isovalue_, 3) + " cuts the inside of the print, of which half is below " +
-         format_number(bodies_.inside, 3) + ": parts of it are missing; calibrate the isovalue again" +
-         (printer_.camera.absorption_per_mm > 0 ? "" : ", or set camera.absorption_per_mm"));
-  }
-  if (bodies_.dropped > 0) {
-    note("dropped " + std::to_string(bodies_.dropped) + " bodies of " + format_number(bodies_.dropped_mm3, 3) +
-         " mm3, the largest " + format_number(bodies_.largest_dropped_mm3, 3) + " mm3; kept " +
-         std::to_string(bodies_.kept) + " of " + format_number(bodies_.kept_mm3, 4) + " mm3");
-  }
-}
-
-void Session::write_print(const model::Volume& volume) const {
-  if (!options_.mesh.empty()) {
-    const auto mesh = solid::isosurface(volume, *isovalue_);
-    if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
-  }
-  if (options_.projections.empty()) return;
-  const auto sheet = metrology::projection_sheet(volume, isovalue_, reference_ ? &*reference_ : nullptr);
-  plot::ImageFigure figure;
-  figure.title = "Sum projections";
-  for (std::size_t i = 0; i < sheet.images.size(); ++i)
-    figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
-  figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
-  figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
-  figure.value_label = "relative sum";
-  figure.pixel_mm = sheet.pixel_mm;
-  figure.columns = 3;
-  io::write_png(options_.projections, plot::draw(figure));
-}
-
-Json Session::bodies() const { return isovalue_ ? metrology::to_json(bodies_) : Json(); }
-
 Json Session::figures(const model::Volume& volume) const {
   const auto& a = axis_;
   Json json{{"axis_column_px", captured(a.pose.column, options_.binning)},
@@ -183,15 +114,7 @@ Json Session::figures(const model::Volume& volume) const {
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
   json["dirt"] = dirt();
-  if (isovalue_) json["isovalue"] = *isovalue_;
-  if (isovalue_) json["bodies"] = bodies();
-  if (isovalue_ && reference_) json["print"] = metrology::to_json(metrology::cured(volume, *isovalue_, *reference_));
   return json;
-}
-
-std::optional<metrology::Cured> Session::state(const model::Volume& volume) const {
-  if (!isovalue_ || !reference_) return std::nullopt;
-  return metrology::cured(volume, *isovalue_, *reference_);
 }
 
 // What the options say, else the calibrated axis, else what the views show.

@@ -17,7 +17,7 @@
 namespace vam::device::sdl {
 
 struct Api {
-#define VAM_POINTER(name) decltype(&::name) name;
+#define VAM_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): it is declared here
   VAM_SDL_FUNCTIONS(VAM_POINTER)
 #undef VAM_POINTER
 };

@@ -31,7 +31,7 @@ extern "C" {
 namespace vam::io::av {
 
 struct Api {
-#define VAM_POINTER(name) decltype(&::name) name;
+#define VAM_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): it is declared here
   VAM_AVUTIL_FUNCTIONS(VAM_POINTER)
   VAM_AVCODEC_FUNCTIONS(VAM_POINTER)
   VAM_AVFORMAT_FUNCTIONS(VAM_POINTER)

@@ -1,0 +1,102 @@
+#include "vam-ost/print.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/image/image_file.hpp"
+#include "io/mesh/file.hpp"
+#include "io/settings/resin_record.hpp"
+#include "io/vdb/vdb.hpp"
+#include "metrology/ost/projection_sheet.hpp"
+#include "plot/image_figure.hpp"
+#include "solid/voxel/isosurface.hpp"
+
+namespace vam::ost_tool {
+
+namespace {
+
+std::optional<double> isovalue_of(const Options& o) {
+  if (o.resin_record.empty()) return o.isovalue;
+  if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
+  return io::gelation_isovalue(o.resin_record);
+}
+
+model::Volume dense(const io::SparseVolume& sparse) {
+  model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
+  sparse.read_slices(0, volume.grid.nz, volume.values.data());
+  return volume;
+}
+
+}  // namespace
+
+Print::Print(const cli::App& app, const Options& options, const model::PrinterCamera& camera)
+    : app_(app),
+      options_(options),
+      absorbs_(camera.absorption_per_mm > 0),
+      isovalue_(isovalue_of(options)),
+      rules_{options.pieces_mm3, {}} {
+  if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
+  constexpr double margin_mm = 1;
+  if (isovalue_ && reference_) rules_.inside = metrology::neighbourhood(*reference_, margin_mm);
+}
+
+void Print::keep(model::Volume& volume) {
+  if (!isovalue_) return;
+  bodies_ = metrology::keep_bodies(volume, *isovalue_, rules_);
+  constexpr double within = 0.75;  // a level on the edge is about half of what is inside
+  if (bodies_.inside > 0 && *isovalue_ > within * bodies_.inside) {
+    warn("isovalue " + format_number(*isovalue_, 3) + " cuts the inside of the print, of which half is below " +
+         format_number(bodies_.inside, 3) + ": parts of it are missing; calibrate the isovalue again" +
+         (absorbs_ ? "" : ", or set camera.absorption_per_mm"));
+  }
+  if (bodies_.dropped > 0) {
+    note("dropped " + std::to_string(bodies_.dropped) + " bodies of " + format_number(bodies_.dropped_mm3, 3) +
+         " mm3, the largest " + format_number(bodies_.largest_dropped_mm3, 3) + " mm3; kept " +
+         std::to_string(bodies_.kept) + " of " + format_number(bodies_.kept_mm3, 4) + " mm3");
+  }
+}
+
+void Print::require_in(const model::Volume& volume) const {
+  if (options_.mesh.empty()) return;
+  const float most = *std::max_element(volume.values.begin(), volume.values.end());
+  if (static_cast<double>(most) >= *isovalue_) return;
+  throw Error{Fault::data, "no print at this threshold: scattering is below " + format_number(*isovalue_) +
+                               " everywhere; check --isovalue"};
+}
+
+void Print::write(const model::Volume& volume) const {
+  if (!options_.mesh.empty()) {
+    const auto mesh = solid::isosurface(volume, *isovalue_);
+    if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
+  }
+  if (options_.projections.empty()) return;
+  const auto sheet = metrology::projection_sheet(volume, isovalue_, reference_ ? &*reference_ : nullptr);
+  plot::ImageFigure figure;
+  figure.title = "Sum projections";
+  for (std::size_t i = 0; i < sheet.images.size(); ++i)
+    figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
+  figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
+  figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
+  figure.value_label = "relative sum";
+  figure.pixel_mm = sheet.pixel_mm;
+  figure.columns = 3;
+  io::write_png(options_.projections, plot::draw(figure));
+}
+
+std::optional<metrology::Cured> Print::state(const model::Volume& volume) const {
+  if (!isovalue_ || !reference_) return std::nullopt;
+  return metrology::cured(volume, *isovalue_, *reference_);
+}
+
+std::optional<metrology::BodyCount> Print::bodies() const { return isovalue_ ? std::optional(bodies_) : std::nullopt; }
+
+Json Print::figures(const model::Volume& volume) const {
+  if (!isovalue_) return Json::object();
+  Json json{{"isovalue", *isovalue_}, {"bodies", metrology::to_json(bodies_)}};
+  if (const auto now = state(volume)) json["print"] = metrology::to_json(*now);
+  return json;
+}
+
+}  // namespace vam::ost_tool

@@ -1,0 +1,44 @@
+// What of a scattering volume is the print: where it reaches the isovalue, without what is not of it.
+#pragma once
+
+#include <optional>
+
+#include "base/json.hpp"
+#include "cli/app.hpp"
+#include "metrology/ost/bodies.hpp"
+#include "metrology/ost/cured.hpp"
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "vam-ost/options.hpp"
+
+namespace vam::ost_tool {
+
+class Print {
+ public:
+  /// Reads the record of the isovalue and the target.
+  Print(const cli::App& app, const Options& options, const model::PrinterCamera& camera);
+
+  /// Throws Fault::data when --mesh is wanted and no voxel reaches the isovalue.
+  void require_in(const model::Volume& volume) const;
+  /// With an isovalue: drops the bodies that are not the print, for all that follows. Says what was dropped.
+  void keep(model::Volume& volume);
+  /// --mesh and --projections.
+  void write(const model::Volume& volume) const;
+  /// What the last call of keep() kept and dropped; nothing without an isovalue.
+  [[nodiscard]] std::optional<metrology::BodyCount> bodies() const;
+  /// Nothing without isovalue and target.
+  [[nodiscard]] std::optional<metrology::Cured> state(const model::Volume& volume) const;
+  /// isovalue, bodies and print, of a report; empty without an isovalue.
+  [[nodiscard]] Json figures(const model::Volume& volume) const;
+
+ private:
+  const cli::App& app_;
+  const Options& options_;
+  bool absorbs_;
+  std::optional<double> isovalue_;
+  metrology::BodyRules rules_;
+  std::optional<model::Volume> reference_;
+  metrology::BodyCount bodies_;
+};
+
+}  // namespace vam::ost_tool
