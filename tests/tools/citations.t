@@ -7,9 +7,24 @@ ok "every citation, attribute, printer key, schema and key of a report is in the
 
 mkdir tree
 for part in CONTRIBUTING.md man lib tools scripts tests; do cp -r "$VAM_SOURCE/$part" tree; done
-finds() {  # finds REGEX TEXT: a source file with this text is a fault, and the only one
+finds() {  # finds REGEX TEXT: a source file with this text has this fault and no other; judged by all_found
+  number_of_text=$((number_of_text + 1))
+  printf '%s\n' "$2" >"tree/lib/base/cited_$number_of_text.hpp"
+  printf '%s\n' "$1" >"wanted_$number_of_text"
+}
+number_of_text=0
+all_found() {
+  check tree >faults && report 1 'the check finds faults'
+  for n in $(seq $number_of_text); do
+    file=tree/lib/base/cited_$n.hpp
+    grep "^lib/base/cited_$n.hpp: " faults >here
+    is "found: $(cat "$file")" "$(wc -l <here):$(grep -Ec -f "wanted_$n" here)" 1:1
+    rm "$file"
+  done
+}
+finds_in_page() {  # finds_in_page REGEX TEXT: the only fault is the manual's
   printf '%s\n' "$2" >tree/lib/base/cited.hpp
-  check tree >faults && report 1 "found: $2" && return
+  check tree >faults && report 1 "found: $2"
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
 }
 finds 'vam-physics.7. has no section 99' '// along the ray [physics §2, §99]'
@@ -39,13 +54,14 @@ finds '.KELLY99. is not among the references' '// as in [KELLY99]'
 finds '.RAY21 eq 77. does not stand' '// as in [RAY21 eq 77]'
 finds 'the attribute vam:colour is not defined' 'const char* key = "vam:colour";'
 finds 'has no heading "weather"' '// as it is written [formats: weather]'
-finds "the printer file's projector.colour is missing" '    {"projector", "colour", at<&Printer::projector>},'
 finds 'the key "paint_mm" is not defined' '  Json report{{"turns", 1}, {"paint_mm", 2}};'
 finds 'the key "paint_mm" is not defined' '  Json report; report["repair"]["paint_mm"] = 2;'
 finds 'the key "paint_mm" is not defined' '  finding.value("paint_mm", found, "mm", "fit"); Json facts;'
 finds '"Kelvin, 1887" is to be cited by its key' '// cells of even faces (Kelvin, 1887)'
 finds '"Kelvin et al" is to be cited by its key' '// cells of even faces, Kelvin et al.'
-finds 'the schema vam-paint/1 is missing' 'write_report(path, "vam-paint/1", figures);'
+all_found
+finds_in_page "the printer file's projector.colour is missing" '    {"projector", "colour", at<&Printer::projector>},'
+finds_in_page 'the schema vam-paint/1 is missing' 'write_report(path, "vam-paint/1", figures);'
 sed -i 's/^MethodEntry apg_method();/MethodEntry apg();/' tree/lib/optimize/methods/methods.cpp
 rm -r tree/lib/resin tree/lib/base/cited.hpp tree/scripts/update-man
 check tree >faults
