@@ -15,6 +15,7 @@
 #include "optics/writable.hpp"
 #include "printer.hpp"
 #include "solid/voxel/part.hpp"
+#include "solid/voxel/size_doubt.hpp"
 #include "vam-slice/options.hpp"
 #include "vam-slice/part.hpp"
 
@@ -40,6 +41,13 @@ io::SparseVolume volume_of(const std::string& name, const solid::Part& part, con
   return volume;
 }
 
+void warn_of_size(const cli::App& app, const Options& options, const solid::Part& part,
+                  const solid::FillSummary& content, const model::Grid& grid, const solid::Writable& room) {
+  const bool known = !part.repair || app.given("--unit") || app.given("--scale") || app.given("--fit");
+  const std::string doubt = solid::size_doubt(part, content, grid, options.placement.stretch_z, room, known);
+  if (!doubt.empty()) warn(doubt);
+}
+
 void run(const cli::App& app, Options& options) {
   check(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
@@ -54,7 +62,7 @@ void run(const cli::App& app, Options& options) {
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));
   if (options.any_height) room.low_mm = -(room.high_mm = solid::any_height_mm);
   const solid::Part part = part_of(options, room);
-  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject);
+  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, size_option(options));
   double radius_mm = options.extent == "part" ? 0 : room.radius_mm;
   const std::optional<solid::Part> insert = insert_of(options, part, room);
   if (insert) {
@@ -68,6 +76,7 @@ void run(const cli::App& app, Options& options) {
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", part, grid, content));
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);
+  warn_of_size(app, options, part, content, grid, room);
   const Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
   for (io::SparseVolume& volume : volumes) {

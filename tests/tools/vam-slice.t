@@ -31,6 +31,10 @@ open("quads.obj", "w").write("".join("v %g %g %g\n" % tuple((1 if n >> a & 1 els
     + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
 PY
 python3 mesh.py
+for size in metres=0.01 inches=0.3; do  # half of their edges
+  awk -v half="${size#*=}" '$1 == "v" { print "v", $2 * half, $3 * half, $4 * half; next } { print }' quads.obj \
+    >"${size%=*}.obj"
+done
 
 # volume WANT COMMAND...: vam-slice reports this volume, to 1e-5 (meshes) or 2e-4 (shapes)
 volume() {
@@ -80,6 +84,20 @@ holds "it fills the circle but for half a voxel's diagonal" \
 ok "the writable circle" vam-slice cube.stl --extent writable --voxel 0.25 -o out.vdb --report report.json
 is "its voxels" "$(json report.json voxels.0)" 70
 
+ok "up" vam-slice --shape box:x=2,y=4,z=6 --up y --mirror x --voxel 0.25 -o out.vdb --report report.json
+holds "y points up" "($(json report.json size_mm.2) - 4)^2 < 1e-12"
+says() {  # says REGEX COMMAND...: succeeds with one warning that matches
+  regex=$1; shift
+  ok "warns '$regex': $*" sh -c '"$@" 2>said && [ "$(wc -l <said)" -eq 1 ]' - "$@"
+  ok "so it says" grep -Eq -- "warning: .*$regex" said
+}
+says 'metres.obj: no voxel .*is the file in m ' vam-slice metres.obj --voxel 0.1 -o out.vdb
+says 'inches.obj: the part is only 0.6 mm large; is the file in cm .--unit cm. or in .--unit in.' \
+  vam-slice inches.obj --voxel 0.1 -o out.vdb
+quiet "a size that is asked for" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
+says 'no voxel .*covered to 0.33 at most.; --voxel' \
+  vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb
+
 # Inserts
 ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
 ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
@@ -107,6 +125,8 @@ volume 15 vam-slice odd --voxel 1 --stretch-z 1
 is "whole voxels" "$(json report.json surface_voxels)" 0
 
 # Wrong inputs
+printf '\223NUMPY\001\000' >array.npy
+head -c 200 /dev/zero >>array.npy
 fails 64 'unknown.*did you mean gyroid' vam-slice --shape gyrod -o x.vdb
 fails 64 'outside' vam-slice --shape sphere:diameter=-3 -o x.vdb
 fails 64 '--voxel' vam-slice --shape sphere --voxel -1 -o x.vdb
@@ -123,7 +143,14 @@ fails 65 'no size' vam-slice point.stl -o x.vdb
 fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
 fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
-fails 65 'beyond the writable radius' vam-slice far.stl --no-centre -o x.vdb
+fails 65 'leave out --no-centre; --scale 0.0572 or --fit-writable fits it' vam-slice far.stl --no-centre -o x.vdb
+fails 65 '; --scale 2.91 or --fit-writable fits it, --extent' vam-slice cube.stl --scale 5 -o x.vdb
+ok "which it does" vam-slice cube.stl --scale 2.91 -o x.vdb
+fails 65 '; --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
+fails 65 '; --voxel 1.51 fits it' vam-slice stack --voxel 4 -o x.vdb
+ok "images, too" vam-slice stack --voxel 1.51 -o x.vdb
+fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
+fails 65 'array.npy: is a NumPy array .*, not a mesh; one of' vam-slice array.npy -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb
 fails 65 'more than 4096 per axis' vam-slice cube.stl --voxel 0.001 -o x.vdb
 fails 65 'high.stl: covers no voxel' vam-slice cube.stl --insert high.stl --no-centre -o x.vdb

@@ -3,9 +3,9 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <map>
 
 #include "base/error.hpp"
+#include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {
 
@@ -26,7 +26,10 @@ void declare(cli::App& app, Options& options) {
       "Size of the volume in x and y: bounding circle of the part, the whole writable circle, or all of the resin. "
       "resin: the part may reach beyond the writable radius, where light comes from some angles only.");
   app.group("Placement, applied in this order");
-  app.choice("--unit", options.unit, {"mm", "cm", "m", "in", "um"}, "Unit of the file's coordinates.");
+  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
+  app.choice("--mirror", options.mirror, {"none", "x", "y", "z"}, "Mirror the part: negate that coordinate.");
+  app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"},
+             "Axis of the file that points up; y for files of most programs for animation.");
   app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
   app.option("--rotate", "X,Y,Z", options.rotate_deg, 3, "Rotate about x, then y, then z, in degrees, right-handed.");
   app.option("--fit", "MM", options.placement.fit_mm, cli::positive, "Scale so that the largest dimension is MM.");
@@ -73,16 +76,25 @@ void check(const cli::App& app, const Options& options) {
     if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
   }
   if (is_folder(options.input)) {
-    for (const char* flag : {"--scale", "--rotate", "--fit", "--fit-writable", "--no-centre", "--insert"}) {
+    for (const char* flag :
+         {"--scale", "--mirror", "--up", "--rotate", "--fit", "--fit-writable", "--no-centre", "--insert"}) {
       if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to images; use --voxel"};
     }
   }
 }
 
+solid::SizeOption size_option(const Options& options) {
+  const double stretch_z = options.placement.stretch_z;
+  if (is_folder(options.input)) return {"--voxel", options.voxel_mm.value(), stretch_z};
+  if (options.placement.fit_mm) return {"--fit", *options.placement.fit_mm, stretch_z};
+  return {"--scale", options.placement.scale / solid::mm_per(options.unit), stretch_z};
+}
+
 void settle(Options& options, const model::Printer& printer) {
   solid::Placement& placement = options.placement;
-  static const std::map<std::string, double> mm_per{{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
-  placement.scale *= mm_per.at(options.unit);
+  placement.scale *= solid::mm_per(options.unit);
+  placement.axes = solid::upright(options.up);
+  if (options.mirror != "none") placement.axes = placement.axes * solid::mirrored(options.mirror);
   if (!options.rotate_deg.empty()) std::copy_n(options.rotate_deg.begin(), 3, placement.rotate_deg.begin());
   placement.centre = !options.no_centre;
   placement.stretch_z = options.stretch_z.value_or(1 / model::vertical_magnification(printer));

@@ -22,6 +22,8 @@ struct Options {
   std::optional<double> voxel_mm;
   std::string extent = "part";
   std::string unit = "mm";
+  std::string up = "z";
+  std::string mirror = "none";
   solid::Placement placement;
   std::vector<double> rotate_deg;
   bool no_centre = false;
@@ -37,6 +39,8 @@ void declare(cli::App& app, Options& options);
 void check(const cli::App& app, const Options& options);
 /// Fills in what follows from other options and the printer: units, voxel and stretch.
 void settle(Options& options, const model::Printer& printer);
+/// What the user would change to change the size of the part.
+[[nodiscard]] solid::SizeOption size_option(const Options& options);
 [[nodiscard]] bool is_folder(const std::string& path);
 
 }  // namespace vam::slice_tool

@@ -49,6 +49,7 @@ class Package {
                         number(max_triangles) + " and " + number(max_points) + " are read"};
     }
     for (const Instance& item : build) place(root_, item, {});
+    if (soup_.faces.empty() && all.instances == 0) throw MeshProblem{"its build has supports only, and no part"};
     return std::move(soup_);
   }
 
@@ -87,6 +88,7 @@ class Package {
     if (!fresh) return count;
     if (depth > max_depth) throw MeshProblem{"its components are nested deeper than " + std::to_string(max_depth)};
     const Object3mf& made_of = object(name, instance.object);
+    if (made_of.support) return count = {0, 0, 0, false};
     if (!made_of.unread.empty()) {
       throw MeshProblem{which + " has a '" + made_of.unread + "', which is not read; export it as a plain mesh"};
     }
@@ -100,6 +102,7 @@ class Package {
   void place(const std::string& from, const Instance& instance, const ComponentPlacement& outer) {
     const std::string name = part_name(from, instance);
     const Object3mf& made_of = object(name, instance.object);
+    if (made_of.support) return;
     const ComponentPlacement placement = instance.placement.then(outer);
     const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
     const int first = static_cast<int>(soup_.points.size());

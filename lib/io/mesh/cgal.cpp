@@ -78,13 +78,14 @@ void check_off_header(const std::string& bytes) {
 }  // namespace
 
 PolygonSoup parse_ascii_stl(const std::string& bytes) {
-  const std::size_t last_word = bytes.find_last_not_of(" \t\r\n");
-  const std::size_t last_line = bytes.find_last_of('\n', last_word);
-  const std::string tail = last_line == std::string::npos ? "" : bytes.substr(last_line + 1);
-  if (tail.find("endsolid") == std::string::npos && tail.find("ENDSOLID") == std::string::npos) {
+  const std::string text = lower_case(bytes);  // CGAL knows no capitals; names do not matter
+  const std::size_t last_word = text.find_last_not_of(" \t\r\n");
+  const std::size_t last_line = text.find_last_of('\n', last_word);
+  const std::string tail = last_line == std::string::npos ? "" : text.substr(last_line + 1);
+  if (tail.find("endsolid") == std::string::npos) {
     throw MeshProblem{"the STL text does not end in 'endsolid'; it is truncated"};
   }
-  std::istringstream stream(bytes);
+  std::istringstream stream(text);
   CgalSoup soup;
   if (!CGAL::IO::read_STL(stream, soup.points, soup.faces)) give_up("STL", soup);
   return converted(std::move(soup));

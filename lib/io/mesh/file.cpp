@@ -10,6 +10,7 @@
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/apart.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -18,16 +19,26 @@ namespace {
 
 constexpr std::uint64_t most_bytes = std::uint64_t{4} << 30;
 
+// A mark that some editors put before text.
+std::string without_mark(std::string bytes) {
+  if (bytes.starts_with("\xef\xbb\xbf")) bytes.erase(0, 3);
+  return bytes;
+}
+
 // By content, whatever the name.
 PolygonSoup parse(const std::string& bytes) {
   if (bytes.empty()) throw MeshProblem{"is empty"};
   for (const MeshFormat& format : mesh_formats()) {
     if (format.recognises(bytes)) return format.read(bytes);
   }
-  if (bytes.starts_with(" BDV"))
+  const std::string foreign = foreign_format(bytes);
+  if (foreign == "a volume (OpenVDB)") {
     throw MeshProblem{"is a volume (OpenVDB), not a mesh; vam-sdf takes both, vam-slice a mesh"};
-  if (bytes.starts_with("\x76\x2f\x31\x01")) throw MeshProblem{"is a stack (OpenEXR), not a mesh"};
-  // No other binary format is left: its reader reports what is missing.
+  }
+  if (!foreign.empty()) {
+    throw MeshProblem{"is " + foreign + ", not a mesh; one of " + mesh_format_names() + " is needed"};
+  }
+  // A binary STL has no signature; of no other format is anything left but text.
   if (bytes.find('\0') != std::string::npos) return parse_stl(bytes);
   throw MeshProblem{"not a mesh of a known format (" + mesh_format_names() + ")"};
 }
@@ -131,7 +142,7 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
 }
 
 model::TriangleSoup read_mesh(const std::string& path) {
-  const std::string bytes = read_all(path, Content::binary, most_bytes);
+  const std::string bytes = without_mark(read_all(path, Content::binary, most_bytes));
   const std::string name = input_name(path);
   // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
   if (has_binary_stl_size(bytes)) return parsed(bytes, name);

@@ -45,10 +45,13 @@ bool is_3mf(const std::string& bytes) { return bytes.starts_with("PK\3\4"); }
 
 bool is_ply(const std::string& bytes) { return starts_with_word(bytes, "ply"); }
 
-// The size comes before "solid": many programs begin the header of a binary STL with that word.
-bool is_stl(const std::string& bytes) {
-  return has_binary_stl_size(bytes) || (!is_binary(bytes) && starts_with_word(trimmed(bytes), "solid"));
+// ASCII STL; some programs write it in capitals.
+bool is_text_stl(const std::string& bytes) {
+  return !is_binary(bytes) && starts_with_word(lower_case(std::string(trimmed(bytes).substr(0, 8))), "solid");
 }
+
+// The size comes before "solid": many programs begin the header of a binary STL with that word.
+bool is_stl(const std::string& bytes) { return has_binary_stl_size(bytes) || is_text_stl(bytes); }
 
 void write_plain_ply(const std::string& path, const model::TriangleSoup& mesh,
                      const std::vector<std::string>& comments) {

@@ -88,6 +88,8 @@ class ModelReader {
     const auto [place, fresh] = part_.objects.try_emplace(id);
     if (!fresh) throw MeshProblem{"has two objects " + std::to_string(id)};
     object_ = &place->second;
+    const std::string_view type = element.attribute("type").value_or("model");  // core specification, 4.1
+    object_->support = type == "support" || type == "solidsupport";
     object_depth_ = depth_;
   }
 

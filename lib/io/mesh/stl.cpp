@@ -37,6 +37,13 @@ std::array<float, 3> normal_of(const std::array<double, 3>& a, const std::array<
 
 }  // namespace
 
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 bool has_binary_stl_size(const std::string& bytes) {
   return bytes.size() >= header_bytes && bytes.size() == header_bytes + triangle_bytes * triangles_promised(bytes);
 }

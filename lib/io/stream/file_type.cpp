@@ -13,6 +13,7 @@
 
 #include "base/error.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/signature.hpp"
 
 namespace vam::io {
 
@@ -87,6 +88,12 @@ FileType file_type(const std::string& path) {
   const std::string name = input_name(path);
   if (head_of(path).empty()) {
     throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
+  }
+  const std::string foreign = foreign_format(head_of(path));
+  if (!foreign.empty()) {
+    throw Error{Fault::data, name + ": is " + foreign +
+                                 "; a volume (VDB), a stack (EXR), a video (MKV, MP4) or a folder of images "
+                                 "is needed"};
   }
   throw Error{Fault::data, name + ": neither a volume (VDB), a stack (EXR), a video (MKV, MP4) nor a folder of images"};
 }

@@ -21,6 +21,7 @@ using openvdb::FloatGrid;
 
 // Refused beyond these, before dense memory is taken.
 constexpr int max_side = 1 << 15;                          // voxels
+constexpr double max_void = 8192;                          // voxels a side that are added around a part
 constexpr std::int64_t max_slice = std::int64_t{1} << 28;  // voxels: 1 GiB as float
 
 // A uniform scale along the axes, and a shift: the only transform that a stack of square pixels can follow.
@@ -70,6 +71,27 @@ CoordBBox box_of(const FloatGrid& sparse) {
   return box;
 }
 
+// A target of another program has the box of its voxels, which ends at the part: it gets the void around the part, out
+// to the circle about the axis that holds the box.
+CoordBBox with_void(CoordBBox box, const model::Grid& grid) {
+  const double low_x = grid.x_mm(-0.5);
+  const double low_y = grid.y_mm(-0.5);
+  const double high_x = grid.x_mm(grid.nx - 0.5);
+  const double high_y = grid.y_mm(grid.ny - 0.5);
+  const double reach_mm =
+      std::hypot(std::max(std::abs(low_x), std::abs(high_x)), std::max(std::abs(low_y), std::abs(high_y)));
+  if (2 * reach_mm > max_void * grid.voxel_mm) return box;  // nowhere near the axis
+  const auto voxels = [&](double mm) { return static_cast<int>(std::ceil(mm / grid.voxel_mm)); };
+  box.min() -= Coord(voxels(low_x + reach_mm), voxels(low_y + reach_mm), 0);
+  box.max() += Coord(voxels(reach_mm - high_x), voxels(reach_mm - high_y), 0);
+  return box;
+}
+
+void set_box(const CoordBBox& box, model::Grid& grid, Coord& first) {
+  grid = {box.dim().x(), box.dim().y(), box.dim().z(), 1.0, {}};
+  first = box.min();
+}
+
 bool is_written_anew(const std::string& key) {
   static const std::array keys = {FloatGrid::META_GRID_NAME, FloatGrid::META_GRID_CLASS, FloatGrid::META_GRID_CREATOR,
                                   FloatGrid::META_VECTOR_TYPE};
@@ -104,10 +126,13 @@ VolumeFacts head_of(const FloatGrid& sparse) {
 VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
   const CoordBBox box = box_of(sparse);
   VolumeFacts facts = head_of(sparse);
-  facts.grid = {box.dim().x(), box.dim().y(), box.dim().z(), 1.0, {}};
   facts.background = sparse.background();
-  first = box.min();
+  set_box(box, facts.grid, first);
   set_transform(sparse, first, facts.grid);
+  if (facts.name == "target" && !sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
+    set_box(with_void(box, facts.grid), facts.grid, first);
+    set_transform(sparse, first, facts.grid);
+  }
   return facts;
 }
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "io/stream/signature.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -63,8 +65,11 @@ class Walk {
 
 void check_head(std::span<const char> bytes) {
   Walk walk(bytes);
-  if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC)
-    throw std::runtime_error("is not an OpenVDB file (vam-slice and vam-dose write such files)");
+  if (walk.number<std::int64_t>() != openvdb::OPENVDB_MAGIC) {
+    const std::string foreign = foreign_format({bytes.data(), bytes.size()});
+    throw std::runtime_error((foreign.empty() ? "is not" : "is " + foreign + ", not") +
+                             std::string(" an OpenVDB file (vam-slice and vam-dose write such files)"));
+  }
   const auto format = walk.number<std::uint32_t>();
   if (format > openvdb::OPENVDB_FILE_VERSION) {
     throw std::runtime_error("is of VDB format " + std::to_string(format) + ", but " +

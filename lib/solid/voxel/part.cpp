@@ -91,6 +91,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
     const std::size_t size = grid.slice_size() * static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < size; ++i) {
       voxels += slices[i];
+      content.most = std::max(content.most, slices[i]);
       if (slices[i] == 1) {
         ++content.solid_voxels;
       } else if (slices[i] > 0) {

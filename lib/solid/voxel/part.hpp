@@ -54,6 +54,7 @@ struct FillSummary {
   double volume_mm3 = 0;    // in the target's frame, stretched along z
   long solid_voxels = 0;    // coverage 1
   long surface_voxels = 0;  // coverage between 0 and 1
+  float most = 0;           // the largest coverage
   double radius_mm = 0;     // from the axis to the centre of the farthest covered voxel, rounding left aside
   Vote vote;
 };

@@ -1,7 +1,11 @@
 #include "solid/voxel/placement.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -16,10 +20,24 @@ constexpr double rounding_mm = 1e-6;  // a part made to measure may touch the bo
 // A voxel's centre may be that far beyond the surface that cuts the voxel, in voxels: half the diagonal in the plane.
 constexpr double beyond_surface = 0.5 * std::numbers::sqrt2;
 
+// There is a place for a part of some size.
+void require_room(const Writable& room, double voxel_mm, const std::string& subject) {
+  if (room.radius_mm <= beyond_surface * voxel_mm) {
+    throw Error{Fault::data, subject + ": voxels of " + format_number(voxel_mm) +
+                                 " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
+                                 " mm; take a smaller --voxel"};
+  }
+  if (room.low_mm < 0 && room.high_mm > 0) return;
+  throw Error{Fault::data, subject + ": the part's middle, z = 0, is beside the projector's rows, which cover z = " +
+                               format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
+                               " mm; check projector.axis_row and projector.rows"};
+}
+
 using ExtentUnder = std::function<PlacedExtent(const Affine&)>;
 
 Affine place(const ExtentUnder& under, const Placement& placement, const Writable& room, const std::string& subject) {
-  Affine map = rotation(placement.rotate_deg) * scaling({placement.scale, placement.scale, placement.scale});
+  Affine map =
+      rotation(placement.rotate_deg) * (scaling({placement.scale, placement.scale, placement.scale}) * placement.axes);
   PlacedExtent part = under(map);
   const auto centred = [](const Affine& m, const PlacedExtent& e) {
     Affine moved = m;
@@ -33,32 +51,37 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
   double factor = 1;
   if (placement.fit_mm) factor = *placement.fit_mm / largest;
   if (placement.fit_writable) {
-    part = under(map);
-    const double height = part.box.size()[2] * placement.stretch_z;
-    const double radius = room.radius_mm - beyond_surface * placement.voxel_mm;
-    if (!(radius > 0)) {
-      throw Error{Fault::data, subject + ": voxels of " + format_number(placement.voxel_mm) +
-                                   " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
-                                   " mm; take a smaller --voxel"};
-    }
-    factor = radius / part.radius_mm;
-    if (height > 0) factor = std::min(factor, (room.high_mm - room.low_mm) / height);
+    require_room(room, placement.voxel_mm, subject);
+    factor = fitting_factor(under(scaling({1, 1, placement.stretch_z}) * map), room, placement.voxel_mm);
   }
   return scaling({factor, factor, factor * placement.stretch_z}) * map;
 }
 
+/// Rounded down, so that what is pasted fits.
+std::string three_digits(double value) {
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2);
+  return format_number(std::floor(value / step * (1 + 1e-12)) * step, 3);
+}
+
+/// "--scale 0.264 or --fit-writable": what makes the part fit.
+std::string smaller(const SizeOption& size, double factor) {
+  const std::string value = factor > 0 ? size.flag + " " + three_digits(size.value * factor) : "a smaller " + size.flag;
+  return size.flag == "--voxel" ? value : value + " or --fit-writable";
+}
+
 /// `what` reaches that far from the axis.
-void require_radius(double reach_mm, const Writable& room, double voxel_mm, const std::string& what) {
+void require_radius(double reach_mm, const Writable& room, double voxel_mm, const std::string& what,
+                    const std::string& remedy) {
   if (reach_mm <= room.radius_mm + rounding_mm) return;
   const auto both = [&](double mm) {
     return format_number(mm, 4) + " mm (" + format_number(mm / voxel_mm, 4) + " voxels)";
   };
   const std::string far = what + " " + both(reach_mm) + " from the axis, beyond the ";
-  if (!room.from_all_sides)
-    throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; scale it down"};
-  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) +
-                               "; --fit-writable shrinks it, --extent resin allows it as far as light comes from some "
-                               "angles"};
+  if (!room.from_all_sides) {
+    throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; " + remedy + " fits it"};
+  }
+  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) + "; " + remedy +
+                               " fits it, --extent resin allows it as far as light comes from some angles"};
 }
 
 }  // namespace
@@ -74,6 +97,25 @@ Writable whole_resin(const model::Printer& printer) {
   Writable resin = writable(printer, model::resin_radius_mm(printer.vial));
   resin.from_all_sides = false;
   return resin;
+}
+
+Affine upright(const std::string& axis) {
+  static const std::map<std::string, Point> turns{{"x", {0, -90, 0}}, {"y", {90, 0, 0}},   {"z", {0, 0, 0}},
+                                                  {"-x", {0, 90, 0}}, {"-y", {-90, 0, 0}}, {"-z", {180, 0, 0}}};
+  return rotation(turns.at(axis));
+}
+
+Affine mirrored(const std::string& axis) {
+  Point sign{1, 1, 1};
+  sign[static_cast<std::size_t>(axis.at(0) - 'x')] = -1;
+  return scaling(sign);
+}
+
+double fitting_factor(const PlacedExtent& part, const Writable& room, double voxel_mm) {
+  double factor = (room.radius_mm - beyond_surface * voxel_mm) / part.radius_mm;
+  if (part.box.high[2] > 0) factor = std::min(factor, room.high_mm / part.box.high[2]);
+  if (part.box.low[2] < 0) factor = std::min(factor, room.low_mm / part.box.low[2]);
+  return factor;
 }
 
 PlacedExtent extent(const model::TriangleSoup& soup) {
@@ -136,16 +178,25 @@ model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius
 }
 
 void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject) {
-  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach");
+  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach", "a smaller --voxel or --scale");
 }
 
-void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject) {
-  require_radius(part.radius_mm, room, voxel_mm, subject + ": reaches");
+void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject,
+                      const SizeOption& size) {
+  const Point mm = part.box.size();
+  const Point middle = part.box.centre();
+  const bool aside = std::hypot(middle[0], middle[1]) > room.radius_mm;
+  const std::string remedy =
+      (aside ? "leave out --no-centre; " : "") + smaller(size, fitting_factor(part, room, voxel_mm));
+  require_radius(part.radius_mm, room, voxel_mm,
+                 subject + ": " + format_number(mm[0], 4) + " x " + format_number(mm[1], 4) + " x " +
+                     format_number(mm[2] / size.stretch_z, 4) + " mm, reaches",
+                 remedy);
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
                                  format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
-                                 format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
-                                 " mm; --fit-writable shrinks it, --any-height allows it for vam-optimize --helix"};
+                                 format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) + " mm; " +
+                                 remedy + " fits it, --any-height allows it for vam-optimize --helix"};
   }
 }
 

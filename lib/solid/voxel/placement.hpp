@@ -12,8 +12,9 @@
 
 namespace vam::solid {
 
-/// What the user asks for. Order: scale, rotate, fit, centre, stretch.
+/// What the user asks for. Order: axes, scale, rotate, fit, centre, stretch.
 struct Placement {
+  Affine axes;                   // which axis of the file points up, and whether one is mirrored
   double scale = 1;              // millimetres per unit of the file, and any factor on top
   Point rotate_deg{};            // about x, then y, then z, fixed axes
   std::optional<double> fit_mm;  // largest dimension
@@ -22,6 +23,11 @@ struct Placement {
   bool centre = true;            // middle of the bounding box to the origin
   double stretch_z = 1;          // [OST22 eq S5]: 1 / M_vp undoes the projector's vertical magnification
 };
+
+/// The quarter turns that bring an axis of the file, "x", "-x", ... "-z", to z.
+[[nodiscard]] Affine upright(const std::string& axis);
+/// Negates the coordinate "x", "y" or "z".
+[[nodiscard]] Affine mirrored(const std::string& axis);
 
 /// The cylinder about the rotation axis in which a part may be, z = 0 in the middle of the projector's rows.
 struct Writable {
@@ -47,8 +53,12 @@ struct PlacedExtent {
 [[nodiscard]] PlacedExtent extent(const model::TriangleSoup& soup);
 [[nodiscard]] PlacedExtent extent(const Field& field);
 
+/// The factor that makes a placed part fit the cylinder when it is scaled about the origin: its surface, and the
+/// centres of the voxels of that size that its surface cuts. 1 or more: it fits; 0 or less: no factor will do.
+[[nodiscard]] double fitting_factor(const PlacedExtent& part, const Writable& room, double voxel_mm);
+
 /// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size, or when
-/// voxels are too large for fit_writable.
+/// voxels are too large or the rows too far from the lens for fit_writable.
 [[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
                            const std::string& subject);
 [[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room,
@@ -69,8 +79,17 @@ struct Lattice {
 [[nodiscard]] model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm,
                                       const Lattice& lattice, const std::string& subject);
 
-/// Throws Fault::data, with both numbers, also in voxels, and the remedy, when the part leaves the writable cylinder.
-void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject);
+/// The option that sets the size of a part, with its value in force.
+struct SizeOption {
+  std::string flag = "--scale";
+  double value = 1;
+  double stretch_z = 1;  // of the part, undone in the size that is told
+};
+
+/// Throws Fault::data, with both numbers, also in voxels, and the option that makes it fit, when the part leaves the
+/// writable cylinder.
+void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject,
+                      const SizeOption& size = {});
 
 /// The same for the centre of the farthest voxel that the part covers: what vam-optimize looks at.
 void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject);

@@ -64,6 +64,18 @@ TEST_CASE("3MF: components are placed from the inside out, mirrored ones stay ou
   CHECK(high == doctest::Approx(3));
 }
 
+TEST_CASE("3MF: supports are not printed, alone, as items or as components") {
+  const scratch::Folder folder;
+  const auto typed = [](int id, const std::string& type) {
+    return "<object id=\"" + std::to_string(id) + "\" type=\"" + type + "\">" + mesh_xml(box()) + "</object>";
+  };
+  const std::string objects = object(1, mesh_xml(box())) + typed(2, "support") + typed(3, "solidsupport") +
+                              object(4, "<components>" + component(1) + component(2) + "</components>");
+  CHECK(read_mesh(folder.write("a", package(model(objects, item(1) + item(2) + item(3))))).triangles.size() == 12);
+  CHECK(read_mesh(folder.write("a", package(model(objects, item(4))))).triangles.size() == 12);
+  CHECK(has(refusal(folder, package(model(objects, item(2)))), "its build has supports only, and no part"));
+}
+
 TEST_CASE("3MF: an object of another part, whose unit is its own") {
   const scratch::Folder folder;
   const std::string production =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -179,6 +180,13 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
   CHECK(has(refusal(folder, "hello, world\n"), "not a mesh of a known format"));
   CHECK(has(refusal(folder, " BDV" + std::string(200, '\0')), "is a volume (OpenVDB), not a mesh"));
   CHECK(has(refusal(folder, "\x76\x2f\x31\x01" + std::string(200, '\0')), "is a stack (OpenEXR), not a mesh"));
+  CHECK(has(refusal(folder, "\x93NUMPY\1" + std::string(200, '\0')), "is a NumPy array (.npy), not a mesh"));
+  CHECK(has(refusal(folder, "\x89HDF\r\n\x1a\n" + std::string(200, '\0')), "is an HDF5 file, not a mesh"));
+  CHECK(has(refusal(folder, std::string("II*\0", 4) + std::string(200, '\0')), "is a TIFF image, not a mesh"));
+  CHECK(has(refusal(folder, "ISO-10303-21;\nHEADER;\n"), "is a STEP model"));
+  CHECK(has(refusal(folder, "\x1f\x8b\x08" + std::string(200, '\0')), "is compressed by gzip, not a mesh"));
+  CHECK(has(refusal(folder, std::string(128, '\0') + "DICM" + std::string(200, '\0')), "is a DICOM image"));
+  CHECK(has(refusal(folder, "\xff\xfes\0o\0"), "text of 16 bits"));
   CHECK(has(refusal(folder,
                     "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
                     "property float y\nproperty float z\nend_header\n"),
@@ -189,6 +197,16 @@ TEST_CASE("vertices that are not finite, wrong indices, faces of two corners, no
     FAIL("a missing file was read");
   } catch (const vam::Error& error) {
     CHECK(error.fault == vam::Fault::no_input);
+  }
+}
+
+TEST_CASE("ASCII STL in capitals, and text behind a mark of its encoding") {
+  const scratch::Folder folder;
+  std::string capitals = box_ascii_stl();
+  for (char& c : capitals) c = static_cast<char>(std::toupper(c));
+  CHECK(volume(read_mesh(folder.write("a", capitals))) == doctest::Approx(6));
+  for (const std::string& text : {box_ascii_stl(), capitals, box_obj(), box_off(), box_ply()}) {
+    CHECK(volume(read_mesh(folder.write("a", "\xef\xbb\xbf" + text))) == doctest::Approx(6));
   }
 }
 

@@ -14,6 +14,33 @@ using namespace vam::volumes;
 using scratch::spill;
 using scratch::status;
 
+TEST_CASE("a target of another program gets the void around it, and stays where it lies") {
+  const scratch::Folder folder;
+  openvdb::initialize();
+  const auto array =
+      openvdb::FloatGrid::create(0.0F);  // as pyopenvdb's copyFromArray and createLinearTransform make it
+  array->denseFill(openvdb::CoordBBox({0, 0, 0}, {39, 29, 9}), 1.0F);
+  const auto transform = openvdb::math::Transform::createLinearTransform(0.1);
+  transform->postTranslate({-1.95, -1.45, 0.05});
+  array->setTransform(transform);
+  array->setName("target");
+  write_by_openvdb(folder / "array.vdb", {array});
+  const SparseVolume volume = read_volume(folder / "array.vdb", "target");
+  const model::Grid& grid = volume.grid();
+  CHECK(grid.nz == 10);
+  CHECK(grid.z_mm(0) == doctest::Approx(0.05));
+  const double corner_mm = std::hypot(2, 1.5);
+  for (const double side : {-grid.x_mm(-0.5), grid.x_mm(grid.nx - 0.5), -grid.y_mm(-0.5), grid.y_mm(grid.ny - 0.5)}) {
+    CHECK(side >= corner_mm - 1e-9);
+    CHECK(side <= corner_mm + 0.1);
+  }
+  const auto values = dense(volume);
+  double sum = 0;
+  for (const float value : values) sum += static_cast<double>(value);
+  CHECK(sum == 40 * 30 * 10);
+  CHECK(by_blocks(folder / "array.vdb", "target") == values);
+}
+
 TEST_CASE("a level set of another program is read as its active box, off the index origin, and can be written back") {
   const scratch::Folder folder;
   openvdb::initialize();

@@ -120,6 +120,50 @@ TEST_CASE("a part that leaves the writable cylinder is refused with both numbers
         }).find("26 mm, but the projector's rows cover -24.96 ... 24.96 mm") != std::string::npos);
 }
 
+TEST_CASE("the refusal names the value that fits, rounded down, and it does fit") {
+  PlacedExtent part;
+  part.box.add({-10, -20, -40});
+  part.box.add({10, 20, 30});
+  part.radius_mm = std::hypot(10, 20);
+  CHECK(fitting_factor(part, room, 0) == doctest::Approx(8 / part.radius_mm));
+  CHECK(fitting_factor(part, room, 0.5) == doctest::Approx((8 - 0.5 / std::sqrt(2)) / part.radius_mm));
+  PlacedExtent tall = part;
+  tall.radius_mm = 1;
+  CHECK(fitting_factor(tall, room, 0) == doctest::Approx(0.5));  // 40 below the axis row, 20 rows there
+  const auto has = [&](const std::string& words, const SizeOption& size) {
+    return data_error([&] { require_writable(part, room, 0.5, "part", size); }).find(words) != std::string::npos;
+  };
+  CHECK(has("part: 20 x 40 x 70 mm, reaches 22.36 mm", {}));
+  CHECK(has("; --scale 0.341 or --fit-writable fits it", {}));  // 7.646 / 22.36 = 0.34196
+  CHECK(has("; --scale 8.68 or", {"--scale", 25.4}));
+  CHECK(has("; --fit 23.9 or", {"--fit", 70, 1}));
+  CHECK(has("20 x 40 x 50 mm", {"--scale", 1, 1.4}));
+}
+
+TEST_CASE("which axis of the file points up, and mirrors") {
+  const Point there{1, 2, 3};
+  CHECK(upright("z")(there) == there);
+  CHECK(upright("y")(there) == Point{1, -3, 2});
+  CHECK(upright("-y")(there) == Point{1, 3, -2});
+  CHECK(upright("x")(there)[2] == 1);
+  CHECK(upright("-x")(there)[2] == -1);
+  CHECK(upright("-z")(there)[2] == -3);
+  CHECK(mirrored("x")(there) == Point{-1, 2, 3});
+  CHECK(mirrored("z")(there) == Point{1, 2, -3});
+  Placement placement;
+  placement.axes = upright("y");
+  CHECK(placed(vam::oracle::box({0, 0, 0}, {2, 8, 4}), placement).box.high == Point{1, 2, 4});
+}
+
+TEST_CASE("a part beside the rows is no matter of its size") {
+  Placement placement;
+  placement.fit_writable = true;
+  const Writable above{8, 2, 20};
+  CHECK(data_error([&] {
+          (void)place(vam::oracle::box({0, 0, 0}, {2, 8, 4}), placement, above, "test");
+        }).find("beside the projector's rows, which cover z = 2 ... 20 mm") != std::string::npos);
+}
+
 TEST_CASE("a mirror turns triangles over, so that outside stays outside") {
   model::TriangleSoup mesh = vam::oracle::box({-1, -1, -1}, {1, 1, 1});
   transform(mesh, scaling({-1, 1, 1}));

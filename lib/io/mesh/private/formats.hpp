@@ -40,6 +40,9 @@ struct MeshFormat {
 /// True when the size is exactly what the triangle count in the header asks for.
 [[nodiscard]] bool has_binary_stl_size(const std::string& bytes);
 
+/// Capitals of ASCII as small letters.
+[[nodiscard]] std::string lower_case(std::string text);
+
 /// By CGAL; each throws MeshProblem when CGAL gives up.
 [[nodiscard]] PolygonSoup parse_ascii_stl(const std::string& bytes);
 [[nodiscard]] PolygonSoup parse_obj(const std::string& bytes);

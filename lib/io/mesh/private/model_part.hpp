@@ -32,7 +32,8 @@ struct Object3mf {
   std::vector<std::array<double, 3>> points;  // mm
   std::vector<std::array<int, 3>> triangles;  // indices as the file has them
   std::vector<Instance> components;
-  std::string unread;  // the element that makes up its shape and that is not read; empty: none
+  bool support = false;  // holds a part up while it is printed; no part of it
+  std::string unread;    // the element that makes up its shape and that is not read; empty: none
 };
 
 struct ModelPart {

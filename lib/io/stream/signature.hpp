@@ -1,0 +1,13 @@
+// What a file of another program is, by its first bytes: for messages, which must not call it what it is not.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace vam::io {
+
+/// "a NumPy array (.npy)", "compressed by gzip": fits behind "is". Empty for bytes without a known signature. 400 bytes
+/// suffice.
+[[nodiscard]] std::string foreign_format(std::string_view head);
+
+}  // namespace vam::io

@@ -1,0 +1,54 @@
+#include "solid/voxel/size_doubt.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+constexpr std::pair<const char*, double> units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}, {"um", 1e-3}};
+
+}  // namespace
+
+const std::vector<std::string>& unit_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const auto& unit : units) list.emplace_back(unit.first);
+    return list;
+  }();
+  return names;
+}
+
+double mm_per(const std::string& unit) {
+  return std::find_if(std::begin(units), std::end(units), [&](const auto& one) { return unit == one.first; })->second;
+}
+
+std::string likely_unit(double largest_mm, const Writable& room) {
+  std::vector<std::string> likely;
+  for (const auto& [name, mm] : units) {
+    const double widths = largest_mm * mm / (2 * room.radius_mm);
+    if (mm != 1 && widths > 0.25 && widths < 12) likely.push_back(std::string(name) + " (--unit " + name + ")");
+  }
+  return likely.empty() ? "" : "; is the file in " + join(likely, " or ") + "?";
+}
+
+std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
+                       const Writable& room, bool unit_known) {
+  const Point size = part.extent.box.size();
+  const double largest_mm = std::max({size[0], size[1], size[2] / stretch_z});
+  const bool small = largest_mm < 0.1 * 2 * room.radius_mm;
+  const std::string unit = small && !unit_known ? likely_unit(largest_mm, room) : "";
+  if (content.solid_voxels == 0) {
+    const double thinner = 0.5 * grid.voxel_mm * static_cast<double>(content.most);
+    return part.subject + ": no voxel of " + format_number(grid.voxel_mm) + " mm is wholly inside the part, which is " +
+           format_number(largest_mm, 3) + " mm large (a voxel is covered to " +
+           format_number(static_cast<double>(content.most), 2) + " at most)" +
+           (unit.empty() ? "; --voxel " + format_number(thinner, 2) + " or thicker walls may help" : unit);
+  }
+  return unit.empty() ? "" : part.subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,25 @@
+// What is odd about the size of a part that has been sliced, in words for its user.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solid/voxel/part.hpp"
+
+namespace vam::solid {
+
+/// The units that a mesh may be in.
+[[nodiscard]] const std::vector<std::string>& unit_names();
+[[nodiscard]] double mm_per(const std::string& unit);
+
+/// "; is the file in m (--unit m)?" for a part that is so many mm large when read in mm: the units in which it would
+/// be between a quarter and twelve times as large as the writable width. Empty where there is none.
+[[nodiscard]] std::string likely_unit(double largest_mm, const Writable& room);
+
+/// Empty, or what a warning should say: no voxel is wholly inside the part (metres, coarse voxels, a thin sheet), or it
+/// is less than a tenth as large as the writable width. `unit_known`: the user has said what a unit of the file is, or
+/// how large the part.
+[[nodiscard]] std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid,
+                                     double stretch_z, const Writable& room, bool unit_known);
+
+}  // namespace vam::solid
