@@ -1,10 +1,14 @@
 // vam-optimize: optimises the projections that print a target.
+#include <algorithm>
 #include <optional>
 #include <string>
 
+#include "base/memory.hpp"
+#include "base/per_slice.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
+#include "model/grid_size.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
@@ -27,6 +31,19 @@ void refuse_same_files(const Options& options) {
        {&options.input, &options.init, &options.weights, &options.tolerances, &options.poses, &options.wobble}) {
     if (!input->empty()) io::refuse_same_file(*input, options.output);
   }
+}
+
+/// Three arrays of a slice and of a sinogram (three and six where other printers are faced), of all slices where light
+/// couples them.
+void require_memory_for(const Scene& scene, const light::Operator& light, bool tolerant, const std::string& subject) {
+  const bool whole = light.couples_slices() || tolerant;
+  const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
+  const double slices = (count + lanes - 1) / lanes * lanes;
+  const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) +
+                        (tolerant ? 6.0 : 3.0) * light.sinogram().width * light.sinogram().height;
+  require_memory(
+      sizeof(float) * slices * arrays, subject + ": " + model::size_text(scene.grid),
+      whole ? "use larger voxels (vam-slice --voxel)" : "use larger voxels (vam-slice --voxel) or fewer --angles");
 }
 
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
@@ -58,8 +75,10 @@ void run(const cli::App& app, Options& options) {
   };
 
   const std::string subject = options.input == "-" ? "stdin" : options.input;
+  const auto light = make_light(scene, options);
+  require_memory_for(scene, *light, options.printer_tolerances.has_value(), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
-  const auto outcome = optimize::optimise(task, *make_light(scene, options));
+  const auto outcome = optimize::optimise(task, *light);
   if (outcome.reason == "interrupted") {
     checkpoint->keep();
     return;

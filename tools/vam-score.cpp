@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
@@ -14,6 +15,7 @@
 #include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
 #include "optics/writable.hpp"
 #include "printer.hpp"
 #include "score/score.hpp"
@@ -31,6 +33,8 @@ using score_tool::Options;
 score::Score score(const Inputs& in, const score::ScoreOptions& how) {
   constexpr int slab = 16;
   const model::Grid& grid = in.target().grid();
+  require_memory(2.0 * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
+                 in.target().name() + ": " + model::size_text(grid), "use larger voxels");
   score::Score result(how, grid.nx, grid.ny);
   std::vector<float> dose(grid.slice_size() * slab);
   std::vector<float> target(grid.slice_size() * slab);

@@ -6,11 +6,14 @@
 
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
+#include "base/slab.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/grid_size.hpp"
 #include "model/printer.hpp"
 #include "optics/writable.hpp"
 #include "printer.hpp"
@@ -72,6 +75,9 @@ void run(const cli::App& app, Options& options) {
   const model::Grid grid =
       solid::grid_around(part.extent, options.voxel_mm.value(), radius_mm, part.lattice, part.subject);
 
+  // 16 slices at a time, those of the volume beside them.
+  require_memory(2.0 * sizeof(float) * lanes * static_cast<double>(grid.slice_size()),
+                 part.subject + ": " + model::size_text(grid), "use a larger --voxel");
   solid::FillSummary content;
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", part, grid, content));

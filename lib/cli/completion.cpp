@@ -9,7 +9,7 @@ namespace vam::cli {
 
 namespace {
 
-const std::vector<std::string> about{"--help", "--version", "--man", "--completion"};
+const std::vector<std::string> about{"--memory", "--help", "--version", "--man", "--completion"};
 
 std::vector<const Option*> options_of(const Declaration& tool) {
   std::vector<const Option*> options;

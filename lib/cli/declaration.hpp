@@ -49,6 +49,12 @@ struct Declaration {
   std::vector<Declaration> subcommands;  // their manual has name and summary only
 };
 
+/// Of the option that every tool has.
+inline constexpr const char* memory_help =
+    "Take at most so much memory; what needs more is refused. Range: more than 0, at most 1e6. Default: what the "
+    "machine has "
+    "free.";
+
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);
 

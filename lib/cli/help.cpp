@@ -97,7 +97,8 @@ std::string help_text(const Declaration& tool) {
     }
     text += "\n";
   }
-  text += "Help:\n  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
+  text += "Every tool:\n  --memory GIB\n" + wrap(memory_help, width, indent);
+  text += "  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
   return text;
 }
 

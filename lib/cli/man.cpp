@@ -246,10 +246,10 @@ std::string manual_page(const Declaration& tool) {
   out += positional_list(tool);
   out += option_list(tool);
   out += commands(tool);
-  out +=
-      ".Ss Help\n.Bl -tag -width Ds\n.It Fl h , Fl -help\nPrint a summary of the options.\n"
-      ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
-      ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";
+  out += ".Ss Every tool\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
+         ".It Fl h , Fl -help\nPrint a summary of the options.\n"
+         ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
+         ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";
   for (const auto& note : manual.notes) {
     if (&note == &manual.notes.front())
       out += ".Sh IMPLEMENTATION NOTES\n";

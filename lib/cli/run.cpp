@@ -3,18 +3,23 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cerrno>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <set>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
 #include "cli/private/app_state.hpp"
+#include "cli/private/values.hpp"
 #include "cli/private/words.hpp"
 
 namespace vam::cli {
@@ -142,10 +147,22 @@ void App::require_own_outputs() const {
   }
 }
 
+namespace {
+
+// By the text of --memory.
+void bound(const std::optional<std::string>& gib) {
+  constexpr double bytes_per_gib = 1 << 30;
+  const double chosen = !gib ? 0 : checked_number(memory_flag, *gib, {0, 1e6, true});
+  bound_memory(static_cast<std::uint64_t>(std::ceil(chosen * bytes_per_gib)));
+}
+
+}  // namespace
+
 void App::parse(int argc, char** argv) {
   const Declaration tool = whole();
   std::vector<std::string> words(argv + 1, argv + argc);
   rename_former(tool, words);
+  bound(take_memory(words));
   state_->history = tool.manual.name + " " + VAM_VERSION;
   for (const auto& word : words) state_->history += " " + quoted(word);
   require_command(tool, words);
@@ -209,6 +226,9 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
   } catch (const Error& error) {
     line = error.what();
     fault = error.fault;
+  } catch (const OutOfMemory& refused) {
+    line = refused.what();
+    fault = Fault::memory;
   } catch (const std::bad_alloc&) {
     line = "out of memory";
     fault = Fault::memory;

@@ -44,7 +44,7 @@ const Declaration& form_of(const Declaration& tool, const std::vector<std::strin
 }
 
 std::vector<std::string> flags_of(const Declaration& form) {
-  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
+  std::vector<std::string> flags{"--memory", "--help", "--version", "--man", "--completion"};
   for (const auto& group : form.groups) {
     for (const auto& option : group.options) flags.push_back(long_flag(option));
   }
@@ -145,6 +145,20 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
     std::fprintf(stderr, "%s: warning: %s is now %s%s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str(),
                  value.c_str());
   }
+}
+
+std::optional<std::string> take_memory(std::vector<std::string>& words) {
+  const auto end = std::find(words.begin(), words.end(), "--");
+  const auto is_memory = [](const std::string& word) { return flag_of(word) == memory_flag; };
+  const auto word = std::find_if(words.begin(), end, is_memory);
+  if (word == end) return {};
+  const std::string name = memory_flag;
+  if (std::find_if(word + 1, end, is_memory) != end) throw Error{Fault::usage, name + ": given twice"};
+  const bool joined = *word != name;
+  if (!joined && word + 1 == end) throw Error{Fault::usage, name + ": needs a value"};
+  std::string value = joined ? word->substr(name.size() + 1) : *(word + 1);
+  words.erase(word, word + (joined ? 1 : 2));
+  return value;
 }
 
 std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words, const std::string& unknown) {

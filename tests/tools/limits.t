@@ -18,4 +18,24 @@ fails 64 '2 inputs are standard input' vam-view - --target - -o x.png
 fails 64 '2 inputs are standard input' vam-optimize - --weights - -o x.exr
 fails 65 'part.vdb: is a volume \(OpenVDB\), not a mesh' vam-slice part.vdb -o x.vdb
 
+# --memory: refused with both numbers, before it is taken.
+fails 64 '^vam-score: --memory: given twice' vam-score --memory 1 part.vdb --memory=2
+fails 64 "^vam-score: --memory: 'much' is not a number" vam-score --memory much part.vdb
+fails 64 '^vam-score: --memory: needs a value' vam-score part.vdb --memory
+fails 64 '^vam-score: --memory: 0 is out of range' vam-score --memory 0 part.vdb
+need='[0-9]+ x [0-9]+ x [0-9]+ voxels: needs [0-9.]+ GiB of memory, but --memory leaves [0-9.]+ GiB; use [^;]*larger [^;]*, or allow more with --memory$'
+box 4 4 0.01 >flat.off
+vam-slice flat.off --voxel 0.002 --stretch-z 1 -o wide.vdb
+fails 71 "^vam-slice: flat.off: $need" vam-slice --memory 0.4 flat.off --voxel 0.002 --stretch-z 1 -o x.vdb
+fails 71 "^vam-score: target: $need" vam-score --grid target wide.vdb --target wide.vdb --memory 0.4
+fails 71 "^vam-sinogram: target: $need" vam-sinogram wide.vdb --angles 8 -o x.exr --memory 0.4
+fails 71 "^vam-optimize: wide.vdb: $need" vam-optimize wide.vdb --geometry parallel --method fbp --angles 8 -o x.exr --memory 0.4
+vam-sinogram wide.vdb --angles 2 -o wide.exr
+fails 71 "^vam-dose: wide.exr: $need" vam-dose wide.exr --like wide.vdb -o x.vdb --memory 0.4
+mv part.vdb free.vdb
+quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
+same 'the bound is of no consequence, not even for the history' free.vdb part.vdb
+python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
+sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory beside the [0-9.e-]+ GiB that it has; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
+
 done_testing

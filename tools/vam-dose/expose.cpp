@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack_batches.hpp"
@@ -13,6 +14,7 @@
 #include "light/dose_grid.hpp"
 #include "light/dose_stream.hpp"
 #include "light/simulation.hpp"
+#include "model/grid_size.hpp"
 #include "optics/frames.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/shown.hpp"
@@ -22,7 +24,8 @@ namespace vam::dose_tool {
 
 namespace {
 
-constexpr int batch = 64;  // slices a pass
+constexpr int batch = 64;               // slices a pass
+constexpr double climbing_slices = 90;  // of dose in memory where rays climb
 
 void warn_about(const Options& options, const light::LightSeen& seen, bool projector) {
   if (!projector || seen.negative == 0) return;
@@ -134,6 +137,9 @@ Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options&
   exposed.blur_mm = blur_mm(options, printer, info, exposed.shown_turns);
   Blurred blurred(exposed.blur_mm / place.grid.voxel_mm, sink);
   exposed.climbs = simulation.climbs();
+  require_memory(
+      sizeof(float) * (exposed.climbs ? climbing_slices : 3.0 * batch) * static_cast<double>(place.grid.slice_size()),
+      options.input + ": " + model::size_text(place.grid), "use larger voxels");
   exposed.light = exposed.climbs ? expose_volume(in, simulation, light, turns, place.grid.nz, insert, blurred)
                                  : expose_slices(in, simulation, light, turns, first, insert, blurred);
   exposed.doses = sink.range();

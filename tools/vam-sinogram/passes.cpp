@@ -4,6 +4,8 @@
 #include <future>
 
 #include "base/log.hpp"
+#include "base/memory.hpp"
+#include "model/grid_size.hpp"
 
 namespace vam::sinogram_tool {
 
@@ -12,6 +14,11 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
   const model::Grid& grid = volume.grid();
   const tomo::Projections projections(spec);
   const int slices = tomo::slabs_a_pass(spec.geometry) * lanes;
+  // Two passes of slices that are read, one of them in slabs, and two of sinograms.
+  require_memory(
+      sizeof(float) * static_cast<double>(slices) *
+          (3.0 * static_cast<double>(grid.slice_size()) + 2.0 * spec.geometry.columns * spec.geometry.angles),
+      volume.name() + ": " + model::size_text(grid), "use larger voxels or fewer --angles");
   const auto read = [&](int first) {
     std::vector<float> dense(static_cast<std::size_t>(std::clamp(grid.nz - first, 0, slices)) * grid.slice_size());
     if (first < grid.nz) volume.read_slices(first, std::min(slices, grid.nz - first), dense.data());

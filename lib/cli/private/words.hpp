@@ -1,6 +1,7 @@
 // Private to App: the words of a command line, seen by the declaration before they are parsed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,12 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 
 /// Puts the present spelling of options for former ones, with a line on stderr, once each. A command's come first.
 void rename_former(const Declaration& tool, std::vector<std::string>& words);
+
+inline constexpr const char* memory_flag = "--memory";
+
+/// Takes the option that every tool has out of the words, and returns its value; nothing where it is not given.
+/// Throws Fault::usage where it is given twice or has no value.
+[[nodiscard]] std::optional<std::string> take_memory(std::vector<std::string>& words);
 
 /// The line for a word that the tool, or the command that the words name, does not know.
 [[nodiscard]] std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words,

@@ -1,0 +1,157 @@
+#include "base/memory.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+#include "base/error.hpp"
+#include "base/text.hpp"
+
+namespace vam {
+
+namespace {
+
+constexpr std::uint64_t everything = std::numeric_limits<std::uint64_t>::max();
+constexpr std::size_t unseen_bytes = std::size_t{1} << 24;  // that a thread takes between two looks
+
+std::atomic<std::uint64_t> bound{everything};  // NOLINT: one per process, like the memory it bounds
+std::atomic<bool> chosen{false};               // NOLINT: by --memory
+
+constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;
+
+// Private pages in memory. Without an allocation, as `new` asks; 0 where the system does not say.
+std::uint64_t taken() {
+  std::array<char, 128> line{};
+  const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  const ssize_t size = read(file, line.data(), line.size() - 1);
+  close(file);
+  std::uint64_t pages = 0;
+  std::uint64_t shared = 0;
+  if (size <= 0 || std::sscanf(line.data(), "%*s %lu %lu", &pages, &shared) != 2 || shared > pages) return 0;
+  return (pages - shared) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+// The number in a file, or behind a key in it; `everything` where there is none ("max").
+std::uint64_t number_in(const std::string& path, const std::string& key = "") {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  if (key.empty()) return file >> number ? number : everything;
+  for (std::string word; file >> word;) {
+    if (word == key) return file >> number ? number : everything;
+  }
+  return everything;
+}
+
+// What a control group leaves; its page cache gives way.
+std::uint64_t left_in_group(const std::string& folder, const char* most_file, const char* used_file) {
+  const std::uint64_t most = number_in(folder + most_file);
+  const std::uint64_t used = number_in(folder + used_file);
+  if (most == everything || used == everything) return everything;
+  const std::uint64_t cache = number_in(folder + "/memory.stat", "inactive_file");
+  const std::uint64_t kept = cache == everything ? used : used - std::min(used, cache);
+  return most - std::min(most, kept);
+}
+
+// Of this process' groups and those that hold them, in both versions of the kernel's interface.
+std::uint64_t left_in_groups() {
+  std::uint64_t left = left_in_group("/sys/fs/cgroup/memory", "/memory.limit_in_bytes", "/memory.usage_in_bytes");
+  std::ifstream groups("/proc/self/cgroup");
+  for (std::string line; std::getline(groups, line);) {
+    if (!line.starts_with("0::/")) continue;
+    for (std::string path = line.substr(3);; path.erase(path.rfind('/'))) {
+      left = std::min(left, left_in_group("/sys/fs/cgroup" + path, "/memory.max", "/memory.current"));
+      if (path.find('/') == std::string::npos) break;
+    }
+  }
+  return left;
+}
+
+std::uint64_t free_of_machine() {
+  const std::uint64_t kib = number_in("/proc/meminfo", "MemAvailable:");
+  return std::min(kib == everything ? everything : kib << 10, left_in_groups());
+}
+
+std::uint64_t left_below(std::uint64_t most) { return most - std::min(most, taken()); }
+
+std::string in_gib(double bytes) { return format_number(bytes / bytes_per_gib, 3) + " GiB"; }
+
+void admit(std::size_t bytes) {
+  static thread_local std::size_t unseen = 0;
+  unseen += std::min(bytes, unseen_bytes);
+  if (unseen < unseen_bytes) return;
+  unseen = 0;
+  const std::uint64_t most = bound.load(std::memory_order_relaxed);
+  if (most == everything || bytes <= left_below(most)) return;
+  malloc_trim(0);  // what was freed may still be counted
+  if (bytes > left_below(most)) throw OutOfMemory(bytes, taken(), most);
+}
+
+}  // namespace
+
+OutOfMemory::OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t most) noexcept {
+  const auto of = [](std::uint64_t bytes) { return static_cast<double>(bytes) / bytes_per_gib; };
+  std::snprintf(text_.data(), text_.size(),
+                chosen ? "needs %.3g GiB of memory beside the %.3g GiB that it has; --memory allows %.3g GiB"
+                       : "needs %.3g GiB of memory beside the %.3g GiB that it has; the machine had %.3g GiB free",
+                of(wanted), of(has), of(most));
+}
+
+void bound_memory(std::uint64_t bytes) {
+  chosen = bytes > 0;
+  bound = bytes > 0 ? bytes : taken() + free_of_machine();
+}
+
+std::uint64_t memory_left() {
+  const std::uint64_t most = bound;
+  if (most == everything) return free_of_machine();
+  return left_below(most);
+}
+
+void require_memory(double bytes, const std::string& subject, const std::string& remedy) {
+  const auto left = static_cast<double>(memory_left());
+  if (bytes <= left) return;
+  throw Error{Fault::memory, subject + ": needs " + in_gib(bytes) + " of memory, but " +
+                                 (chosen ? "--memory leaves " + in_gib(left) : in_gib(left) + " are free") + "; " +
+                                 remedy + ", or allow more with --memory"};
+}
+
+}  // namespace vam
+
+// A sanitizer has its own.
+#ifndef VAM_SANITIZED
+
+namespace {
+
+void* given(void* memory) {
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  vam::admit(bytes);
+  return given(std::malloc(bytes == 0 ? 1 : bytes));
+}
+
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  vam::admit(bytes);
+  const auto unit = static_cast<std::size_t>(alignment);
+  return given(std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit));
+}
+
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+#endif

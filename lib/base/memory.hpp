@@ -1,0 +1,35 @@
+// How much memory this process may take: the bound of --memory, else what the machine has free.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <new>
+#include <string>
+
+namespace vam {
+
+/// Bounds the memory of the process from here on; 0: what it has and what the machine has free (MemAvailable, or what
+/// its control groups leave if that is less). From then on `new` throws OutOfMemory instead of exceeding it: looked up
+/// every 16 MiB that a thread takes. Never called: no bound.
+void bound_memory(std::uint64_t bytes);
+
+/// Bytes until the bound; without one, those the machine has free.
+[[nodiscard]] std::uint64_t memory_left();
+
+/// What a tool knows before it begins. Throws Fault::memory unless `bytes` more fit: "part.vdb (9000 x 9000 x 4000
+/// voxels): needs 12 GiB of memory, but 8 GiB are free; `remedy`, or allow more with --memory". Bytes are a double
+/// because products of sizes in a file may exceed all integers.
+void require_memory(double bytes, const std::string& subject, const std::string& remedy);
+
+/// Memory that was refused; what() has the numbers.
+class OutOfMemory : public std::bad_alloc {
+ public:
+  OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t most) noexcept;
+  [[nodiscard]] const char* what() const noexcept override { return text_.data(); }
+
+ private:
+  std::array<char, 160> text_{};  // there may be no memory for more
+};
+
+}  // namespace vam

@@ -1,0 +1,86 @@
+#include "base/memory.hpp"
+
+#include <doctest/doctest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+
+using namespace vam;
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool sanitized = true;  // which has an allocator of its own
+#else
+constexpr bool sanitized = false;
+#endif
+constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+
+// The bound is the process', and other cases follow.
+struct Bounded {
+  explicit Bounded(std::uint64_t bytes) { bound_memory(bytes); }
+  ~Bounded() { bound_memory(std::uint64_t{1} << 60); }
+  Bounded(const Bounded&) = delete;
+  Bounded& operator=(const Bounded&) = delete;
+};
+
+std::string refusal(double bytes) {
+  try {
+    require_memory(bytes, "part.vdb: 9 x 9 x 9 voxels", "use larger voxels");
+  } catch (const Error& error) {
+    CHECK(error.fault == Fault::memory);
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a need beyond the bound is refused with both numbers and a remedy") {
+  const Bounded bounded(2048 * mib);
+  CHECK(refusal(1e9).empty());
+  const std::string line = refusal(12.5 * 1024 * static_cast<double>(mib));
+  CHECK(line.starts_with("part.vdb: 9 x 9 x 9 voxels: needs 12.5 GiB of memory, but --memory leaves 2 GiB; "));
+  CHECK(line.ends_with("; use larger voxels, or allow more with --memory"));
+  CHECK(!refusal(1e40).empty());
+}
+
+TEST_CASE("what the machine has free is the bound where none is given") {
+  bound_memory(0);
+  const std::uint64_t left = memory_left();
+  CHECK(left > 16 * mib);
+  CHECK(left < std::uint64_t{1} << 50);
+  CHECK(refusal(1e15).find(" are free; ") != std::string::npos);
+  bound_memory(std::uint64_t{1} << 60);
+}
+
+TEST_CASE("a large allocation beyond the bound throws before it is made") {
+  if (sanitized) return;
+  const Bounded bounded(1024 * mib);
+  CHECK_NOTHROW(std::vector<char>(64 * mib));
+  try {
+    const std::vector<char> too_many(4096 * mib);
+    FAIL("4 GiB were given");
+  } catch (const OutOfMemory& refused) {
+    const std::string line = refused.what();
+    CHECK(line.starts_with("needs 4 GiB of memory beside the 0."));
+    CHECK(line.ends_with("--memory allows 1 GiB"));
+  }
+  CHECK_THROWS_AS(std::make_unique<char[]>(std::size_t{1} << 62), OutOfMemory);
+}
+
+TEST_CASE("small allocations are counted, and memory that was freed is not") {
+  if (sanitized) return;
+  const Bounded bounded(512 * mib);
+  std::vector<std::unique_ptr<std::vector<char>>> kept;
+  const auto fill = [&] {
+    for (int i = 0; i < 1024; ++i) kept.push_back(std::make_unique<std::vector<char>>(mib, 'x'));
+  };
+  CHECK_THROWS_AS(fill(), OutOfMemory);
+  CHECK(kept.size() > 300);
+  kept.clear();
+  CHECK_NOTHROW(std::vector<char>(256 * mib, 'x'));
+}
