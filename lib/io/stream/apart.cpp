@@ -12,6 +12,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -85,7 +86,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
     confine(bounds, parent, {slots.socket, source.descriptor});
     Sender sender(slots);
     parse(sender);
-    sender.finish();
+    sender.flush();
   } catch (const Error& error) {
     fault = static_cast<int>(error.fault);
     line = error.what();
@@ -124,37 +125,67 @@ void take_verdict(Child& child) {
 
 }  // namespace
 
-void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
-                const std::function<void(Receiver&)>& take) {
-  const ResourceBounds bounds = bounds_of(source.bytes);
-  Child child;
-  const int parent = getpid();
-  child.start();
-  if (child.process == 0) {
-    Slots slots = child.slots;
-    slots.socket = child.childs_end;
-    run_child(slots, bounds, source, parse, parent);
-  }
-  if (child.process < 0) {
-    throw Error{Fault::memory, source.name + ": no process to read it in (" + std::strerror(errno) +
-                                   "); allow this tool a second process"};
-  }
-  Receiver receiver(child.slots);
-  try {
-    bool whole = true;
-    try {
-      take(receiver);
-    } catch (const ChildEnded&) {
-      whole = false;
+struct Apart::State {
+  State(Foreign what, const std::function<void(Sender&)>& parse)
+      : source(std::move(what)), bounds(bounds_of(source.bytes, source.unpacked)) {
+    const int parent = getpid();
+    child.start();
+    if (child.process == 0) {
+      Slots slots = child.slots;
+      slots.socket = child.childs_end;
+      run_child(slots, bounds, source, parse, parent);
     }
-    if (!receiver.drain()) throw ChildEnded{};
-    take_verdict(child);
-    if (!whole) throw ChildEnded{};
-    (void)child.wait();
-  } catch (const ChildEnded&) {
+    if (child.process < 0) {
+      throw Error{Fault::memory, source.name + ": no process to read it in (" + std::strerror(errno) +
+                                     "); allow this tool a second process"};
+    }
+  }
+
+  // Why the child has not sent what was asked of it.
+  [[noreturn]] void explain() {
+    try {
+      if (receiver.drain()) take_verdict(child);
+    } catch (const ChildEnded&) {
+      (void)receiver;  // it ended within its verdict
+    }
     const std::string cause = cause_of(child.wait(), bounds);
     throw Error{Fault::data, source.name + ": is damaged: " + cause + "; make the file again"};
   }
+
+  Foreign source;
+  ResourceBounds bounds;
+  Child child;
+  Receiver receiver{child.slots};
+};
+
+Apart::Apart(Foreign source, const std::function<void(Sender&)>& parse)
+    : state_(std::make_unique<State>(std::move(source), parse)) {}
+
+Apart::~Apart() = default;
+
+void Apart::take(const std::function<void(Receiver&)>& take) {
+  try {
+    take(state_->receiver);
+  } catch (const ChildEnded&) {
+    state_->explain();
+  }
+}
+
+void Apart::finish() {
+  try {
+    if (!state_->receiver.drain()) throw ChildEnded{};
+    take_verdict(state_->child);
+  } catch (const ChildEnded&) {
+    state_->explain();
+  }
+  (void)state_->child.wait();
+}
+
+void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
+                const std::function<void(Receiver&)>& take) {
+  Apart apart(source, parse);
+  apart.take(take);
+  apart.finish();
 }
 
 }  // namespace vam::io

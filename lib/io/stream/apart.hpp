@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <type_traits>
 
@@ -24,8 +25,8 @@ class Sender {
     put(&value, sizeof value);
   }
   void put(const std::string& text);
-  /// Hands over what is still in the slot. Once, at the end.
-  void finish();
+  /// Hands over what is still in the slot: at the end, or to a reader that waits for it.
+  void flush();
 
  private:
   void acquire();
@@ -65,16 +66,35 @@ class Receiver {
 
 /// What is parsed apart.
 struct Foreign {
-  std::string name;         // begins every message
-  std::uint64_t bytes = 0;  // its size, which bounds memory and time of the child; 0: not known, a pipe
-  int descriptor = -1;      // a file that the child may read
+  std::string name;            // begins every message
+  std::uint64_t bytes = 0;     // its size, which bounds memory and time of the child; 0: not known, a pipe
+  int descriptor = -1;         // a file that the child may read
+  std::uint64_t unpacked = 0;  // what it may unpack to beyond 64 times its size
 };
 
-/// Runs parse() in a child and, at the same time, take() here. The child has no file but that descriptor, no network,
-/// no other process, at most 256 MiB and 64 times the file more memory than this process, at most 10 s and 1 s a MiB of
-/// processor time (a pipe: the free memory, 10 min), and dies with this thread. It must not call parallel_for, nor
-/// destroy what does. Throws the child's Error; Fault::data with one line when the child crashed or met a bound;
-/// Fault::memory when no process can be made; what take() throws.
+/// A reading in a child, taken piece by piece. The child has no file but that descriptor, no network, no other process,
+/// at most 256 MiB, 64 times the file and `unpacked` more memory than this process, at most 10 s and 1 s for 64 MiB of
+/// that of processor time (a pipe: the memory that is left, 10 min), and dies with this thread.
+class Apart {
+ public:
+  /// Starts parse() there. It must not call parallel_for, nor destroy what does. Throws Fault::memory when no process
+  /// can be made.
+  Apart(Foreign source, const std::function<void(Sender&)>& parse);
+  ~Apart();
+  Apart(const Apart&) = delete;
+  Apart& operator=(const Apart&) = delete;
+  /// Runs take() here. Throws the child's Error; Fault::data with one line when the child crashed or met a bound; what
+  /// take() throws.
+  void take(const std::function<void(Receiver&)>& take);
+  /// Passes over what is left. Throws as take() does.
+  void finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// All of it at once: runs parse() in a child and, at the same time, take() here.
 void read_apart(const Foreign& source, const std::function<void(Sender&)>& parse,
                 const std::function<void(Receiver&)>& take);
 

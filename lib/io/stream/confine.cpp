@@ -15,22 +15,13 @@
 #include <string>
 #include <vector>
 
+#include "base/memory.hpp"
+
 namespace vam::io {
 
 namespace {
 
 constexpr std::uint64_t mib = std::uint64_t{1} << 20;
-
-// Without swap: what the system can give before it begins to kill. All, where it does not say.
-std::uint64_t free_memory() {
-  std::ifstream facts("/proc/meminfo");
-  std::string key;
-  std::uint64_t kib = 0;
-  for (std::string rest; facts >> key >> kib; std::getline(facts, rest)) {
-    if (key == "MemAvailable:") return kib << 10;
-  }
-  return std::numeric_limits<std::uint64_t>::max() / 2;
-}
 
 // The size of the address space, which is what RLIMIT_AS counts; 0 where there is no /proc.
 std::uint64_t address_space() {
@@ -95,9 +86,10 @@ void filter_calls() {
 
 }  // namespace
 
-ResourceBounds bounds_of(std::uint64_t file_bytes) {
-  if (file_bytes == 0) return {free_memory(), 600};
-  return {std::min(256 * mib + 64 * file_bytes, free_memory()), 10 + file_bytes / mib};
+ResourceBounds bounds_of(std::uint64_t file_bytes, std::uint64_t unpacked_bytes) {
+  if (file_bytes == 0) return {memory_left(), 600};
+  const std::uint64_t unpacked = 64 * file_bytes + unpacked_bytes;
+  return {std::min(256 * mib + unpacked, memory_left()), 10 + unpacked / (64 * mib)};
 }
 
 void confine(const ResourceBounds& bounds, int parent, std::initializer_list<int> kept) {

@@ -51,7 +51,7 @@ void Sender::put(const std::string& text) {
   put(text.data(), text.size());
 }
 
-void Sender::finish() {
+void Sender::flush() {
   if (filled_ > 0) submit();
 }
 

@@ -123,7 +123,8 @@ class PassingGrid : public FloatGrid {
 // The grids of one archive after the other.
 class Archive : public openvdb::io::Archive {
  public:
-  Archive(const Wanted& wanted, Sender& out) : wanted_(wanted), out_(out) {}
+  Archive(const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
+      : wanted_(wanted), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
     readHeader(stream);
@@ -185,15 +186,19 @@ class Archive : public openvdb::io::Archive {
   const Wanted& wanted_;
   Sender& out_;
   bool found_ = false;
-  std::vector<openvdb::GridBase::Ptr>& kept_ = *new std::vector<openvdb::GridBase::Ptr>;  // for ever
+  std::vector<std::shared_ptr<void>>& kept_;
 };
 
 }  // namespace
 
-void send_archives(InputFile& file, const Wanted& wanted, Sender& out) {
-  Archive archive(wanted, out);
+void pass_archives(InputFile& file, const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
+  Archive archive(wanted, out, kept);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);
+}
+
+void send_archives(InputFile& file, const Wanted& wanted, Sender& out) {
+  pass_archives(file, wanted, out, *new std::vector<std::shared_ptr<void>>);  // for ever
 }
 
 }  // namespace vam::io

@@ -11,8 +11,8 @@ struct ResourceBounds {
   std::uint64_t cpu_s = 0;
 };
 
-/// For a file of that size; 0: not known.
-[[nodiscard]] ResourceBounds bounds_of(std::uint64_t file_bytes);
+/// For a file of that size, 0: not known, whose contents may unpack to more.
+[[nodiscard]] ResourceBounds bounds_of(std::uint64_t file_bytes, std::uint64_t unpacked_bytes);
 
 /// Makes the calling process, a fresh child, end with its parent, gives it the bounds and takes away every descriptor
 /// but `kept`, every signal handler and, where the kernel has seccomp, every system call that is not needed to compute,

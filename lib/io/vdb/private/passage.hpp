@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/stream/apart.hpp"
 #include "io/stream/stream.hpp"
@@ -53,6 +55,8 @@ struct Wanted {
 
 /// The child's work: sends every archive of the file. Throws what for_archives() throws.
 void send_archives(InputFile& file, const Wanted& wanted, Sender& out);
+/// The same; `kept` takes what a child must not destroy.
+void pass_archives(InputFile& file, const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept);
 
 void send_head(GridHead head, Sender& out);
 /// After its Record.

@@ -1,0 +1,30 @@
+// Private to the EXR files: stacks of other programs, parsed in a child.
+#pragma once
+
+#include <vector>
+
+#include "io/exr/private/stack_parser.hpp"
+#include "io/stream/apart.hpp"
+
+namespace vam::io::exr {
+
+/// All stacks that the parser has before it, its present one first. It must not be used here any more.
+class ForeignStacks {
+ public:
+  explicit ForeignStacks(StackParser& parser);
+  /// The next image; false after the last. Both throw as StackParser does.
+  bool next(Image& image, model::ImageInfo& about);
+  bool next_stack();
+
+  [[nodiscard]] const model::StackInfo& info() const { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const { return about_; }
+
+ private:
+  Apart apart_;
+  std::string name_;
+  model::StackInfo info_;
+  std::vector<model::ImageInfo> about_;
+  std::size_t done_ = 0;
+};
+
+}  // namespace vam::io::exr

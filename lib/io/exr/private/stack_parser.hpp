@@ -1,0 +1,83 @@
+// Private to the EXR files: the headers are parsed by OpenEXR from memory, the chunks are taken in the order of the
+// stream, and the pixels of one image at a time are decoded by OpenEXR from memory. So a pipe does, memory is one image
+// whatever the number of parts (Imf::MultiPartInputFile keeps the buffers of every part it has opened), and no size is
+// believed before it is checked.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/image.hpp"
+#include "io/exr/private/format.hpp"
+#include "io/exr/private/layout.hpp"
+#include "io/exr/private/seal_check.hpp"
+#include "io/stream/stream.hpp"
+#include "model/stack.hpp"
+
+namespace vam::io::exr {
+
+/// Of a stack after the other on one stream. All throw Fault::data, with one line, for what is no stack.
+class StackParser {
+ public:
+  explicit StackParser(const std::string& path) : in_(path) { begin(); }
+
+  /// Whether the stack bears seals, by its first header, of which OpenEXR has seen nothing yet.
+  [[nodiscard]] bool has_seals() const;
+  /// Parses the headers. Once for each stack, before what follows.
+  void read_head();
+  /// The next image; false after the last. Alone: without other threads.
+  bool next(Image& image, model::ImageInfo& about, bool alone);
+  /// After the last image: goes to the stack that follows; false at the end of the stream.
+  bool next_stack();
+
+  [[nodiscard]] InputFile& file() { return in_; }
+  [[nodiscard]] const model::StackInfo& info() const { return info_; }
+  [[nodiscard]] const std::vector<model::ImageInfo>& about() const { return about_; }
+  [[nodiscard]] const SealCheck& seals() const { return *seals_; }
+
+ private:
+  struct Arriving {
+    Chunks chunks;
+    int missing = 0;
+  };
+
+  [[nodiscard]] bool multi_part() const { return (flags_ & multi_part_flag) != 0; }
+  void begin();
+  void take_first_header();
+  void parse_head();
+  void add_part(const Imf::Header& header);
+  void refill(bool alone);
+  Arriving complete_part();
+  void take_chunk();
+  void take(void* to, std::size_t size);
+  template <class Number>
+  Number take_number() {
+    Number value{};
+    take(&value, sizeof value);
+    return value;
+  }
+  template <class Work>
+  void as_data_fault(const Work& work) const;
+
+  InputFile in_;
+  model::StackInfo info_;
+  std::vector<model::ImageInfo> about_;
+  std::int32_t flags_ = 0;
+  std::string first_header_;
+  int announced_ = 0;                   // vam:count, 0 where it is absent
+  std::vector<Layout> layouts_;         // distinct ones; nearly always one
+  std::vector<std::size_t> layout_of_;  // of every part
+  std::map<std::size_t, Arriving> arriving_;
+  std::size_t waiting_bytes_ = 0;
+  std::optional<SealCheck> seals_;  // of this stack
+  std::uint64_t begin_ = 0;         // of the stack on the stream
+  std::size_t complete_ = 0;        // parts taken off the stream
+  std::deque<Image> ready_;         // decoded images
+  std::size_t done_ = 0;            // images handed out
+};
+
+}  // namespace vam::io::exr

@@ -1,0 +1,238 @@
+#include "io/exr/private/stack_parser.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/parallel.hpp"
+#include "io/exr/private/attributes.hpp"
+#include "io/stream/finite.hpp"
+
+namespace vam::io::exr {
+
+namespace {
+
+using model::ImageInfo;
+using model::StackInfo;
+
+// Parts may be interleaved; what has come too early waits in memory up to here.
+constexpr std::size_t max_waiting_bytes = std::size_t{1} << 30;
+constexpr std::size_t batch = 16;  // compressed images decoded at a time, in parallel
+constexpr std::size_t absent = ~std::size_t{0};
+
+void check_finite(const Image& image, std::size_t index) {
+  if (all_finite(image.values.data(), image.size())) return;
+  const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float v) { return !std::isfinite(v); });
+  const auto at = bad - image.values.begin();
+  throw std::runtime_error("pixel " + std::to_string(at % image.width) + ", " + std::to_string(at / image.width) +
+                           " of image " + std::to_string(index) + " is not a finite number");
+}
+
+void require_own_poses(const StackInfo& info) {
+  if (info.poses.empty()) return;
+  if (info.poses.size() != static_cast<std::size_t>(info.height)) {
+    throw std::runtime_error("vam:poses has " + std::to_string(info.poses.size()) + " lines, but the images have " +
+                             std::to_string(info.height) + " angles");
+  }
+  if (const std::string why = objection(info.poses, info.angle_start_deg, info.angle_step_deg); !why.empty()) {
+    throw std::runtime_error("vam:poses: " + why);
+  }
+}
+
+}  // namespace
+
+// What OpenEXR and the checks throw becomes an Error that names the file.
+template <class Work>
+void StackParser::as_data_fault(const Work& work) const {
+  try {
+    work();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& problem) {
+    std::string line = in_.name() + ": " + problem.what();
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    throw Error{Fault::data, line};
+  }
+}
+
+void StackParser::take(void* to, std::size_t size) {
+  if (in_.read(to, size) == size) return;
+  std::string where = "in its header";
+  if (info_.count > 0) where = "in image " + std::to_string(complete_) + " of " + std::to_string(info_.count);
+  throw Error{Fault::data, in_.name() + ": is cut off after " + std::to_string(in_.position()) + " bytes, " + where +
+                               "; the program that wrote it did not finish"};
+}
+
+// What OpenEXR has not seen yet: magic, flags and the bytes of the first header.
+void StackParser::begin() {
+  info_ = {};
+  about_.clear();
+  layouts_.clear();
+  layout_of_.clear();
+  arriving_.clear();
+  seals_.emplace();
+  waiting_bytes_ = 0;
+  complete_ = done_ = 0;
+  begin_ = in_.position();
+  as_data_fault([this] { take_first_header(); });
+}
+
+void StackParser::take_first_header() {
+  if (in_.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
+  std::int32_t first = 0;
+  if (in_.read(&first, sizeof first) != sizeof first || first != magic) throw std::runtime_error("is not OpenEXR");
+  flags_ = take_number<std::int32_t>();
+  if ((flags_ & 0xff) != version) throw std::runtime_error("is of an OpenEXR version that is not known");
+  if ((flags_ & (tiled_flag | deep_flag)) != 0) throw std::runtime_error("holds tiles or deep pixels");
+  first_header_ = take_header([this](char* to, std::size_t size) { take(to, size); });
+}
+
+bool StackParser::has_seals() const {
+  using namespace std::string_literals;
+  return first_header_.find(values_seal_key + "\0string\0"s) != std::string::npos;
+}
+
+void StackParser::read_head() {
+  as_data_fault([this] { parse_head(); });
+}
+
+void StackParser::parse_head() {
+  const auto take_bytes = [this](char* to, std::size_t size) { take(to, size); };
+  for (std::string bytes = std::move(first_header_); !bytes.empty(); bytes = take_header(take_bytes)) {
+    add_part(parse_header(bytes, flags_));
+    if (!multi_part()) break;
+  }
+  if (about_.empty()) throw std::runtime_error("has no image");
+  const int parts = static_cast<int>(about_.size());
+  if (announced_ != 0 && announced_ != parts) {
+    throw std::runtime_error("holds " + std::to_string(parts) + " of the " + std::to_string(announced_) +
+                             " images that vam:count announces");
+  }
+  info_.count = parts;
+
+  // The offset tables serve those who seek; here the chunks say themselves what they are.
+  for (const std::size_t layout : layout_of_) {
+    for (int i = 0; i < layouts_[layout].chunks; ++i) seals_->note_offset(take_number<std::uint64_t>());
+  }
+  const std::string line = seals_->chained();
+  const bool named = !info_.history.empty() && !chained_seal(info_.history.back()).empty();
+  if (!line.empty() && !named) info_.history.push_back(line);
+}
+
+void StackParser::add_part(const Imf::Header& header) {
+  Layout layout = checked_layout(header);
+  if (about_.empty()) {
+    info_ = stack_info(header);
+    info_.width = layout.width;
+    info_.height = layout.height;
+    announced_ = std::exchange(info_.count, 0);
+    if (info_.kind == model::Kind::sinogram) require_own_poses(info_);
+  }
+  const std::string part = "part " + std::to_string(about_.size());
+  if (layout.width != info_.width || layout.height != info_.height) {
+    throw std::runtime_error(part + " has another size than part 0");
+  }
+  about_.push_back(image_info(header, info_, static_cast<int>(about_.size())));
+  StackInfo own = stack_info(header);
+  own.width = layout.width;
+  own.height = layout.height;
+  seals_->begin_part(header, multi_part(), own, about_.back());
+  const auto known =
+      std::find_if(layouts_.begin(), layouts_.end(), [&](const Layout& l) { return l.key == layout.key; });
+  layout_of_.push_back(static_cast<std::size_t>(known - layouts_.begin()));
+  if (known == layouts_.end()) layouts_.push_back(std::move(layout));
+}
+
+void StackParser::take_chunk() {
+  const std::uint64_t start = in_.position() - begin_;
+  const std::int32_t part = multi_part() ? take_number<std::int32_t>() : 0;
+  const auto y = take_number<std::int32_t>();
+  const auto size = take_number<std::int32_t>();
+  const auto index = static_cast<std::size_t>(part);
+  if (part < 0 || index >= layout_of_.size() || index < complete_) throw std::runtime_error("has a chunk of no part");
+  const Layout& layout = layouts_[layout_of_[index]];
+  const std::int64_t row = std::int64_t{y} - layout.header.dataWindow().min.y;
+  const int rows = rows_per_chunk(layout.header.compression());
+  const auto place = static_cast<std::size_t>(row / rows);
+  Arriving& image = arriving_[index];
+  if (image.chunks.starts.empty()) {
+    image.chunks.starts.assign(layout.chunks, absent);
+    image.missing = layout.chunks;
+  }
+  if (row < 0 || row >= layout.height || row % rows != 0 || image.chunks.starts[place] != absent || size < 0 ||
+      static_cast<std::size_t>(size) > layout.max_chunk_bytes) {
+    throw std::runtime_error("image " + std::to_string(index) + " has a damaged chunk near byte " +
+                             std::to_string(in_.position()));
+  }
+  // The table's order is part by part, row by row.
+  const bool in_order =
+      index == complete_ && place + static_cast<std::size_t>(image.missing) == image.chunks.starts.size();
+  seals_->note_chunk(start, in_order);
+  std::string& bytes = image.chunks.bytes;
+  image.chunks.starts[place] = bytes.size();
+  append(bytes, y);
+  append(bytes, size);
+  const std::size_t at = bytes.size();
+  bytes.resize(at + static_cast<std::size_t>(size));
+  take(bytes.data() + at, static_cast<std::size_t>(size));
+  --image.missing;
+  waiting_bytes_ += bytes.size() - at + 8;
+  if (waiting_bytes_ > max_waiting_bytes && index != complete_) {
+    throw std::runtime_error("has its parts interleaved; exrmultipart -combine puts them in order");
+  }
+}
+
+StackParser::Arriving StackParser::complete_part() {
+  while (arriving_[complete_].chunks.starts.empty() || arriving_[complete_].missing > 0) take_chunk();
+  Arriving image = std::move(arriving_[complete_]);
+  arriving_.erase(complete_);
+  waiting_bytes_ -= image.chunks.bytes.size();
+  ++complete_;
+  return image;
+}
+
+// Uncompressed images come one by one, so that a live stream is not held up; compressed ones are decoded in parallel.
+void StackParser::refill(bool alone) {
+  const std::size_t first = complete_;
+  const bool raw = layouts_[layout_of_[first]].header.compression() == Imf::NO_COMPRESSION;
+  const std::size_t count = std::min(raw || alone ? 1 : batch, about_.size() - first);
+  std::vector<Chunks> taken;
+  for (std::size_t i = 0; i < count; ++i) taken.push_back(complete_part().chunks);
+  ready_.assign(count, Image(info_.width, info_.height));
+  const auto decode_one = [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    decode(layouts_[layout_of_[first + at]].header, taken[at], ready_[at]);
+    check_finite(ready_[at], first + at);
+    seals_->note_image(first + at, ready_[at]);
+  };
+  if (count == 1) {
+    decode_one(0);
+  } else {
+    parallel_for(static_cast<int>(count), decode_one);
+  }
+  seals_->judge(first, first + count);
+  if (complete_ == about_.size()) seals_->finish([this](char* to, std::size_t size) { take(to, size); });
+}
+
+bool StackParser::next(Image& image, ImageInfo& about, bool alone) {
+  if (done_ == about_.size()) return false;
+  if (ready_.empty()) as_data_fault([&] { refill(alone); });
+  image = std::move(ready_.front());
+  ready_.pop_front();
+  about = about_[done_++];
+  return true;
+}
+
+bool StackParser::next_stack() {
+  if (done_ != about_.size()) throw Error{Fault::bug, in_.name() + ": images are left unread"};
+  if (in_.at_end()) return false;
+  begin();
+  return true;
+}
+
+}  // namespace vam::io::exr
