@@ -6,7 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "optics/vial.hpp"
+#include "model/magnification.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::light {
 
@@ -26,7 +27,7 @@ model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& inf
   const double all = parallel ? info.width * info.pixel_mm : 2 * optics::reach_mm(optics::projector_view(printer));
   const int n = std::max(1, static_cast<int>(std::ceil(size_mm.value_or(all) / voxel_mm - 1e-6)));
   // Slices that pass the rows in some pose.
-  const model::Range lift = model::lift_mm(info.poses);
+  const model::LiftRange lift = model::lift_mm(info.poses);
   const double slice_mm = voxel_mm * model::vertical_magnification(printer);
   const int below = static_cast<int>(std::ceil(std::max(0.0, lift.most) / slice_mm - 1e-6));
   const int above = static_cast<int>(std::ceil(std::max(0.0, -lift.least) / slice_mm - 1e-6));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {
@@ -27,7 +28,7 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
   const auto voxels = [&](double mm) { return std::max(0, static_cast<int>(std::ceil(mm / grid.voxel_mm - 1e-6))); };
   margin.side = voxels(radius_mm - rim);
   const double ratio = climb_ratio(printer, radius_mm);
-  const model::Range lift = model::lift_mm(poses);
+  const model::LiftRange lift = model::lift_mm(poses);
   const double scale = model::vertical_magnification(printer);
   if (lift.least != 0 || lift.most != 0) margin.above = margin.below = 1;
   if (ratio == 1) return margin;
@@ -35,11 +36,11 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
   const double lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
   const double highest_mm = p.axis_row * p.pixel_mm;
   const auto spread = [&](double z_mm) { return z_mm > 0 ? z_mm * (ratio - 1) : z_mm * (1 / ratio - 1); };
-  // Of an end of the part, `sign` up or down, wherever it passes the picture.
+  // Of an end of the part, `sign` up or down, wherever it passes the image.
   const auto most = [&](double end_mm, double sign) {
     if (poses.empty()) return spread(sign * end_mm);
-    const auto in_picture = [&](double lift_mm) { return std::clamp(end_mm + lift_mm / scale, lowest_mm, highest_mm); };
-    return std::max(spread(sign * in_picture(lift.least)), spread(sign * in_picture(lift.most)));
+    const auto in_image = [&](double lift_mm) { return std::clamp(end_mm + lift_mm / scale, lowest_mm, highest_mm); };
+    return std::max(spread(sign * in_image(lift.least)), spread(sign * in_image(lift.most)));
   };
   margin.above = voxels(most(grid.z_mm(grid.nz - 1), 1)) + 1;
   margin.below = voxels(most(grid.z_mm(0), -1)) + 1;

@@ -5,6 +5,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "model/magnification.hpp"
 #include "optics/writable.hpp"
 
 namespace vam::light {

@@ -11,8 +11,8 @@ namespace vam::light {
 /// lab_angle_deg - direction * theta of the laboratory, from +x towards +y [physics §11]. One turn.
 [[nodiscard]] model::Poses wobble_poses(double radius_mm, double lab_angle_deg, int direction, int angles);
 
-/// A part taller than the picture, lifted by pitch_mm a turn (lowered, if negative): the whole grid passes all rows, in
-/// as many whole turns as that takes, midway in their middle. Every slice is in the picture for the picture's height
+/// A part taller than the image, lifted by pitch_mm a turn (lowered, if negative): the whole grid passes all rows, in
+/// as many whole turns as that takes, midway in their middle. Every slice is in the image for the image's height
 /// over the pitch, in turns. Throws Fault::usage when that is less than half a turn.
 [[nodiscard]] model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid, double pitch_mm,
                                        int angles);

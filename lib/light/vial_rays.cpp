@@ -40,7 +40,7 @@ auto best_kernel() {
 /// Slabs are looked up whole. Slices that no row reaches in any pose need no rays.
 double VialRays::top_mm() const {
   const int slices = (setup_.grid.nz + lanes - 1) / lanes * lanes;
-  const model::Range lift = model::lift_mm(setup_.poses);
+  const model::LiftRange lift = model::lift_mm(setup_.poses);
   const double top = std::max(std::abs(height_mm(0) + lift.least), std::abs(height_mm(slices - 1) + lift.most));
   if (!posed()) return top;
   constexpr double lower = 1.25;  // light may cross a slice that its row is far above
@@ -150,7 +150,7 @@ RowRange VialRays::rows_to(const RayNodes& nodes, int first, int slices) const {
 RowRange VialRays::posed_rows_to(int first, int slices) const {
   const auto least = static_cast<double>(least_row_);
   const auto most = static_cast<double>(most_row_);
-  const model::Range lift = model::lift_mm(setup_.poses);
+  const model::LiftRange lift = model::lift_mm(setup_.poses);
   const double bottom = height_mm(first) + lift.least;
   const double top = height_mm(first + slices - 1) + lift.most;
   const auto row_at = [&](double z_mm) {

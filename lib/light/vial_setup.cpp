@@ -8,6 +8,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "model/magnification.hpp"
 
 namespace vam::light {
 
@@ -56,7 +57,7 @@ VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int
 void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& slices) {
   if (poses.empty()) return;
   constexpr double rounding = 0.01;  // of a row
-  const model::Range lift = model::lift_mm(poses);
+  const model::LiftRange lift = model::lift_mm(poses);
   const double voxel = setup.grid.voxel_mm;
   const double low_mm = std::max(setup.lowest_mm, slices.z_mm(0) + lift.least / setup.z_scale);
   const double high_mm = std::min(setup.highest_mm, slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale);

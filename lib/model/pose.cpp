@@ -85,7 +85,7 @@ Poses parse_poses(const std::string& text) {
   return poses;
 }
 
-Range lift_mm(const Poses& poses) {
+LiftRange lift_mm(const Poses& poses) {
   if (poses.empty()) return {};
   const auto lower = [](const Pose& a, const Pose& b) { return a.dz_mm < b.dz_mm; };
   const auto [least, most] = std::minmax_element(poses.begin(), poses.end(), lower);

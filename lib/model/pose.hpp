@@ -39,12 +39,12 @@ using Poses = std::vector<Pose>;
 [[nodiscard]] std::string poses_text(const Poses& poses);
 [[nodiscard]] Poses parse_poses(const std::string& text);
 
-struct Range {
+struct LiftRange {
   double least = 0;
   double most = 0;
 };
 /// Of dz_mm; 0 without poses.
-[[nodiscard]] Range lift_mm(const Poses& poses);
+[[nodiscard]] LiftRange lift_mm(const Poses& poses);
 
 /// Largest horizontal displacement of the vial, or of the part in the vial.
 [[nodiscard]] double farthest_mm(const Poses& poses, Moves moves);

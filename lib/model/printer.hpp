@@ -108,12 +108,4 @@ struct Printer {
 /// Inner radius of the vial.
 [[nodiscard]] double resin_radius_mm(const Vial& vial);
 
-/// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when rays stay level.
-[[nodiscard]] double vertical_magnification(const Printer& printer);
-
-/// Sum over the interfaces from the outside in of distance to the axis * (1 / n_before - 1 / n_after): by how much
-/// window, bath, glass and resin shorten the way to the axis for rays near it [physics §2]. R (1 - 1/n) for a vial in
-/// air [OST22 eq S1, OST22 eq S2, OST22 eq S3, OST22 eq S4]. The resin's index is that at the wavelength in question.
-[[nodiscard]] double shortening_mm(const Printer& printer, double index_resin);
-
 }  // namespace vam::model

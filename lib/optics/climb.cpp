@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/text.hpp"
+#include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::optics {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::optics {
 

@@ -4,7 +4,7 @@
 // [physics §2, §11].
 #pragma once
 
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::optics {
 

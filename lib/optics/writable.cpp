@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::optics {
 

@@ -8,7 +8,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 #include "printer.hpp"
 
 namespace vam::ost_tool {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "light/private/ray_table.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::light {
 

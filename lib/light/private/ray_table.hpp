@@ -9,7 +9,7 @@
 
 #include "base/slab.hpp"
 #include "light/private/taps_kernel.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::light {
 

@@ -10,7 +10,8 @@
 #include "base/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/ost/ost.hpp"
-#include "optics/vial.hpp"
+#include "model/magnification.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::metrology {
 
@@ -94,7 +95,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
                                  " columns wide; at least " + std::to_string(4 * least_columns) +
                                  " are needed: a smaller --binning"};
   }
-  const double row_mm = view.pixel_mm / image_magnification(printer);
+  const double row_mm = view.pixel_mm / model::camera_magnification(printer);
   BeamWidths widths;
   for (int p = 0; p < count; ++p) {
     const auto first = inside.size() * static_cast<std::size_t>(p) / static_cast<std::size_t>(count);

@@ -11,7 +11,7 @@
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/sight_lines.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::metrology {
 

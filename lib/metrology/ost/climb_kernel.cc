@@ -6,7 +6,7 @@ namespace vam::metrology::VAM_SIMD {
 
 using namespace vam::VAM_SIMD;
 
-void climb_columns(const Climb& job) {
+void climb_columns(const ShearedColumns& job) {
   Vector lane;
   for (int i = 0; i < vector_floats; ++i) lane[i] = static_cast<float>(i);
   const auto drift = static_cast<float>(job.slope - 1);

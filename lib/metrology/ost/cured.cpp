@@ -87,7 +87,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& ref
   const double design_mm3 = whole * std::pow(reference.grid.voxel_mm, 3);
   const double outside_mm3 = design_mm3 - voxel_mm3 * (sums[0] + sums[2]);  // design that the camera does not see
   Cured state;
-  state.reference_mm3 = design_mm3;
+  state.target_mm3 = design_mm3;
   state.cured_mm3 = voxel_mm3 * (sums[0] + sums[1]);
   state.overcure_mm3 = voxel_mm3 * sums[1];
   state.missing_mm3 = voxel_mm3 * sums[2] + (outside_mm3 > 0.02 * design_mm3 ? outside_mm3 : 0.0);
@@ -96,7 +96,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& ref
 }
 
 Json to_json(const Cured& state) {
-  return {{"reference_mm3", state.reference_mm3},
+  return {{"target_mm3", state.target_mm3},
           {"cured_mm3", state.cured_mm3},
           {"missing_mm3", state.missing_mm3},
           {"missing_percent", state.missing_percent()},

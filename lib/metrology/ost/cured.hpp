@@ -25,13 +25,13 @@ struct SumProjections {
 
 /// Volumes in mm^3, of what is cured ({scatter >= I_p}) against a reference (coverage of 1/2 or more).
 struct Cured {
-  double reference_mm3 = 0;
+  double target_mm3 = 0;
   double cured_mm3 = 0;
   double missing_mm3 = 0;   // in the reference, not cured
   double overcure_mm3 = 0;  // cured, not in the reference
   double iou = 0;           // of the two
-  [[nodiscard]] double missing_percent() const { return 100 * missing_mm3 / reference_mm3; }
-  [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / reference_mm3; }
+  [[nodiscard]] double missing_percent() const { return 100 * missing_mm3 / target_mm3; }
+  [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / target_mm3; }
 };
 
 /// The reference lies in the same frame, on any grid. Throws Fault::data when it is empty.

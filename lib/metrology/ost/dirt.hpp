@@ -13,7 +13,7 @@ namespace vam::metrology {
 /// What was found in the views of one turn and taken out.
 struct Dirt {
   double background = 0;        // even, in view units
-  bool has_background = false;  // false: no part of the picture is empty, nothing was subtracted
+  bool has_background = false;  // false: no part of the image is empty, nothing was subtracted
   double speck_percent = 0;     // of the rays that the volume needs, seen through specks and taken from the other end
   double bubble_percent = 0;    // of them, brighter than the same line from the other end and taken from there
   bool contradicts = false;     // so many rays differ that it is no dirt, and none was replaced for it

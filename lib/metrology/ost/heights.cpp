@@ -14,7 +14,7 @@ double tallest_mm(const Eye& eye) { return std::max(std::abs(eye.z_mm(0)), std::
 
 }  // namespace
 
-HeightMap::HeightMap(const Eye& eye) : eye_(eye), columns_(static_cast<std::size_t>(eye.camera.columns)) {
+RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(static_cast<std::size_t>(eye.camera.columns)) {
   const double high = std::max(tallest_mm(eye), 1e-3);
   const double low = 0.5 * high;
   std::vector<bool> hit(columns_.size());
@@ -37,7 +37,7 @@ HeightMap::HeightMap(const Eye& eye) : eye_(eye), columns_(static_cast<std::size
   }
 }
 
-double HeightMap::row(int column, double height_mm) const {
+double RowOfHeight::row(int column, double height_mm) const {
   const auto& [linear, cubic] = columns_[static_cast<std::size_t>(column)];
   double z = height_mm / linear;
   for (int step = 0; step < 3; ++step) z -= (z * (linear + cubic * z * z) - height_mm) / (linear + 3 * cubic * z * z);
@@ -64,7 +64,7 @@ optics::View plan_view(const optics::View& view, double z_p_mm) {
   return plan;
 }
 
-LevelRows::LevelRows(const HeightMap& map, int columns, int rows, std::span<const double> heights_mm)
+LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm)
     : columns_(columns), heights_(static_cast<int>(heights_mm.size())) {
   for (const double height : heights_mm) {
     for (int x = 0; x < columns; ++x) {

@@ -14,8 +14,9 @@
 #include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/heights.hpp"
 #include "metrology/ost/private/mlem.hpp"
+#include "model/magnification.hpp"
+#include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
-#include "optics/vial.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 
@@ -114,7 +115,7 @@ OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_m
                                  std::to_string(columns) + "); check camera.pixel_mm and the axis"};
   }
   s.detector = optics::centred_detector(2 * half + 1, voxel_mm);
-  const double row_mm = pixel_mm / image_magnification(printer);
+  const double row_mm = pixel_mm / model::camera_magnification(printer);
   const int slices = std::max(1, static_cast<int>(std::floor(rows * row_mm / voxel_mm)));
   const double middle_mm = (s.eye.axis_row - 0.5 * (rows - 1)) * row_mm;
   s.grid = model::centred_grid(2 * half + 1, 2 * half + 1, slices, voxel_mm, middle_mm - 0.5 * (slices - 1) * voxel_mm);
@@ -217,7 +218,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   const int angles = turn.summary().angles;
   const ClimbingRays rays = s.rays(angles);
   const int beyond = heights_beyond(rays, s.grid);
-  const HeightMap map(s.eye);
+  const RowOfHeight map(s.eye);
   const tomo::Filter filter(s.detector.columns, {.window = tomo::window_from_name(s.options.window),
                                                  .alpha_per_px = s.absorption_per_mm * s.grid.voxel_mm});
   Dirt dirt;
@@ -246,11 +247,6 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   }
   if (found != nullptr) *found = dirt;
   return volume;
-}
-
-double image_magnification(const model::Printer& printer) {
-  if (printer.camera.telecentric) return 1;
-  return 1 / (1 - model::shortening_mm(printer, printer.camera.index_resin) / printer.camera.distance_mm);
 }
 
 }  // namespace vam::metrology

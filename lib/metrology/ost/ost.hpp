@@ -49,8 +49,4 @@ class OstReconstructor {
   std::unique_ptr<State> state_;
 };
 
-/// M_vi = 1 / (1 - shortening / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis;
-/// 1 when it is telecentric.
-[[nodiscard]] double image_magnification(const model::Printer& printer);
-
 }  // namespace vam::metrology

@@ -18,7 +18,7 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 Vector3d to_eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
 Vector3 from_eigen(const Vector3d& v) { return {v[0], v[1], v[2]}; }
 
-Similarity to_similarity(const Pose& pose) {
+Similarity to_similarity(const Motion& pose) {
   Similarity result;
   result.scale = pose.scale;
   for (int r = 0; r < 3; ++r) {
@@ -42,7 +42,7 @@ struct Pairs {
   double rms = 0;                // full distances
 };
 
-Pairs pair_up(const std::vector<Vector3d>& points, const Pose& pose, const Surface& reference) {
+Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Surface& reference) {
   const std::size_t n = points.size();
   Pairs pairs{std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<double>(n), 0};
   constexpr std::size_t chunk = 256;
@@ -72,7 +72,7 @@ double huber_bound(const Pairs& pairs) { return 2.5 * pairs.rms + 1e-12; }
 
 // One Gauss-Newton step of the point-to-plane error [CM92; physics §13.3], linearised about `centre`: unknowns are
 // rotation vector, shift and relative scale. Returns how far the step moves the farthest point.
-double step(const Pairs& pairs, bool with_scale, Pose& pose) {
+double step(const Pairs& pairs, bool with_scale, Motion& pose) {
   const Vector3d centre = mean_of(pairs.moved);
   const double bound = huber_bound(pairs);
   Matrix7d normal = Matrix7d::Zero();
@@ -113,7 +113,7 @@ double step(const Pairs& pairs, bool with_scale, Pose& pose) {
 }
 
 Alignment run_icp(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
-                  int max_iterations, double size, Pose& pose) {
+                  int max_iterations, double size, Motion& pose) {
   Alignment result;
   constexpr int patience = 3;  // pairs at edges change sides for ever: where the error rests, so may we
   double best = 1e300;
@@ -150,7 +150,7 @@ std::array<std::array<double, 4>, 4> Similarity::matrix() const {
 }
 
 Alignment refine(const model::TriangleSoup& print, const Surface& reference, const AlignOptions& options) {
-  Pose pose;
+  Motion pose;
   return run_icp(points_of(print, options.samples), reference, options, options.max_iterations,
                  bounding_box(print).largest_side(), pose);
 }
@@ -165,10 +165,10 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
 
   struct Start {
     double rms;
-    Pose pose;
+    Motion pose;
   };
   std::vector<Start> starts;
-  for (const Pose& pose : starting_poses(all, points_of(reference_mesh, options.samples), options.with_scale)) {
+  for (const Motion& pose : starting_poses(all, points_of(reference_mesh, options.samples), options.with_scale)) {
     starts.push_back({0, pose});
   }
   // Fewer and fewer starts are refined more and more.
@@ -180,12 +180,12 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
     std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
     starts.resize(std::min(starts.size(), count));
   };
-  keep(96, [&](Pose& pose) { return pair_up(few, pose, reference).rms; });
-  keep(12, [&](Pose& pose) { return run_icp(few, reference, rigid, 6, size, pose).rms_mm; });
-  keep(3, [&](Pose& pose) { return run_icp(few, reference, rigid, 20, size, pose).rms_mm; });
+  keep(96, [&](Motion& pose) { return pair_up(few, pose, reference).rms; });
+  keep(12, [&](Motion& pose) { return run_icp(few, reference, rigid, 6, size, pose).rms_mm; });
+  keep(3, [&](Motion& pose) { return run_icp(few, reference, rigid, 20, size, pose).rms_mm; });
   // The best at a tenth of the points, then all points from there.
   const std::vector<Vector3d> some = points_of(print, std::max(400, options.samples / 10));
-  keep(1, [&](Pose& pose) { return run_icp(some, reference, options, options.max_iterations, size, pose).rms_mm; });
+  keep(1, [&](Motion& pose) { return run_icp(some, reference, options, options.max_iterations, size, pose).rms_mm; });
   return run_icp(all, reference, options, options.max_iterations, size, starts.front().pose);
 }
 

@@ -87,14 +87,14 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-std::vector<Pose> starting_poses(const std::vector<Vector3d>& print, const std::vector<Vector3d>& reference,
-                                 bool with_scale) {
+std::vector<Motion> starting_poses(const std::vector<Vector3d>& print, const std::vector<Vector3d>& reference,
+                                   bool with_scale) {
   const PrincipalAxes from = principal_frame(print);
   const PrincipalAxes to = principal_frame(reference);
-  std::vector<Pose> poses;
+  std::vector<Motion> poses;
   for (const Matrix3d& turn : undetermined_turns(to.spread)) {
     for (const Matrix3d& cube : cube_rotations()) {
-      Pose& pose = poses.emplace_back();
+      Motion& pose = poses.emplace_back();
       if (with_scale) pose.scale = to.spread.norm() / from.spread.norm();
       pose.rotation = to.axes * turn * cube * from.axes.transpose();
       pose.shift = to.centre - pose.scale * (pose.rotation * from.centre);

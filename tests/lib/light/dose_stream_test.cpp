@@ -124,7 +124,7 @@ TEST_CASE("more rows than slices, and fewer") {
   }
 }
 
-TEST_CASE("a stream around an insert, and of a part that is lifted past the picture") {
+TEST_CASE("a stream around an insert, and of a part that is lifted past the image") {
   std::vector<Image> inserts(slices, Image(30, 30));
   for (int k = 40; k < 170; ++k) {
     for (int j = 12; j < 16; ++j) {

@@ -9,6 +9,7 @@
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
 #include "light/vial_setup.hpp"
+#include "model/magnification.hpp"
 #include "optics/writable.hpp"
 
 using namespace vam;
@@ -43,7 +44,7 @@ TEST_CASE("a wobbling vial stays in its place in the turning frame") {
   }
 }
 
-TEST_CASE("a helix passes the whole part through the whole picture") {
+TEST_CASE("a helix passes the whole part through the whole image") {
   const model::Printer printer = low_picture();
   const double scale = model::vertical_magnification(printer);
   const model::Grid part = model::centred_grid(10, 10, 120, 0.1, 3.05);
@@ -51,9 +52,9 @@ TEST_CASE("a helix passes the whole part through the whole picture") {
     const model::Poses poses = helix_poses(printer, part, pitch, 60);
     const double turns = static_cast<double>(poses.size()) / 60;
     CHECK(turns == std::ceil(16 * scale / std::abs(pitch) - 1e-6));
-    const model::Range lift = model::lift_mm(poses);
+    const model::LiftRange lift = model::lift_mm(poses);
     CHECK((lift.most - lift.least) / (turns * 60 - 1) * 60 == doctest::Approx(std::abs(pitch)));
-    // Halfway the part's middle is in the picture's.
+    // Halfway the part's middle is in the image's.
     CHECK(0.5 * (lift.least + lift.most) == doctest::Approx(-scale * part.z_mm(59.5)));
     CHECK_FALSE(model::repeat(poses));
   }
@@ -63,7 +64,7 @@ TEST_CASE("a helix passes the whole part through the whole picture") {
   CHECK(fault_of([&] { static_cast<void>(helix_poses(printer, part, 1e-4, 60)); }) == Fault::usage);
 }
 
-TEST_CASE("rows are those of the picture, or as many as light the part in any pose") {
+TEST_CASE("rows are those of the image, or as many as light the part in any pose") {
   const model::Printer printer = low_picture();
   const double scale = model::vertical_magnification(printer);
   const model::Grid tall = model::centred_grid(10, 10, 120, 0.1, -5.95);

@@ -11,6 +11,7 @@
 #include "light/display.hpp"
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
+#include "model/magnification.hpp"
 #include "optics/writable.hpp"
 #include "score/exposure.hpp"
 

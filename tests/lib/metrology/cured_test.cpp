@@ -34,9 +34,9 @@ TEST_CASE("cured, missing and overcured volumes of two boxes that overlap by hal
   const auto design = box(grid, -2.05, 0.95);  // 30 x 21 x 11 voxels
   const auto print = box(grid, -0.55, 2.45);
   const Cured state = cured(print, 0.5, design);
-  CHECK(state.cured_mm3 == doctest::Approx(state.reference_mm3));
-  CHECK(state.missing_mm3 == doctest::Approx(0.5 * state.reference_mm3));
-  CHECK(state.overcure_mm3 == doctest::Approx(0.5 * state.reference_mm3));
+  CHECK(state.cured_mm3 == doctest::Approx(state.target_mm3));
+  CHECK(state.missing_mm3 == doctest::Approx(0.5 * state.target_mm3));
+  CHECK(state.overcure_mm3 == doctest::Approx(0.5 * state.target_mm3));
   CHECK(state.iou == doctest::Approx(1.0 / 3));
   CHECK(state.missing_percent() == doctest::Approx(50));
   CHECK(cured(design, 0.5, design).iou == doctest::Approx(1));

@@ -6,6 +6,7 @@
 
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
+#include "model/magnification.hpp"
 #include "oracle/bench_views.hpp"
 #include "solid/mesh/surface.hpp"
 #include "solid/voxel/isosurface.hpp"
@@ -146,7 +147,7 @@ TEST_CASE("heights behind the window of a bath") {
   bench.bath_index = 1.4;
   bench.window_mm = 20;
   bench.rays = 2;
-  CHECK(image_magnification(printer_of(bench)) == doctest::Approx(1.0323).epsilon(1e-3));
+  CHECK(model::camera_magnification(printer_of(bench)) == doctest::Approx(1.0323).epsilon(1e-3));
   const Figures f = reconstructed(bench, views_of(bench, oracle::bench_views(bench, bodies, {}, 180)), bodies);
   say(1.4, f);
   CHECK(std::abs(f.face) <= 5 * micrometres);

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include "model/magnification.hpp"
+
 using namespace vam::model;
 
 TEST_CASE("the default printer is that of RAY21") {

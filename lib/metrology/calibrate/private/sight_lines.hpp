@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "model/printer.hpp"
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::metrology {
 

@@ -9,7 +9,7 @@ inline constexpr int climb_step = 32;     // heights a call are a multiple of it
 
 /// Detector columns at other heights: out[c][z] = in[c](first + slope * z), linear, for z = 0 ... heights - 1.
 /// `in` can be read from first - 1 to the last height + 2, slope is within 0.94 and 1.06.
-struct Climb {
+struct ShearedColumns {
   const float* in;  // of the first column
   long in_stride;   // from one column to the next
   int columns;
@@ -46,9 +46,9 @@ struct TileSum {
   float* sums;  // [voxel column][climb_heights]
 };
 
-#define VAM_CLIMB_KERNELS                \
-  void climb_columns(const Climb& job);  \
-  void place_tile(const TilePlace& job); \
+#define VAM_CLIMB_KERNELS                        \
+  void climb_columns(const ShearedColumns& job); \
+  void place_tile(const TilePlace& job);         \
   void add_tile(const TileSum& job);
 
 namespace baseline {

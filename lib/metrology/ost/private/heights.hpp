@@ -23,9 +23,9 @@ struct Eye {
 
 /// For every camera column the row whose ray passes the axis at a height: to second order in the height's square from
 /// exact rays.
-class HeightMap {
+class RowOfHeight {
  public:
-  explicit HeightMap(const Eye& eye);
+  explicit RowOfHeight(const Eye& eye);
   /// Columns whose rays miss the resin are as their nearest neighbours.
   [[nodiscard]] double row(int column, double height_mm) const;
 
@@ -48,7 +48,7 @@ class HeightMap {
 /// The rows of a camera image that see these heights, lowest first.
 class LevelRows {
  public:
-  LevelRows(const HeightMap& map, int columns, int rows, std::span<const double> heights_mm);
+  LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm);
   /// The image at those heights, turned about the axis by its tilt: cubic between pixels [KEYS81]; rows beyond the
   /// image repeat its last.
   [[nodiscard]] Image of(const Image& image, const AxisPose& axis) const;

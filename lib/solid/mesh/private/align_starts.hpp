@@ -6,7 +6,7 @@
 
 namespace vam::solid {
 
-struct Pose {
+struct Motion {
   double scale = 1;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
@@ -17,7 +17,7 @@ struct Pose {
 
 /// Poses that take the principal axes of the one to those of the other, in all ways that their second moments cannot
 /// tell apart; with_scale: their spread, too.
-[[nodiscard]] std::vector<Pose> starting_poses(const std::vector<Eigen::Vector3d>& print,
-                                               const std::vector<Eigen::Vector3d>& reference, bool with_scale);
+[[nodiscard]] std::vector<Motion> starting_poses(const std::vector<Eigen::Vector3d>& print,
+                                                 const std::vector<Eigen::Vector3d>& reference, bool with_scale);
 
 }  // namespace vam::solid

@@ -1,4 +1,4 @@
-#include "optics/vial.hpp"
+#include "optics/chief_ray.hpp"
 
 #include <doctest/doctest.h>
 
