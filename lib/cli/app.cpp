@@ -168,6 +168,11 @@ App& App::default_is(const std::string& text) {
   return *this;
 }
 
+App& App::required() {
+  state_->current_group().options.back().required = true;
+  return *this;
+}
+
 App& App::not_in_job() {
   state_->current_group().options.back().in_job = false;
   return *this;

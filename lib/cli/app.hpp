@@ -82,6 +82,8 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
+  /// The option declared last must be given.
+  App& required();
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
   /// The option declared last names a file that the tool writes: no two of them may name the same one. Of what kind it
@@ -115,6 +117,7 @@ class App {
                const std::function<std::string()>& value);
   void parse(int argc, char** argv);
   bool print_about(int argc, char** argv) const;
+  void require_present() const;
   void require_needed() const;
   void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;

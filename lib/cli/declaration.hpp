@@ -25,6 +25,7 @@ struct Option {
   std::vector<std::vector<std::string>> needs = {};  // one option of each, where this one is given
   std::vector<Former> former = {};                   // not shown
   std::function<std::string()> value = {};           // in force
+  bool required = false;                             // in its form of the tool
   bool in_job = true;                                // App::job() lists it
   bool writes = false;                               // names a file that is written
   std::vector<std::string> endings = {};             // of which its name has one; empty: any
@@ -63,6 +64,8 @@ inline constexpr const char* memory_help =
 
 /// Does the tool do something without a command? It does when it has operands or options beside its commands'.
 [[nodiscard]] bool has_plain_form(const Declaration& tool);
+
+[[nodiscard]] std::vector<Option> required_options(const Declaration& form);
 
 /// What help and manual say of the option: its help, choices, range, default. One sentence or more each.
 [[nodiscard]] std::vector<std::string> details(const Option& option);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "base/text.hpp"
@@ -10,9 +11,10 @@ namespace {
 constexpr int width = 80;
 constexpr int indent = 6;
 
-// "SLICES" for each operand, in brackets where it may be left out.
+// "--flips FILE" for each option that must be given, "SLICES" for each operand, in brackets where it may be left out.
 std::string operands(const Declaration& form) {
   std::string text;
+  for (const auto& option : required_options(form)) text += " " + long_flag(option) + " " + option.value_name;
   for (const auto& positional : form.positionals) {
     const bool optional = !positional.default_text.empty();
     text += optional ? " [" + positional.value_name + "]" : " " + positional.value_name;
@@ -35,12 +37,22 @@ bool has_plain_form(const Declaration& tool) {
   return tool.subcommands.empty() || !tool.positionals.empty() || !tool.groups.empty();
 }
 
+std::vector<Option> required_options(const Declaration& form) {
+  std::vector<Option> found;
+  for (const auto& group : form.groups) {
+    std::copy_if(group.options.begin(), group.options.end(), std::back_inserter(found),
+                 [](const Option& option) { return option.required; });
+  }
+  return found;
+}
+
 std::vector<std::string> details(const Option& option) {
   std::vector<std::string> texts{option.help};
   if (!option.choices.empty()) texts.push_back("One of " + join(option.choices, ", ") + ".");
   if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
   if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
+  if (option.required) texts.emplace_back("Required.");
   for (const auto& any_of : option.needs) texts.push_back("Requires " + join(any_of, " or ") + ".");
   return texts;
 }

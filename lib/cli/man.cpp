@@ -113,6 +113,7 @@ std::string synopsis(const Declaration& tool) {
     out += ".Nm\n";
     if (!command.empty()) out += ".Cm " + command + "\n";
     if (!form.groups.empty()) out += ".Op Ar OPTIONS\n";
+    for (const auto& option : required_options(form)) out += "." + flag_words(option) + "\n";
     for (const auto& positional : form.positionals) {
       out += (positional.default_text.empty() ? ".Ar " : ".Op Ar ") + argument(positional.value_name) + "\n";
     }

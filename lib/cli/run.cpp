@@ -96,6 +96,25 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   throw Error{Fault::usage, last + ": needs a value"};
 }
 
+// Operands and options that the form in use, the plain one or a command, cannot do without.
+void App::require_present() const {
+  for (const auto& nested : state_->subcommands) {
+    if (nested->state_->parser->parsed()) return nested->require_present();
+  }
+  const auto require = [&](const std::string& name) {
+    if (state_->parser->get_option(name)->count() == 0)
+      throw Error{Fault::usage, name + ": missing; --help explains it"};
+  };
+  for (const auto& positional : state_->tool.positionals) {
+    if (positional.default_text.empty()) require(split(positional.value_name, ' ').front());
+  }
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (option.required) require(long_flag(option));
+    }
+  }
+}
+
 // Of the tool and of its commands, whose options are given only if the command is.
 void App::require_needed() const {
   for (const auto& group : state_->tool.groups) {
@@ -182,6 +201,7 @@ void App::parse(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw Error{Fault::usage, std::string(error.what()) + " (" + tool.manual.name + " --help lists all)"};
   }
+  require_present();
   require_needed();
   require_own_outputs();
 }

@@ -16,10 +16,10 @@ $scans turn turn axis=61.25 wobble=2 phase=40
 $scans sweep moved axis=251.3 $geometry
 
 fails 64 'no command; give one of' vam-calibrate
-fails 64 'no FRAMES' vam-calibrate edges
+fails 64 'FRAMES: missing' vam-calibrate edges
 fails 66 'missing' vam-calibrate edges missing
-fails 64 'needs REVERSE' vam-calibrate lag turn
-fails 64 'needs --flips' vam-calibrate latency ramp
+fails 64 'REVERSE: missing' vam-calibrate lag turn
+fails 64 '--flips: missing' vam-calibrate latency ramp
 fails 64 'needs --pixel' vam-calibrate beam beam
 fails 64 'omit --first and --spacing' vam-calibrate beam beam --side --spacing 1
 fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames have 160 x 32' vam-calibrate beam beam --side --dark ramp/00000.png

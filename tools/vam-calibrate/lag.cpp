@@ -1,7 +1,6 @@
 // vam-calibrate lag: how late the camera's time stamps are, from a bead that turns one way and then the other.
 #include "metrology/calibrate/lag.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -12,7 +11,6 @@ constexpr double wanted_sigma_ms = 0.5;
 }
 
 Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
-  if (options.reverse.empty()) throw Error{Fault::usage, "lag: needs REVERSE, the frames of a turn the other way"};
   ScanOptions other = options;
   other.from = options.reverse;
   const BeadTurn forwards = read_turn(options, printer);

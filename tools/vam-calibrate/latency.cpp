@@ -1,7 +1,6 @@
 // vam-calibrate latency: from a flip to its light, from a blinking screen.
 #include "metrology/calibrate/latency.hpp"
 
-#include "base/error.hpp"
 #include "base/text.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -14,7 +13,6 @@ constexpr int settling_frames = 10;  // until the way of the time stamps from ca
 }  // namespace
 
 Finding scan_latency(const ScanOptions& options, const model::Printer& printer) {
-  if (options.flips.empty()) throw Error{Fault::usage, "latency: needs --flips, the log of the blinking vam-project"};
   metrology::BlinkScan scan;
   const auto flips = read_flips(options.flips);
   for (std::size_t i = 0; i + 1 < flips.size(); ++i) {

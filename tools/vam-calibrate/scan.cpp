@@ -37,7 +37,6 @@ void run_scan(const cli::App& app, const ScanOptions& options) {
   if (known && command != "latency" && io::objection(*known, printer.calibration, utc_seconds()).empty()) {
     printer.projector.latency_ms = known->value("latency");
   }
-  if (options.from.empty()) throw Error{Fault::usage, command + ": no FRAMES; give the stack or folder of the capture"};
   Finding finding = scans().at(command)(options, printer);
   finding.facts["settings"]["exposure_us"] = printer.camera.exposure_us;
   keep(app, options, printer.calibration, command, std::move(finding));

@@ -83,7 +83,6 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
 }  // namespace
 
 void deviation(const cli::App& app, const Options& options) {
-  if (options.reference.empty()) throw Error{Fault::usage, "REFERENCE: missing; give the design to compare with"};
   std::vector<model::Condition> conditions;
   if (!options.require.empty())
     conditions =

@@ -93,7 +93,6 @@ void draw_section(const std::string& path, const metrology::Section& section) {
 }  // namespace
 
 void height(const HeightOptions& options) {
-  if (options.design.empty()) throw Error{Fault::usage, "DESIGN: missing; give the design to compare with"};
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
   const model::TriangleSoup design = read_surface(options.design, options.reference_isovalue);

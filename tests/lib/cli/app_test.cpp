@@ -302,6 +302,23 @@ TEST_CASE("an option that needs another is refused without it") {
   }
 }
 
+TEST_CASE("what a form cannot do without is shown as such and refused where missing") {
+  const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
+    std::string frames, log, chosen;
+    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    auto& scan = app.subcommand("scan", "one", chosen);
+    scan.positional("FRAMES", frames, "Captured frames.");
+    scan.option("--flips", "FILE", log, "Log.").required();
+    app.subcommand("check", "another", chosen);
+    return written_to(stream, [&] { run_app(app, words); });
+  };
+  CHECK(said({"scan", "a.exr", "--flips", "log"}, stderr).empty());
+  CHECK(said({"check"}, stderr).empty());
+  CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; --help explains it\n");
+  CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; --help explains it\n");
+  CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
+}
+
 TEST_CASE("an output's name does not say another format") {
   for (const auto& [path, status] :
        std::vector<std::pair<std::string, int>>{{"a.png", 0}, {"-", 0}, {"/dev/null", 0}, {"a.jpg", 64}, {"png", 64}}) {
