@@ -18,10 +18,11 @@ cli::Manual manual() {
       {"Each command reads frames that vam-capture took while vam-project showed a test pattern, measures one property "
        "of the instrument and writes a calibration record. --flips names the log of vam-project, which tells which "
        "pattern frame was on and when. check reports which records are in force. vam-calibrate-all(1) shows the "
-       "patterns, captures the frames and runs all commands in the right order.",
+       "patterns, captures the frames and runs lag, latency, response, axis and edges in order; flat and beam on "
+       "request.",
        "edges: the camera must see the whole vial, from the position given by camera.distance_mm and "
-       "camera.azimuth_deg, 60 to 91 degrees from the projector. The vial circles the rotation axis, so that frames "
-       "of one stage angle give its middle there, not the axis; frames of four (vam-capture --angle 0, 90, 180, 270, "
+       "camera.azimuth_deg, 60 to 91 degrees from the projector. Because of wobble, frames at one stage angle locate "
+       "the vial, not the rotation axis; frames at four (vam-capture --angle 0, 90, 180, 270, "
        "their stacks one after the other in one file) give both, the wobble as the radius and the stage angle of "
        "greatest column. beam: either a bare sensor is moved along the beam, "
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
@@ -51,11 +52,13 @@ cli::Manual manual() {
       {{1, "A result does not meet its requirements and is not put in force."}}};
 }
 
-void add_input(cli::App& scan, ScanOptions& o, bool with_flips) {
+enum class Flips { none, optional, required };
+
+void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
   scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.", "--from");
-  if (with_flips) {
-    scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.")
-        .default_is("frame n shows pattern frame n");
+  if (flips != Flips::none) {
+    scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.");
+    flips == Flips::required ? scan.required() : scan.default_is("frame n shows pattern frame n");
   }
   scan.option("--devices", "FILE", o.devices,
               "JSON for the record, like {\"camera\": ...}: the output of identify for each device in use.");
@@ -76,21 +79,21 @@ void add_resin(cli::App& resin, ResinOptions& o) {
 
 void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   auto& edges = app.subcommand("edges", "axis, wobble, radius and tilt of the vial, from sweeps of lines", o.command);
-  add_input(edges, o, true);
+  add_input(edges, o, Flips::optional);
   edges.option("--pitch", "PX", o.pitch_px, {1, 1000}, "Step of the sweep.");
   edges.option("--width", "PX", o.width_px, {1, 1000}, "Width of the swept line.");
   edges.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   edges.flag("--accept", o.accept, "Accept a vial that moved or changed since the previous record.");
   auto& ramp = app.subcommand("response", "intensity by grey level, from a ramp of uniform levels", o.command);
-  add_input(ramp, o, true);
+  add_input(ramp, o, Flips::optional);
   ramp.option("--steps", "N", o.steps, {2, 65536}, "Levels of the ramp.");
   add_dark(ramp, o);
   auto& even = app.subcommand("flat", "flat field of the camera, from frames of a uniform scene", o.command);
-  add_input(even, o, true);
+  add_input(even, o, Flips::optional);
   add_dark(even, o);
   auto& line = app.subcommand(
       "beam", "width and divergence of the beam, on a sensor moved along it or from the side in resin", o.command);
-  add_input(line, o, true);
+  add_input(line, o, Flips::optional);
   line.flag("--side", o.side,
             "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).");
   add_dark(line, o);
@@ -99,20 +102,21 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
       .default_is("none")
       .was("--step");
   line.option("--pixel", "MM", o.pixel_mm, cli::non_negative,
-              "Pixel of the bare sensor, required; with --side at the axis.")
+              "Pixel of the bare sensor, required without --side; with it at the axis.")
       .default_is("that of the stack, with --side");
   auto& turn = app.subcommand("axis", "rotation axis and wobble in the camera's frames over a turn", o.command);
-  add_input(turn, o, false);
+  add_input(turn, o, Flips::none);
   turn.option("--angle-step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.")
       .default_is("none")
       .was("--step");
   turn.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   auto& late = app.subcommand("lag", "delay of the camera's time stamps, from a bead that turns both ways", o.command);
-  add_input(late, o, false);
+  add_input(late, o, Flips::none);
   late.positional("REVERSE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).",
                   "--reverse");
   late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
-  add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o, true);
+  add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o,
+            Flips::required);
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);
   check.option("--need", "SCANS", o.needed, "Require a record of each of these scans, separated by commas.");
   check.option("--devices", "FILE", o.devices, "Refuse records of devices with other serial numbers.");

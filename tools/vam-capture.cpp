@@ -108,7 +108,7 @@ void declare(cli::App& app, Options& o) {
   app.default_is("no limit");
   app.group("Output and machine");
   app.flag("--live", o.live, "Send every frame at once as a stack of its own.");
-  app.option("--latest", "FILE", o.latest, "Also keep the newest frame here, as PNG, renewed once a second at most.")
+  app.option("--latest", "FILE", o.latest, "Also keep the newest frame here, as PNG, refreshed once a second at most.")
       .writes();
   app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch at the axis, after binning.")
       .default_is("camera.pixel_mm times the binning");

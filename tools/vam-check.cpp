@@ -28,7 +28,7 @@ struct Options {
 cli::Manual manual() {
   return {
       "vam-check",
-      "check that files are what was written, and show what they were made from",
+      "verify the integrity of files and show their provenance",
       {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these tools "
        "write into "
        "stacks, volumes, calibration records, reports and the printer file of a print (vam-formats(7), SEALS), and the "
@@ -43,7 +43,7 @@ cli::Manual manual() {
         "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o sino.exr && vam-check part.vdb "
         "sino.exr"},
        {"Headers alone, for large archives:", "vam-check --fast sino.exr"},
-       {"Printer settings as they must stay:",
+       {"Sealed printer settings:",
         "vam-slice --print-printer -o printer.toml && vam-check --seal printer.toml && vam-check printer.toml"}},
       {"Memory: one image, or the topology of one volume. Speed: that of reading."},
       {"vam-print", "vam-view"}};
@@ -112,7 +112,8 @@ int main(int argc, char** argv) {
   Options options;
   app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or any others.");
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
-  app.flag("--seal", options.seal,
-           "Seal printer files instead: they end in a line that the tools hold them to from then on.");
+  app.flag(
+      "--seal", options.seal,
+      "Seal printer files instead: a seal line is appended, against which the tools verify the file from then on.");
   return app.run(argc, argv, [&] { run(options); });
 }

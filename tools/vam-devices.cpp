@@ -25,9 +25,9 @@ cli::Manual manual() {
       "vam-devices",
       "list stages, cameras, displays and light engines",
       {"Lists the devices that this machine sees, each with the device string for the printer file and for --device, "
-       "--screen and --light, and with what is known of it. A line below a device says what stands in the way of using "
-       "it, and the remedy: no permission (the group to join or the udev rule to write), another program that has it "
-       "(its process), a graphics card whose master is a desktop. If no device of a kind is found, what to "
+       "--screen and --light, and with what is known of it. A line below a device states why it cannot be used, and "
+       "the remedy: no permission (the group to join or the udev rule to write), another program that has it "
+       "(its process), a graphics card controlled by a desktop session. If no device of a kind is found, what to "
        "check is listed.",
        "No commands are sent: nothing moves or lights up. What is connected to a serial port is not known; it "
        "is listed as gcs: or, where the maker of its USB converter suggests so, another scheme. --ask queries each "
@@ -35,7 +35,7 @@ cli::Manual manual() {
        "are "
        "reset when their port is opened, and other instruments on such ports receive a question that they do not "
        "know."},
-      {{"What is there:", "vam-devices"},
+      {{"List the connected devices:", "vam-devices"},
        {"A simulated stage on a pseudo-terminal, asked for its identity:",
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --ask"}},
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   Options options;
   cli::App app(manual());
   app.option("--port", "PATH", options.ports, "A serial port besides those that the system lists.");
-  app.flag("--ask", options.ask, "Ask at the serial ports which stage is there.");
+  app.flag("--ask", options.ask, "Query the serial ports for stage controllers.");
   cli::add_report(app, options.report);
   return app.run(argc, argv, [&] { run(options); });
 }

@@ -85,7 +85,7 @@ void declare_height(cli::App& app, HeightOptions& options) {
   app.option(
       "--full", "MM", options.full_mm, cli::positive,
       "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.");
-  app.option("--lowest", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the stage).");
+  app.option("--lowest", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).");
   app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
              "Isovalue of a design volume's surface.");
   app.was("--reference-level");

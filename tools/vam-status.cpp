@@ -34,25 +34,24 @@ struct Options {
 cli::Manual manual() {
   return {
       "vam-status",
-      "show how far a print is",
-      {"Reads the logs in the run folder of vam-print, of a print that goes on or of one that has ended, and prints "
-       "one "
-       "line: whether it is getting ready, running up, printing or ended; turn and stage angle; the share of the "
-       "print's light that was given; vertical blanks missed; and with live metrology (vam-print --until) the shares "
-       "of the part that are cured and missing. With --follow it does so until the print ends; on a terminal the line "
-       "is renewed in place.",
-       "--page writes a page for a browser, which renews itself: these figures, the newest picture of the camera, the "
-       "vial from above with the dose so far and the light that comes now, the projected image, and the ages of the "
-       "calibration records. It is one file with its pictures within and is opened as it is (file:///...), without a "
+      "show the progress of a print",
+      {"Reads the logs in the run folder of vam-print, of a print in progress or finished, and prints one line: "
+       "whether it is preparing, running up, printing or finished; turn and stage angle; the fraction of the exposure "
+       "delivered; vertical blanks missed; and with live metrology (vam-print --until) the fractions of the part that "
+       "are cured and missing. With --follow it does so until the print ends; on a terminal the line "
+       "is refreshed in place.",
+       "--page writes a page for a browser, which refreshes itself: these figures, the newest image of the camera, the "
+       "vial from above with the dose so far and the current projection, the projected image, and the ages of the "
+       "calibration records. It is one file with its images within and is opened as it is (file:///...), without a "
        "server; a page that is no longer written says so.",
        "vam-print shows the line by itself on a terminal, and writes page.html into the run folder with --page."},
-      {{"How far a print came, here a dry run:",
+      {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\nvam-print "
         "projector.exr "
         "--screen null: --uncalibrated --missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run"},
        {"The same as a page:", "vam-status dry-run --page page.html"}},
-      {"The dose is that of the middle slice, by level rays, without blur; vam-dose --shown computes it in full.",
+      {"The dose is that of the middle slice, by horizontal rays, without blur; vam-dose --shown computes it in full.",
        "The sinogram is read once, up to 300 columns, slices and stage angles of it are kept.",
        "It only reads the run folder, and can be started and ended at any time."},
       {"vam-print", "vam-dose", "vam-ost"}};
@@ -60,23 +59,23 @@ cli::Manual manual() {
 
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
-  app.flag("--follow", o.follow, "Go on until the print has ended.");
+  app.flag("--follow", o.follow, "Repeat until the print has ended.");
   app.option("--every", "S", o.period_s, {0.2, 3600}, "Time between two lines or pages.");
   app.option("--page", "FILE", o.page, "Write a page (HTML).").writes();
-  app.option("--sinogram", "FILE", o.sinogram, "The sinogram of the print, for the pictures of its light.")
+  app.option("--sinogram", "FILE", o.sinogram, "The sinogram of the print, for the images of projections and dose.")
       .default_is("RUN/sinogram.exr, a link that vam-print makes");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_threads(app);
 }
 
-// A print goes on without its pictures: what is wrong with them is said once.
+// A print goes on without its images: what is wrong with them is said once.
 std::optional<status_tool::LightView> light_of(const Options& o, const status_tool::RunFolder& run) {
   const std::string file = o.sinogram.empty() ? run.file("sinogram.exr") : o.sinogram;
   try {
     return status_tool::LightView(file, run.printer());
   } catch (const Error& error) {
     if (!o.sinogram.empty()) throw;
-    warn(std::string(error.what()) + "; the page has no pictures of the light, --sinogram FILE names it");
+    warn(std::string(error.what()) + "; the page has no images of the light, --sinogram FILE names it");
     return std::nullopt;
   }
 }

@@ -1,4 +1,4 @@
-// Bytes as text, for pictures within a page.
+// Bytes as text, for images within a page.
 #pragma once
 
 #include <string>

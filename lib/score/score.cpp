@@ -44,7 +44,7 @@ const std::vector<Figure>& figure_list() {
       {"turns", "whole turns that put the critical dose in the middle half of the process window"},
       {"seconds", "duration of these turns"},
       {"multiplier", "fraction of full intensity during these turns"},
-      {"peak_irradiance", "irradiance of the brightest pixel during these turns, mW/cm2"},
+      {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2"},
       {"efficiency", "mean / maximum of the projections"}};
   return all;
 }
@@ -98,7 +98,7 @@ double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
   if (name == "trimmed_ver") return statistics_.trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return statistics_.trimmed(options_.trim, !options_.absolute).pw;
-  if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_irradiance") {
+  if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_intensity_mw_cm2") {
     if (!options_.exposure) return none;
     const model::DoseMetrics doses = statistics_.metrics(false);
     if (!(window_middle(doses) > 0)) return none;

@@ -57,21 +57,21 @@ vam-dose plain.exr $slow --size 5 -o nine.vdb --report nine.json
 holds "they diffuse for their own turn" "($(json nine.json blur_sigma_mm) / $(json one.json blur_sigma_mm)) ^ 2 > 3 "
 fails 64 'standard input' vam-optimize --poses - - -o none.exr
 
-# A helix: three turns for a part that is three pictures high
-picture="--set projector.columns=240 --set projector.rows=40 --set projector.pixel_mm=0.1 --set projector.axis_column=119.5 --set projector.axis_row=19.5 --set projector.lens_distance_mm=120"
-fails 65 'any-height' vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $picture -o tall.vdb
-ok "a tall part" vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $picture --any-height -o tall.vdb
-quiet "light for a helix" vam-optimize --angles 60 --helix 5.2 $picture tall.vdb -o helix.exr
+# A helix: three turns for a part that is three images high
+image="--set projector.columns=240 --set projector.rows=40 --set projector.pixel_mm=0.1 --set projector.axis_column=119.5 --set projector.axis_row=19.5 --set projector.lens_distance_mm=120"
+fails 65 'any-height' vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $image -o tall.vdb
+ok "a tall part" vam-slice --shape cylinder:diameter=6,height=11.4 --voxel 0.25 $image --any-height -o tall.vdb
+quiet "light for a helix" vam-optimize --angles 60 --helix 5.2 $image tall.vdb -o helix.exr
 is "three turns" "$($exr attr helix.exr vam:poses | grep -c ,)" 181
-ok "its dose" vam-dose helix.exr $picture --like tall.vdb -o helix.vdb
-ok "prints without an error" vam-score helix.vdb --target tall.vdb $picture --require 'ver=0,iou>=0.9999'
+ok "its dose" vam-dose helix.exr $image --like tall.vdb -o helix.vdb
+ok "prints without an error" vam-score helix.vdb --target tall.vdb $image --require 'ver=0,iou>=0.9999'
 vam-view helix.vdb --export helix.nrrd
 holds "without a seam" "$($poses seam helix.nrrd 2.5 0.25) <= 0.01"
-quiet "its frames" vam-project helix.exr $picture $sixty -o helix/ --report helix.json
+quiet "its frames" vam-project helix.exr $image $sixty -o helix/ --report helix.json
 is "as many as there are poses" "$(json helix.json frames)" 180
-ok "downwards, too" vam-optimize --angles 60 --helix -5.2 --iterations 1 $picture tall.vdb -o down.exr
-fails 64 'at least half a turn' vam-optimize --helix 9 $picture tall.vdb -o none.exr
-ok "the doses without --like reach as high as the helix lifts" vam-dose helix.exr $picture -o high.vdb
+ok "downwards, too" vam-optimize --angles 60 --helix -5.2 --iterations 1 $image tall.vdb -o down.exr
+fails 64 'at least half a turn' vam-optimize --helix 9 $image tall.vdb -o none.exr
+ok "the doses without --like reach as high as the helix lifts" vam-dose helix.exr $image -o high.vdb
 
 # Records of wobble: the projector's columns see it, or a camera at an azimuth
 times='"utc":"2026-01-01T00:00:00.000Z","valid_until":"2126-01-01T00:00:00.000Z"'

@@ -12,11 +12,11 @@ vam-curethrough correct ladder.vdb $light -o slices.exr --png levels
 size=$($png size levels/00000.png | cut -d' ' -f1,2)
 quiet "slices as images" vam-project slices.exr $screen -o shown/ --report shown.json
 is "every slice once, the three extra ones at the end" "$(json shown.json frames)" 53
-holds "rate = print speed / slice height" "($(json shown.json fps_hz) - 50 / 9)^2 < 1e-12 && ($(json shown.json duration_s) - 9.54)^2 < 1e-9"
+holds "rate = print speed / slice height" "($(json shown.json fps) - 50 / 9)^2 < 1e-12 && ($(json shown.json duration_s) - 9.54)^2 < 1e-9"
 is "times in the index" "$(sed -n '1p;3p;54p' shown/frames.csv | tr '\n' ' ')" "file,time_s,angle_deg 00001.png,0.18,0 00052.png,9.36,0 "
 is "the projector's size" "$($png size shown/00000.png)" "240 200 8 1"
 quiet "a folder of slices" vam-project levels $screen -o again/ --report again.json
-holds "its times are its rate" "($(json again.json fps_hz) - 50 / 9)^2 < 1e-9"
+holds "its times are its rate" "($(json again.json fps) - 50 / 9)^2 < 1e-9"
 for n in 00000 00020 00052; do $png sum levels/$n.png; done | tr '\n' ' ' >levels.sums
 for n in 00000 00020 00052; do $png sum again/$n.png; done | tr '\n' ' ' >again.sums
 same "levels stay as they are" levels.sums again.sums

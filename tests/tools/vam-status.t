@@ -58,12 +58,12 @@ ok 'a page of hostile names' vam-status "$hostile" --page page.html
 is 'has none of their elements' "$(grep -Ec '<img src=x|<b onm|document\.title=2</script>' page.html)" 0
 rm "$hostile/sinogram.exr"
 vam-status "$hostile" --page bare.html 2>bare.err
-is 'a page without sinogram, which is said' "$? $(grep -c 'the page has no pictures of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
+is 'a page without sinogram, which is said' "$? $(grep -c 'the page has no images of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
 fails 74 '/dev/full: ' vam-status run --page /dev/full
 vam-status run --page - | head -c 100 >/dev/null; report 0 'a page to head'
 is 'nothing of it on a terminal line to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1
 
-# As a browser shows it, over file://, with the pictures.
+# As a browser shows it, over file://, with the images.
 browser=$(command -v chromium || command -v google-chrome)
 if [ -z "$browser" ]; then
   echo "ok $((number += 1)) - the page in a browser # SKIP no chromium here (scripts/setup installs it)"

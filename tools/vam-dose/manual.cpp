@@ -19,7 +19,8 @@ cli::Manual manual() {
        "any.",
        "A stack that was made for a vial or part that is displaced while it is shown knows its poses (vam-formats(7), "
        "Poses), and is judged with them: the dose is then that of all its frames, which may be several turns, and what "
-       "the report says of one turn is said of all frames. --poses judges light with other poses than it was made for.",
+       "the report says of one turn is said of all frames. --poses simulates the projections with other poses than "
+       "those they were computed for.",
        "A grid 'insert' in the volume of --like is an opaque object to print around (overprinting; vam-slice "
        "--insert): every ray ends at the first voxel that is at least half insert, all behind it is in shadow, and "
        "the insert itself absorbs no dose. Voxels of the part that no ray reaches are reported (dark_part_voxels), "
@@ -46,7 +47,7 @@ cli::Manual manual() {
        {"The effect of a telecentric correction on a projector that is not telecentric:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.telecentric=true | "
         "vam-dose --like part.vdb -o wrong.vdb"},
-       {"Light for a vial in its place, in one that wobbles by 0.3 mm:",
+       {"Projections for a centred vial, in one that wobbles by 0.3 mm:",
         "seq 0 89 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { t = $1 * 3.14159265 / 45; print 4 * "
         "$1 "
         "\",\" 0.3 * cos(t) \",\" (-0.3 * sin(t)) \",0,vial\" }' >wobble.csv && vam-optimize --angles 90 part.vdb | "
@@ -58,7 +59,7 @@ cli::Manual manual() {
        {"Duration of a print in an absorbing resin:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
         "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"},
-       {"The dose of a print that was ended before its time, here a dry run:",
+       {"The dose of an aborted print, here a dry run:",
         "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout 15 "
         "vam-print short.exr --screen null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 --missed "
         "0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer ended/printer.toml "

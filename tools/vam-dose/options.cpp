@@ -18,7 +18,7 @@ void declare(cli::App& app, Options& options) {
              "Edge of the square around the axis. Voxels are as high as slices.");
   app.default_is("all that is lit from every side (projector), or the width of the sinogram (virtual)");
   app.option("--poses", "FILE", options.poses,
-             "Where vial or part stand in every frame: a table (CSV) with the columns "
+             "Pose of the vial or the part in every frame: a table (CSV) with the columns "
              "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame.");
   app.default_is("the poses of the stack, or none");
   app.group("Beam and resin");
@@ -33,10 +33,9 @@ void declare(cli::App& app, Options& options) {
            "the "
            "process window, and write the dose of that exposure.")
       .needs({"--like"});
-  app.option(
-      "--shown", "RUN", options.shown,
-      "Dose that this print has truly given: the run folder of vam-print, or the flip log of vam-project; all of a "
-      "print and its resumptions.");
+  app.option("--shown", "RUN", options.shown,
+             "Compute the dose that this print actually delivered: the run folder of vam-print, or the flip log of "
+             "vam-project; once for the print and once for each resumption.");
   app.flag("--no-blur", options.no_blur, "Neglect point spread and diffusion.");
   app.flag("--in-plane", options.in_plane,
            "For comparison: expose each slice with its own row of the projector only, as if rays did not climb.");

@@ -10,6 +10,7 @@
 #include "light/make_operator.hpp"
 #include "light/poses.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/magnification.hpp"
 #include "optics/writable.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"

@@ -43,7 +43,8 @@ std::vector<std::string> description() {
        "parts print with 1.2 to 1.5 times the even intensity. Some parts have a wider process window without a limit "
        "(--max-intensity 0). With a known resin the report contains the number of turns and their duration at full "
        "grey.",
-       "With --robust projections are made for printers off their settings, too: each iteration looks at the printer "
+       "With --robust the projections tolerate deviations of the printer from its settings: each iteration evaluates "
+       "the printer "
        "as set and at two others with all tolerances used up, in opposite ways. The report has the figures as set and "
        "at either end of each tolerance, the tolerance that costs most, and the yield, all at one exposure, judged by "
        "the simulation of vam-dose with the grey levels of --bits. --until and --trace are about the printer as set; "
@@ -51,9 +52,9 @@ std::vector<std::string> description() {
        "Vial and part need not stand still: with --poses each frame has a displacement of the vial with its contents "
        "or "
        "of the part in it (vam-formats(7), Poses), as of a part that sinks by a known curve; --wobble takes that of a "
-       "vial off the rotation axis from a calibration record; --helix lifts a part that is taller than the picture "
+       "vial off the rotation axis from a calibration record; --helix lifts a part that is taller than the image "
        "past "
-       "it (vam-slice --any-height). Light for such frames is of no use without them: the table is part of the stack. "
+       "it (vam-slice --any-height). Such projections are valid only with their poses: the table is part of the stack. "
        "It is computed frame by frame, which takes three to five times as long. Inserts cannot be combined with it, "
        "nor "
        "a displaced vial with a part beyond the writable radius.",
@@ -93,7 +94,7 @@ cli::Manual manual() {
         "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
        {"For printers whose axis and lamp are not quite as set:",
         "vam-optimize --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o robust.exr"},
-       {"A part three times as tall as the picture, in three turns:",
+       {"A part three times as tall as the image, in three turns:",
         "printer='--set projector.rows=40 --set projector.axis_row=19.5 --set projector.pixel_mm=0.1 --set "
         "projector.columns=240 --set projector.axis_column=119.5' && vam-slice --shape gyroid:diameter=8,height=11 "
         "--voxel 0.25 $printer --any-height -o tall.vdb && vam-optimize --angles 60 --helix 5.2 $printer tall.vdb -o "

@@ -108,7 +108,8 @@ void declare_parameters(cli::App& app, Options& options) {
                std::to_string(optimize::shortest_raising.next) +
                " iterations without success. The computation takes several times as long.");
   app.option("--tradeoff", "FILE", options.tradeoff,
-             readers("--max-intensity") + "write the front of duration against process window as CSV: the print at " +
+             readers("--max-intensity") +
+                 "write the Pareto front of print duration and process window as CSV: the print at " +
                  std::to_string(optimize::front_points) + " limits of the intensity or more, from " +
                  format_number(optimize::shortest_of_even) + " times the even intensity on, each " +
                  format_number(100 * (optimize::front_raising.factor - 1)) + " % above the one before. Takes " +
@@ -125,8 +126,8 @@ void declare_tolerances(cli::App& app, Options& options) {
   app.group("Tolerances of the printer");
   app.option("--robust", "TOLERANCES", options.robust,
              readers("--robust") +
-                 "projections that print in printers off their settings by up to so much, too, e.g. "
-                 "'axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm': " +
+                 "projections that also print in printers that deviate from their settings by up to these tolerances, "
+                 "e.g. 'axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm': " +
                  join(all, ", ") + ". The report has the figures at each tolerance.");
   app.option("--yield-printers", "N", options.yield_printers, {0, 100000},
              "Printers that are drawn for the yield of --robust, each quantity even within its tolerance.");
@@ -174,12 +175,12 @@ void declare(cli::App& app, Options& options) {
   app.group("Poses of vial and part");
   app.option(
       "--poses", "FILE", options.poses,
-      "Where vial or part stand in every frame: a table (CSV) with the columns "
-      "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame, 360 / --angles degrees apart, for any number of turns. "
+      "Pose of the vial or the part in every frame: a table (CSV) with the columns angle_deg,dx_mm,dy_mm,dz_mm,moves, "
+      "one line a frame, 360 / --angles degrees apart, for any number of turns. "
       "Becomes part of the stack.");
   app.option("--helix", "MM", options.helix_mm, cli::any,
-             "For parts taller than the picture: the vial is lifted (below 0: lowered) by so much a turn, in as many "
-             "turns as the whole part takes to pass the picture.");
+             "For parts taller than the image: the vial is lifted (below 0: lowered) by so much a turn, in as many "
+             "turns as the whole part takes to pass the image.");
   app.option("--wobble", "RECORD", options.wobble,
              "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis tells.");
   declare_constraints(app, options);

@@ -17,7 +17,7 @@ void add_live(cli::App& app, Options& all) {
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
       .default_is("one for each angle of the sinogram");
   app.option("--from", "DEG", options.from_deg, {0, 1e9},
-             "Stay black until this stage angle: the rest of a print that was ended before its time.");
+             "Stay black until this stage angle: the rest of an aborted print.");
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
       .default_is("projector.latency_ms");
   app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
@@ -27,8 +27,9 @@ void add_live(cli::App& app, Options& all) {
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
-  app.flag("--plan", all.only_plan,
-           "Print frames, memory, duration and dose, ask display and light engine who they are, and show nothing.");
+  app.flag(
+      "--plan", all.only_plan,
+      "Print frames, memory, duration and dose, query the identity of display and light engine, and show nothing.");
   app.flag("--die-with-parent", options.with_parent, "Blank the screen and exit when the parent process exits.");
 }
 

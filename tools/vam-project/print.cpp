@@ -61,7 +61,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;
-  report.erase("fps_hz");
+  report.erase("fps");
   write_report(options, report, sink.tally);
 }
 

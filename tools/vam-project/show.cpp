@@ -59,7 +59,7 @@ resin::LightTally show(const Frames& frames, float scale, const model::Projector
 Json figures(const Frames& frames, int bits, double full_scale, const resin::LightTally& tally) {
   const auto lit = static_cast<double>(std::max(tally.lit, 1L));
   return {{"frames", frames.count},
-          {"fps_hz", frames.fps},
+          {"fps", frames.fps},
           {"step_deg", frames.step_deg},
           {"duration_s", frames.count / frames.fps},
           {"bits", bits},

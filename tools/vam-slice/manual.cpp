@@ -23,7 +23,7 @@ cli::Manual manual() {
        "has its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z.",
        "A part that is too large is refused with the value of --scale (--fit, --voxel) that makes it fit. It must fit "
        "into the projector's rows, unless --any-height is given: a machine that lifts the vial during the print brings "
-       "it past the picture (vam-optimize --helix). A part that all but vanishes, without a voxel wholly inside or "
+       "it past the image (vam-optimize --helix). A part that all but vanishes, without a voxel wholly inside or "
        "below a tenth of the writable width, is a warning with the unit that the file is probably in, or the voxel "
        "that may help.",
        "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that reaches beyond "

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "solid/voxel/size_doubt.hpp"
+#include "model/magnification.hpp"
 
 namespace vam::slice_tool {
 

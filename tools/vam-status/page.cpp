@@ -33,7 +33,7 @@ std::string figure(const std::string& title, const std::string& content, const s
          "</figcaption></figure>\n";
 }
 
-std::string picture(const RgbImage& image, const std::string& alt) {
+std::string img(const RgbImage& image, const std::string& alt) {
   return "<img src=\"data:image/png;base64," + base64(io::encode_png(image)) + "\" alt=\"" + page_text(alt) + "\">";
 }
 
@@ -54,9 +54,9 @@ Image reduced(const GreyImage& image, int most) {
 }
 
 std::string camera_figure(const RunFolder& run) {
-  const auto newest = newest_picture(run);
+  const auto newest = newest_image(run);
   if (!newest) {
-    return figure("Camera", "<p class=\"none\">no picture</p>", "vam-print --views DEG takes pictures during a print.");
+    return figure("Camera", "<p class=\"none\">no image</p>", "vam-print --views DEG takes images during a print.");
   }
   const GreyImage levels = io::read_image(newest->path);
   const model::PrinterCamera& camera = run.printer().camera;
@@ -74,7 +74,7 @@ std::string camera_figure(const RunFolder& run) {
   view.size = 480;
   const std::string when =
       newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
-  return figure("Camera", picture(plot::draw(view), "camera picture"), "The newest picture" + when + ".");
+  return figure("Camera", img(plot::draw(view), "camera image"), "The newest image" + when + ".");
 }
 
 std::string screen_figure(const RunFolder& run, const LightView& light, double angle_deg, bool lit) {
@@ -88,7 +88,7 @@ std::string screen_figure(const RunFolder& run, const LightView& light, double a
   view.value_label = "fraction";
   view.size = 480;
   const double peak = run.printer().projector.max_intensity_mw_cm2;
-  return figure("Projected image", picture(plot::draw(view), "image of the projector"),
+  return figure("Projected image", img(plot::draw(view), "image of the projector"),
                 lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
                           " deg; 1 is the brightest pixel of the print, " + format_number(peak, 3) + " mW/cm2."
                     : "Dark: no light is given now.");
@@ -130,7 +130,7 @@ std::string figures_table(const RunFolder& run) {
 
 constexpr const char* style =
     "body{font:15px/1.4 sans-serif;margin:1.2em;color:#111;background:#fff}h1{font-size:1.3em;margin:0}"
-    "h2{font-size:1em;margin:0 0 .4em}p{margin:.3em 0 .8em}.pictures{display:flex;flex-wrap:wrap;gap:1.2em}"
+    "h2{font-size:1em;margin:0 0 .4em}p{margin:.3em 0 .8em}.images{display:flex;flex-wrap:wrap;gap:1.2em}"
     "figure{margin:0 0 1.2em;width:30em;max-width:100%}figure img,figure svg{width:100%;height:auto}"
     "figcaption{color:#444}table{border-collapse:collapse;margin:.4em 0 1em}"
     "th,td{text-align:left;padding:.15em 1em .15em 0;font-variant-numeric:tabular-nums}th{font-weight:600}"
@@ -144,16 +144,16 @@ constexpr const char* script_hash = "IMvL7mhReVqrMSJcQbGUckXauCJKPWcu6DMz5ZqVVy8
 
 }  // namespace
 
-std::optional<CameraPicture> newest_picture(const RunFolder& run) {
+std::optional<CameraImage> newest_image(const RunFolder& run) {
   const std::string views = run.file("views");
   if (io::is_capture_folder(views)) {
     const io::CaptureManifest manifest = io::read_manifest(views);
     if (!manifest.frames.empty()) {
       const io::CaptureRecord& last = manifest.frames.rbegin()->second;
-      return CameraPicture{(fs::path(views) / io::capture_file_name(last.place)).string(), last.angle_deg};
+      return CameraImage{(fs::path(views) / io::capture_file_name(last.place)).string(), last.angle_deg};
     }
   }
-  if (fs::exists(run.file("camera.png"))) return CameraPicture{run.file("camera.png"), {}};
+  if (fs::exists(run.file("camera.png"))) return CameraImage{run.file("camera.png"), {}};
   return std::nullopt;
 }
 
@@ -173,9 +173,9 @@ std::string page(const std::string& name, const RunFolder& run, const LightView*
   if (live) html += "<meta http-equiv=\"refresh\" content=\"" + format_number(std::max(1.0, period_s), 3) + "\">\n";
   html += "<title>" + page_text(state_of(progress) + " - " + name) + "</title>\n<style>" + style + "</style></head>\n";
   html += "<body data-written=\"" + std::to_string(now) + "\"" + (live ? " data-live=\"1\"" : "") + ">\n";
-  html += "<p id=\"old\">This page is no longer renewed: the print, or the program that shows it, has ended.</p>\n";
+  html += "<p id=\"old\">This page is no longer refreshed: the print, or the program that shows it, has ended.</p>\n";
   html += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
-  html += figures_table(run) + "<div class=\"pictures\">\n<div>" + camera_figure(run);
+  html += figures_table(run) + "<div class=\"images\">\n<div>" + camera_figure(run);
   if (light != nullptr) html += screen_figure(run, *light, progress.angle_deg, lit);
   html += "</div>\n" + (light != nullptr ? overhead_figure(run, *light, lit) : "");
   html += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);

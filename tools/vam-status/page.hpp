@@ -1,4 +1,4 @@
-// The page of a print: one file without scripts of others, pictures within, that a browser renews by itself.
+// The page of a print: one file without scripts of others, images within, that a browser renews by itself.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@
 namespace vam::status_tool {
 
 /// The newest image of the camera.
-struct CameraPicture {
+struct CameraImage {
   std::string path;
   std::optional<double> angle_deg;
 };
 
 /// Of the run's views/, else its camera.png; nothing where there is neither.
-[[nodiscard]] std::optional<CameraPicture> newest_picture(const RunFolder& run);
+[[nodiscard]] std::optional<CameraImage> newest_image(const RunFolder& run);
 
 /// HTML in UTF-8. Every text that is not of this program is escaped. light: null without sinogram; renewed every
 /// `period_s` until the print has ended.

@@ -66,7 +66,8 @@ TEST_CASE("a dose without light has no exposure: its figures are unknown, not an
   Score dark(o, 3, 3);
   const std::vector<float> nothing(9, 0.0F);
   dark.add(nothing.data(), target.data(), 1);
-  for (const char* name : {"turns", "seconds", "multiplier", "peak_irradiance"}) CHECK(std::isnan(dark.figure(name)));
+  for (const char* name : {"turns", "seconds", "multiplier", "peak_intensity_mw_cm2"})
+    CHECK(std::isnan(dark.figure(name)));
   Score lit(o, 3, 3);
   lit.add(dose.data(), target.data(), 1);
   // Doses of a turn: part 0.8 and 1, void 0.1 and 0.2; 90 / (middle 0.5 + quarter 0.15) = 138.5 turns.
