@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.hpp"
 #include "base/per_slice.hpp"
 #include "light/blur.hpp"
 
@@ -40,6 +41,14 @@ void BlurredOperator::forward(std::span<const Slab> objects, std::span<Slab> sin
 void BlurredOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
   sharp_.adjoint(sinograms, objects);
   blur(objects);
+}
+
+SlabRange BlurredOperator::lit_by(const SlabRange&) const {
+  throw Error{Fault::bug, "blur: needs the whole grid, not a range of its slabs"};
+}
+
+void BlurredOperator::adjoint_within(const Window<const Slab>&, const Window<Slab>&) const {
+  throw Error{Fault::bug, "blur: needs the whole grid, not a range of its slabs"};
 }
 
 void BlurredOperator::blur(std::span<Slab> objects) const {

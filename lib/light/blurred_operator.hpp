@@ -6,8 +6,8 @@
 namespace vam::light {
 
 /// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4],
-/// light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other. What
-/// is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
+/// that of light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other.
+/// What is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
 class BlurredOperator final : public Operator {
  public:
   /// `sharp` must outlive this. sigma in voxels; `slices` are in use.
@@ -22,6 +22,9 @@ class BlurredOperator final : public Operator {
   /// The spans are the pass's slabs from the first on.
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
+  /// Not of a part of the grid. Throws Fault::bug.
+  [[nodiscard]] SlabRange lit_by(const SlabRange& objects) const override;
+  void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const override;
   void filter(std::span<Slab> sinograms) const override { sharp_.filter(sinograms); }
   void precondition(std::span<Slab> sinograms) const override { sharp_.precondition(sinograms); }
   void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const override {

@@ -34,7 +34,7 @@ void RayTable::fill_inner_row(const LevelRays& light, int row) {
     const FoundRay level{true,
                          point.x_p_mm,
                          zoom,
-                         point.strength / point.alpha_rate * zoom,
+                         point.strength / point.alpha_rate * zoom,  // T / |J - u ddelta/dx_p| e^{-mu s} [RAY21 eq 8]
                          light.spacing(1 / (point.ray.jacobian * point.alpha_rate)),
                          point.ray.delta_rad};
     row_of(inner, row, 0)[index] = climbs_ ? node_over_heights(light, r * std::cos(alpha), r * std::sin(alpha), level)

@@ -12,7 +12,7 @@
 
 namespace vam::light {
 
-/// Whether the judge follows rays that climb, or lights each slice with its own row.
+/// Whether rays that climb are followed, or each slice is lit by its own row alone.
 enum class Climb { follow, flat };
 
 /// The dose of one turn, in units of the sinogram times radian [physics §4, §11]: what the operator of that light makes

@@ -16,7 +16,7 @@ namespace {
 
 std::string mm(double value) { return format_number(value) + " mm"; }
 
-/// What light that is made and light that is judged have in common.
+/// What optimisation and simulation of a printer have in common.
 VialSetup on_the_bench(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::Grid& grid) {
   VialSetup setup;
   setup.view = optics::projector_view(printer);

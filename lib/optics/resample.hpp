@@ -27,7 +27,7 @@ struct Detector {
   return {columns, pixel_mm, 0.5 * (columns - 1)};
 }
 
-/// Rows of a sinogram: row a is at stage angle start_rad + a * step_rad; rows * |step| is one turn.
+/// Rows of a sinogram: row a is at stage angle start_rad + a * step_rad. One turn where nothing else is said.
 struct Turn {
   int rows = 0;
   double start_rad = 0;
@@ -72,8 +72,8 @@ struct MapPoint {
 };
 [[nodiscard]] MapPoint map_point(const View& view, double x_p_mm, const ResampleOptions& options);
 
-/// Virtual -> projector: S_p(x_p, theta) = S_v(x_v, theta + delta) J / T. Rows of the output: the same rows, at stage
-/// angles multiplied by the direction. Throws Fault::data unless the rows cover one turn.
+/// Virtual -> projector: S_p(x_p, theta) = S_v(x_v, theta + delta) J / T. Rows of the output: the same rows;
+/// options.direction says which way the vial turns past them. Throws Fault::data unless the rows cover one turn.
 [[nodiscard]] ResamplePlan plan_to_projector(const View& view, const Detector& virtual_, const Detector& projector,
                                              const Turn& turn, const ResampleOptions& options);
 

@@ -50,18 +50,21 @@ void TurnDoses::add(const Image& dose, const Image& target) {
   count_ += static_cast<double>(dose.size());
 }
 
-Json TurnDoses::figures(const model::Printer& printer, bool absolute, double scale) const {
+Json TurnDoses::doses(const std::string& of, bool absolute, double scale) const {
   const std::string unit = absolute ? "_mj_cm3" : "_relative";
   Json figures;
-  figures["dose_per_turn_max" + unit] = scale * largest_;
-  figures["dose_per_turn_mean" + unit] = count_ > 0 ? scale * sum_ / count_ : 0;
+  figures["dose_" + of + "_max" + unit] = scale * largest_;
+  figures["dose_" + of + "_mean" + unit] = count_ > 0 ? scale * sum_ / count_ : 0;
   if (part_count_ > 0) {
     figures["part_voxels"] = part_count_;
-    figures["part_dose_per_turn_min" + unit] = scale * part_least_;
-    figures["part_dose_per_turn_mean" + unit] = scale * part_sum_ / static_cast<double>(part_count_);
+    figures["part_dose_" + of + "_min" + unit] = scale * part_least_;
+    figures["part_dose_" + of + "_mean" + unit] = scale * part_sum_ / static_cast<double>(part_count_);
   }
-  if (!absolute) return figures;
-  figures["critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3;
+  return figures;
+}
+
+Json TurnDoses::exposures(const model::Printer& printer, double scale) const {
+  Json figures;
   if (part_count_ > 0) {
     add_exposure(figures, "mean", scale * part_sum_ / static_cast<double>(part_count_), printer);
     add_exposure(figures, "all", scale * part_least_, printer);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
@@ -22,10 +23,12 @@ class TurnDoses {
   void add(const Image& dose, const Image& target);
   [[nodiscard]] double largest() const { return largest_; }
 
-  /// Fields of the report. With a target also part_dose_min and part_dose_mean; with a critical dose the turns and
-  /// seconds until the mean of the part, and until all of it, has reached it. Without a target the largest dose stands
-  /// for the part.
-  [[nodiscard]] Json figures(const model::Printer& printer, bool absolute, double scale) const;
+  /// Fields of the report: dose_OF_max and _mean ("per_turn", "shown"), with a target also part_dose_OF_min and _mean,
+  /// in mJ/cm3 or relative.
+  [[nodiscard]] Json doses(const std::string& of, bool absolute, double scale) const;
+  /// The turns and seconds until the mean of the part, and until all of it, has reached the critical dose, which the
+  /// printer must have. Without a target the largest dose stands for the part.
+  [[nodiscard]] Json exposures(const model::Printer& printer, double scale) const;
 
  private:
   double largest_ = 0;

@@ -47,36 +47,25 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
   if (unit.plan) volume.metadata["vam:full_light_turns"] = format_number(turns, 9);
 }
 
-namespace {
-
-/// What is told of one turn is, of a run, its whole dose; how many turns it would take is no question any more.
-Json of_run(const Json& of_turn, double turns) {
-  Json report{{"shown_turns", turns}};
-  for (const auto& [key, value] : of_turn.items()) {
-    if (key.find("_to_critical_") != std::string::npos) continue;
-    const std::size_t at = key.find("dose_per_turn");
-    report[at == std::string::npos ? key : key.substr(0, at) + "dose_shown" + key.substr(at + 13)] = value;
-  }
-  return report;
-}
-
-}  // namespace
-
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
              const model::StackInfo& light) {
   const light::LightSeen& seen = exposed.light;
-  Json report = exposed.doses.figures(printer, unit.absolute, unit.turn);
-  if (!options.shown.empty()) report = of_run(report, exposed.shown_turns);
+  const bool of_run = !options.shown.empty();
+  Json report = exposed.doses.doses(of_run ? "shown" : "per_turn", unit.absolute, unit.turn);
+  if (of_run) report["shown_turns"] = exposed.shown_turns;
+  if (unit.absolute) report["critical_dose_mj_cm3"] = *printer.resin.critical_dose_mj_cm3;
+  if (unit.absolute && !of_run) report.update(exposed.doses.exposures(printer, unit.turn));
   report["model"] = light.space != model::Space::projector ? "parallel"
                     : exposed.climbs                       ? "chief rays"
                                                            : "level chief rays";
   report["poses"] = light.poses.size();
   report["full_scale"] = options.full_scale.value_or(seen.peak);
   report["efficiency"] = seen.efficiency.value();
-  report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
   if (unit.plan) {
     score::add_to(report, *unit.plan);
     report["planned_full_scale"] = options.full_scale.value_or(seen.peak) / unit.plan->multiplier;
+  } else {
+    report["peak_intensity_mw_cm2"] = printer.projector.max_intensity_mw_cm2;
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;

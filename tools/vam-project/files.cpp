@@ -17,7 +17,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   const auto differences = require_printer(options, reader.info(), printer);
   const auto schedule = optics::frame_schedule(projector.fps, printer.stage.speed_deg_s, turns);
   const Light light = read_light(options, reader, projector);
-  const double peak = options.peak.value_or(light.peak);
+  const double peak = options.full_scale.value_or(light.peak);
 
   const auto place = optics::frame_place(projector, options.column_offset, options.row_offset);
   io::FrameSinkOptions facts{optics::frames_info(reader.info(), place, schedule, projector.orientation), projector.fps,
@@ -27,7 +27,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const Frames frames = frames_of(light, schedule);
-  const auto tally = show(frames, static_cast<float>(options.intensity / peak), projector, app.given("--bits"), *sink);
+  const auto tally = show(frames, static_cast<float>(options.gain / peak), projector, app.given("--bits"), *sink);
   Json report = figures(frames, projector.bits, peak, tally);
   if (!differences.empty()) report["printer_differences"] = differences;
   io::write_report(options.report, "vam-project/1", report);
@@ -40,7 +40,7 @@ void write_slices(const cli::App& app, const Options& options, const model::Prin
                              options.stack};
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
-  const auto scale = static_cast<float>(options.intensity / options.peak.value_or(1));
+  const auto scale = static_cast<float>(options.gain / options.full_scale.value_or(1));
   const auto tally = show(frames, scale, printer.projector, app.given("--bits"), *sink);
   io::write_report(options.report, "vam-project/1", slice_figures(frames, options, printer.projector, tally));
 }

@@ -75,10 +75,10 @@ void declare(cli::App& app, Options& options) {
   app.group("Grey");
   app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
       .default_is("projector.bits");
-  app.option("--full-scale", "VALUE", options.peak, cli::positive, "Value that is shown at full intensity.")
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Value that is shown at full intensity.")
       .was("--peak")
       .default_is("maximum of the stack, for slices 1");
-  app.option("--gain", "FACTOR", options.intensity, cli::positive,
+  app.option("--gain", "FACTOR", options.gain, cli::positive,
              "Factor on the intensity; values above full intensity are clipped.")
       .was("--intensity");
   add_live(app, options);

@@ -36,12 +36,12 @@ struct PatternOptions {
 struct Options {
   std::string input = "-";
   std::string output = "-";
-  std::optional<double> fps, print_speed_mm_h, speed_deg_s, turns, flatland_mm, peak;
+  std::optional<double> fps, print_speed_mm_h, speed_deg_s, turns, flatland_mm, full_scale;
   std::optional<int> bits;
   std::string orientation;
   double column_offset = 0;
   double row_offset = 0;
-  double intensity = 1;
+  double gain = 1;
   cli::PrinterOptions printer;
   bool accept_printer = false;
   bool only_plan = false;

@@ -108,7 +108,7 @@ Frames slices_in_time(const cli::App& app, const Options& options, const model::
 
 Json slice_figures(const Frames& frames, const Options& options, const model::Projector& projector,
                    const resin::LightTally& tally) {
-  Json report = figures(frames, projector.bits, options.peak.value_or(1), tally);
+  Json report = figures(frames, projector.bits, options.full_scale.value_or(1), tally);
   report.erase("step_deg");
   return report;
 }

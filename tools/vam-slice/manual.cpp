@@ -1,3 +1,4 @@
+#include "io/mesh/file.hpp"
 #include "solid/shapes/shapes.hpp"
 #include "vam-slice/options.hpp"
 
@@ -10,9 +11,10 @@ cli::Manual manual() {
       {"Writes the grid 'target': the fraction, 0 to 1, of every voxel that the part covers. Coordinates are "
        "millimetres; x = y = 0 is the rotation axis, z points up along it, and z = 0 is the middle of the projector's "
        "rows (projector.axis_row). A second grid, 'insert', is an opaque object to print around.",
-       "PART is a mesh (STL, OBJ, PLY, OFF or 3MF, identified by content), or a folder of numbered grey images (PNG or "
-       "TIFF), one for each slice from the lowest up, white inside, each pixel a voxel. --shape makes a test part "
-       "without a file.",
+       "PART is a mesh (" + io::mesh_format_names() +
+           ", identified by content), or a folder of numbered grey images (PNG or "
+           "TIFF), one for each slice from the lowest up, white inside, each pixel a voxel. --shape makes a test part "
+           "without a file.",
        "Meshes are repaired first: coincident points are welded, rounding cracks closed, degenerate and duplicate "
        "triangles removed, all others oriented outwards. Solids may overlap; nested shells are a solid within a solid, "
        "or a cavity if the inner shell faces inwards in the file. Repairs are reported in a warning. If holes remain, "

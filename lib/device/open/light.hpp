@@ -5,8 +5,8 @@
 
 namespace vam::device {
 
-/// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current, max_current and leds; sim: is a simulated
-/// DLPC350. max_current is the instrument's cap, which the option of that name can only lower.
+/// dlpc350:SERIAL or dlpc900:SERIAL (serial optional) with options current_percent, max_current_percent and leds; sim:
+/// is a simulated DLPC350. max_current_percent is the instrument's cap, which the option of that name can only lower.
 [[nodiscard]] std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent,
                                                       Guardian* guardian);
 

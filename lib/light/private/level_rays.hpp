@@ -16,7 +16,7 @@ struct LevelRays {
     double alpha = 0;
     double alpha_rate = 1;  // d alpha / d b = 1 - u (d delta / d x_p) / J
     double x_p_mm = 0;
-    double strength = 0;  // T / J e^{-mu s}, still per d b
+    double strength = 0;  // T / J e^{-mu s}, still per d b [RAY21 eq 8]
     optics::ChiefRay ray;
     double u_mm = 0;
   };

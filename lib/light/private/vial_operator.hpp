@@ -11,10 +11,10 @@
 namespace vam::light {
 
 /// A sinogram has the columns of the projector that light the circle, and all stage angles: opposite rays run through
-/// the vial on different lines. A* is the chief-ray dose [RAY21 eq 8; physics §11]; A, its transpose, takes the same
-/// weights. A projector whose rays climb lights slices with the rows of others: slices and rows of a pass are then the
-/// whole grid's, and rows beyond setup.rows, slices beyond grid.nz are dark. A projector whose rays stay level lights
-/// each slice with its own row, and any slices may share a pass.
+/// the vial on different lines. A* is the chief-ray dose of LevelRays and its skew rays [physics §4, §11]; A, its
+/// transpose, takes the same weights. A projector whose rays climb lights slices with the rows of others: slices and
+/// rows of a pass are then the whole grid's, and rows beyond setup.rows, slices beyond grid.nz are dark. A projector
+/// whose rays stay level lights each slice with its own row, and any slices may share a pass.
 class VialOperator final : public Operator {
  public:
   /// `inserts`: opaque objects in the light's way, a slab of coverage for every slab of the pass, or none; the spans

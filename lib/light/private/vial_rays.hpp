@@ -15,8 +15,8 @@ struct RowRange {
   int end = 0;
 };
 
-/// A pixel is a box of even intensity; it leaves fluence T * density * e^{-mu path} [RAY21 eq 8, in three dimensions:
-/// physics §11] at the voxels on its ray. The mean over a voxel's shadow is exact across the columns, and linear
+/// A pixel is a box of even intensity; it leaves fluence T * density * e^{-mu path} at the voxels on its ray
+/// [physics §11]. The mean over a voxel's shadow is exact across the columns, and linear
 /// between rows.
 class VialRays {
  public:

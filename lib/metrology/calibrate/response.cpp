@@ -99,12 +99,4 @@ ResponseCurve measure_response(const ResponseScan& scan) {
   return curve;
 }
 
-model::ResponseTable to_table(const ResponseCurve& curve) {
-  model::ResponseTable table;
-  table.source = "response scan";
-  table.grey = curve.grey;
-  for (const auto& intensity : curve.intensity) table.intensity.push_back(intensity.value);
-  return table;
-}
-
 }  // namespace vam::metrology

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "base/stats/measured.hpp"
-#include "model/response_table.hpp"
 
 namespace vam::metrology {
 
@@ -24,7 +23,5 @@ struct ResponseCurve {
 /// error of the readings, by Student's t. Throws Fault::data: fewer than 17 levels or 3 readings a level, levels that
 /// do not rise from 0, no light, or readings that fall against grey by more than the readings' scatter explains.
 [[nodiscard]] ResponseCurve measure_response(const ResponseScan& scan);
-
-[[nodiscard]] model::ResponseTable to_table(const ResponseCurve& curve);
 
 }  // namespace vam::metrology

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/constants.hpp"
+#include "model/circle.hpp"
 
 namespace vam::metrology {
 
@@ -30,7 +31,7 @@ SightLines::SightLines(const model::Printer& printer) : absorption_per_mm_(print
 
 double SightLines::seen(const optics::ChiefRay& ray) const {
   if (!ray.hits) return 0;
-  const double half_mm = std::sqrt(radius_mm_ * radius_mm_ - ray.x_v_mm * ray.x_v_mm);
+  const double half_mm = model::half_chord(radius_mm_, ray.x_v_mm);
   const double cosine = std::cos(ray.delta_rad);
   const double sine = std::sin(ray.delta_rad);
   const auto across = [&](const Sight& sight) { return sight.sine * cosine - sight.cosine * sine; };

@@ -14,7 +14,7 @@
 #include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/heights.hpp"
 #include "metrology/ost/private/mlem.hpp"
-#include "model/magnification.hpp"
+#include "model/circle.hpp"
 #include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
 #include "tomo/filter.hpp"
@@ -186,7 +186,7 @@ void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<con
     const double cosine = 1 / std::hypot(1, rate * heights_mm[k]);
     for (int t = 0; t < detector.columns; ++t) {
       const double x_mm = detector.x_mm(t);
-      const double way_mm = std::sqrt(std::max(0.0, (radius_mm - x_mm) * (radius_mm + x_mm)));
+      const double way_mm = model::half_chord(radius_mm, x_mm);
       const auto weight = static_cast<float>(cosine * std::exp(absorption_per_mm * way_mm));
       for (int a = 0; a < sinograms[k].height; ++a) sinograms[k](t, a) *= weight;
     }

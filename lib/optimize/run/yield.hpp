@@ -1,5 +1,5 @@
-// How many printers off their settings print the part, at one exposure, and what costs most: judged by the simulation
-// of the light, not by the operators that the frames were made with.
+// How many printers off their settings print the part, at one exposure, and what costs most: the dose of each, by the
+// forward model of the printer as it deviates.
 #pragma once
 
 #include <functional>

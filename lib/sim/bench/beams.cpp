@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "model/circle.hpp"
+
 namespace vam::sim {
 
 namespace {
@@ -67,7 +69,7 @@ std::vector<SimBeams::Crossing> SimBeams::along(const SimRay& sight, double azim
   std::vector<Crossing> crossings(rays_.size() - 1);
   if (!sight.enters) return crossings;
   const double turn = sight.turn_rad + azimuth_rad;
-  const double half_mm = std::sqrt(std::max(0.0, radius_mm_ * radius_mm_ - sight.offset_mm * sight.offset_mm));
+  const double half_mm = model::half_chord(radius_mm_, sight.offset_mm);
   const auto where_mm = [&](const SimRay& beam) {  // along the line of sight
     return (beam.offset_mm - sight.offset_mm * std::cos(turn - beam.turn_rad)) / std::sin(beam.turn_rad - turn);
   };

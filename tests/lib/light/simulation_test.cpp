@@ -171,7 +171,8 @@ TEST_CASE("turns and seconds to the critical dose") {
   target.values = {0, 1, 1};
   TurnDoses range;
   range.add(dose, target);
-  const Json json = range.figures(printer, true, 10);
+  Json json = range.doses("per_turn", true, 10);
+  json.update(range.exposures(printer, 10));
   CHECK(json["part_dose_per_turn_min_mj_cm3"] == 20);
   CHECK(json["part_dose_per_turn_mean_mj_cm3"] == 30);
   CHECK(json["turns_to_critical_mean"] == 4);
@@ -181,5 +182,5 @@ TEST_CASE("turns and seconds to the critical dose") {
   CHECK_THROWS_AS(range.add(dose, Image(2, 1)), Error);
   TurnDoses dark;
   dark.add(Image(3, 1), {});
-  CHECK(dark.figures(printer, true, 10)["turns_to_critical_max"].is_null());
+  CHECK(dark.exposures(printer, 10)["turns_to_critical_max"].is_null());
 }

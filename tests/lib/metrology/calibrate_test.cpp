@@ -56,7 +56,7 @@ TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling
       CHECK(curve.intensity[i].value <= curve.intensity[i + 1].value);
     }
     CHECK(curve.intensity.back().value == 1);
-    CHECK(to_table(curve).intensity.size() == 17);
+    CHECK(curve.intensity.size() == 17);
   }
   levels.check();
   CHECK(levels.worst() < 0.02);

@@ -10,7 +10,8 @@
 
 namespace vam::io {
 
-/// Points and faces as the file has them. Indices may be anything; check() in mesh_file.cpp judges them.
+/// Points and faces as the file has them. Indices may be anything; check_points() and triangulated() in file.cpp judge
+/// them.
 struct PolygonSoup {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<int>> faces;
