@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "solid/voxel/size_doubt.hpp"
 #include "model/magnification.hpp"
+#include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {
 

@@ -15,6 +15,7 @@
 #include "metrology/ost/private/heights.hpp"
 #include "metrology/ost/private/mlem.hpp"
 #include "model/circle.hpp"
+#include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
 #include "tomo/filter.hpp"
