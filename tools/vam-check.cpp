@@ -11,6 +11,7 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/input_name.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-check/inspect.hpp"
 
@@ -67,6 +68,7 @@ std::string report(const std::string& path, const std::vector<Finding>& findings
 }
 
 void check(const Options& options) {
+  io::refuse_two_stdins(options.files);
   std::map<std::string, std::vector<Finding>> found;
   Names names;
   std::vector<Error> damaged;

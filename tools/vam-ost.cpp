@@ -4,6 +4,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/standard_input.hpp"
 #include "moved.hpp"
 #include "printer.hpp"
 #include "vam-ost/print.hpp"
@@ -163,6 +164,7 @@ void run(const cli::App& app, const Options& options) {
   if (options.live && app.given("--report")) {
     throw Error{Fault::usage, "--report: is of one volume; with --live the figures of each go to --log"};
   }
+  io::refuse_two_stdins({options.views, options.dark, options.flat, options.reference});
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

@@ -16,7 +16,23 @@ fi
 fails 64 '2 inputs are standard input' vam-score - --target -
 fails 64 '2 inputs are standard input' vam-view - --target - -o x.png
 fails 64 '2 inputs are standard input' vam-optimize - --weights - -o x.exr
+fails 64 '2 inputs are standard input' vam-ost - --flat -
+fails 64 '2 inputs are standard input' vam-check - -
+fails 64 '2 inputs are standard input' vam-sdf height - -
+fails 64 '2 inputs are standard input' vam-curethrough model - --target -
 fails 65 'part.vdb: is a volume \(OpenVDB\), not a mesh' vam-slice part.vdb -o x.vdb
+
+# Bytes after the last image of a stack, of one with seals and of one that is parsed in a child, in a file and a pipe.
+vam-sinogram part.vdb --angles 8 -o sealed.exr
+python3 "$VAM_SOURCE/tests/tools/exr.py" make plain.exr space=virtual width=29 height=8 count=2
+for stack in sealed plain; do
+  ok "$stack: as it is" vam-view $stack.exr -o $stack.png
+  { cat $stack.exr; echo more; } >long.exr
+  fails 65 'long.exr: goes on after its last image, at byte [0-9]+, with what is no stack' vam-view long.exr -o x.png
+  fails 65 'stdin: goes on after its last image' sh -c 'vam-view - -o x.png <long.exr'
+  cat $stack.exr $stack.exr >two.exr
+  ok "$stack: a further stack is none of them" vam-view two.exr -o two.png
+done
 
 # --memory: refused with both numbers, before it is taken.
 fails 64 '^vam-score: --memory: given twice' vam-score --memory 1 part.vdb --memory=2

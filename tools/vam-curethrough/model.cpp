@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
+#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"
@@ -222,6 +223,7 @@ void declare(cli::App& app, ModelOptions& options) {
 }
 
 void run(const cli::App& root, const cli::App& app, const ModelOptions& options) {
+  io::refuse_two_stdins({options.input, options.part.path});
   if (!options.output.empty()) io::refuse_same_file(options.input, options.output);
   const Inputs in = open_inputs(app, options);
   Judge judge(options, in);

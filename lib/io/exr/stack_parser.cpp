@@ -1,7 +1,10 @@
 #include "io/exr/private/stack_parser.hpp"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <utility>
@@ -216,7 +219,20 @@ void StackParser::refill(bool alone) {
     parallel_for(static_cast<int>(count), decode_one);
   }
   seals_->judge(first, first + count);
-  if (complete_ == about_.size()) seals_->finish([this](char* to, std::size_t size) { take(to, size); });
+  if (complete_ < about_.size()) return;
+  seals_->finish([this](char* to, std::size_t size) { take(to, size); });
+  require_clean_end();
+}
+
+// A pipe is not waited for: its writer may take its time for the next stack, or just be slow to close it.
+void StackParser::require_clean_end() {
+  pollfd more{in_.descriptor(), POLLIN, 0};
+  if ((in_.size() == 0 && poll(&more, 1, 0) <= 0) || in_.at_end()) return;
+  const auto next = in_.peek();
+  const std::size_t size = std::min(next.size(), sizeof magic);
+  if (std::memcmp(next.data(), &magic, size) == 0) return;  // a further stack
+  throw std::runtime_error("goes on after its last image, at byte " + std::to_string(in_.position()) +
+                           ", with what is no stack; make it again, or cut it there");
 }
 
 bool StackParser::next(Image& image, ImageInfo& about, bool alone) {

@@ -51,6 +51,7 @@ class StackParser {
   void parse_head();
   void add_part(const Imf::Header& header);
   void refill(bool alone);
+  void require_clean_end();
   Arriving complete_part();
   void take_chunk();
   void take(void* to, std::size_t size);
