@@ -1,0 +1,31 @@
+# On a file system without files that have no name (NFS, vfat) outputs are whole or absent, too, and nothing is left.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+sanitized && { echo 'AddressSanitizer insists on coming first'; exit 77; }
+plain() { LD_PRELOAD=$VAM_BUILD/lib/vam-test/no_tmpfile.so "$@"; }
+
+box 4 4 1 >box.off
+vam-slice box.off --voxel 0.2 -o part.vdb && mv part.vdb want.vdb
+quiet 'a new file' plain vam-slice box.off --voxel 0.2 -o part.vdb
+same 'is the same' want.vdb part.vdb
+quiet 'in place of an older one' plain vam-slice box.off --voxel 0.2 -o part.vdb
+quiet 'also of voxels in a scratch file' plain vam-slice --shape disc-grid --voxel 0.08 -o large.vdb
+mkdir tmp
+TMPDIR=$PWD/tmp quiet 'in $TMPDIR' plain vam-slice --shape disc-grid --voxel 0.08 -o large.vdb
+is 'where nothing is left' "$(ls -A tmp)" ''
+quiet 'a folder' plain vam-project --pattern star -o frames/
+fails 65 'damaged|mesh' plain vam-slice want.vdb -o x.vdb
+is 'nothing but the outputs is there' "$(ls -A | tr '\n' ' ')" '.log box.off frames large.vdb part.vdb tmp want.vdb '
+
+# Killed between the creation and the rename.
+if strace -qq -o .log/trace -e trace=write true 2>.log/err; then
+  for signal in TERM KILL; do
+    echo old >part.vdb
+    strace -f -qq -o .log/trace -E LD_PRELOAD="$VAM_BUILD/lib/vam-test/no_tmpfile.so" -e trace=fsync \
+      -e inject=fsync:signal=$signal:when=1 vam-slice box.off --voxel 0.2 -o part.vdb 2>.log/err
+    is "SIG$signal: the old file" "$(cat part.vdb)" old
+  done
+  is 'SIGKILL leaves a temporary file' "$(ls -A | grep -c '^\.vam-')" 1
+  quiet 'which the next run there removes' plain vam-slice box.off --voxel 0.2 -o part.vdb
+fi
+is 'nothing else is left' "$(ls -A | grep '^\.vam-')" ''
+done_testing
