@@ -38,7 +38,7 @@ void refuse_same_files(const Options& options) {
 void require_memory_for(const Scene& scene, const light::Operator& light, bool tolerant, const std::string& subject) {
   const bool whole = light.couples_slices() || tolerant;
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
-  const double slices = (count + lanes - 1) / lanes * lanes;
+  const int slices = (count + lanes - 1) / lanes * lanes;
   const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) +
                         (tolerant ? 6.0 : 3.0) * light.sinogram().width * light.sinogram().height;
   require_memory(
