@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "model/magnification.hpp"
+#include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::light {
@@ -33,8 +34,8 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
   if (lift.least != 0 || lift.most != 0) margin.above = margin.below = 1;
   if (ratio == 1) return margin;
   const model::Projector& p = printer.projector;
-  const double lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
-  const double highest_mm = p.axis_row * p.pixel_mm;
+  const double lowest_mm = model::z_mm(p, p.rows - 1);
+  const double highest_mm = model::z_mm(p, 0);
   const auto spread = [&](double z_mm) { return z_mm > 0 ? z_mm * (ratio - 1) : z_mm * (1 / ratio - 1); };
   // Of an end of the part, `sign` up or down, wherever it passes the image.
   const auto most = [&](double end_mm, double sign) {

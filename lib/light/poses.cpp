@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/magnification.hpp"
+#include "model/rows.hpp"
 #include "optics/writable.hpp"
 
 namespace vam::light {
@@ -24,7 +25,7 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   const model::Projector& p = printer.projector;
   const double scale = model::vertical_magnification(printer);
   const double image_mm = scale * p.rows * p.pixel_mm;
-  const double image_middle_mm = scale * (p.axis_row - 0.5 * (p.rows - 1)) * p.pixel_mm;
+  const double image_middle_mm = scale * model::z_mm(p, 0.5 * (p.rows - 1));
   const double part_mm = scale * grid.nz * grid.voxel_mm;
   const double part_middle_mm = scale * grid.z_mm(0.5 * (grid.nz - 1));
   const double pitch = std::abs(pitch_mm);

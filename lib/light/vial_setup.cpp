@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "model/magnification.hpp"
+#include "model/rows.hpp"
 
 namespace vam::light {
 
@@ -49,8 +50,8 @@ VialSetup vial_setup(const model::Printer& printer, const model::Grid& grid, int
   setup.turn = {angles, 0, 2 * std::numbers::pi / angles};
   setup.radius_mm = radius_mm;
   const model::Projector& p = printer.projector;
-  setup.lowest_mm = (p.axis_row - (p.rows - 1)) * p.pixel_mm;
-  setup.highest_mm = p.axis_row * p.pixel_mm;
+  setup.lowest_mm = model::z_mm(p, p.rows - 1);
+  setup.highest_mm = model::z_mm(p, 0);
   return setup;
 }
 

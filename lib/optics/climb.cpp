@@ -7,16 +7,10 @@
 #include "base/constants.hpp"
 #include "base/text.hpp"
 #include "model/magnification.hpp"
+#include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
 
 namespace vam::optics {
-
-namespace {
-
-/// Rows are numbered downwards, z is up.
-double row_mm(const model::Projector& projector, double row) { return (projector.axis_row - row) * projector.pixel_mm; }
-
-}  // namespace
 
 double strayed_slices(const model::Printer& printer, const model::StackInfo& info) {
   const View view = projector_view(printer);
@@ -24,8 +18,8 @@ double strayed_slices(const model::Printer& printer, const model::StackInfo& inf
   const double magnification = model::vertical_magnification(printer);
   const double pitch_mm = info.row_mm > 0 ? info.row_mm : info.pixel_mm;
   const double radius_mm = reach_mm(view);
-  const double lowest_mm = row_mm(printer.projector, printer.projector.rows - 1);
-  const double highest_mm = row_mm(printer.projector, 0);
+  const double lowest_mm = model::z_mm(printer.projector, printer.projector.rows - 1);
+  const double highest_mm = model::z_mm(printer.projector, 0);
   double most = 0;
   for (const int slice : {0, info.count - 1}) {
     const double z_p_mm = std::clamp(info.z_start_mm + slice * pitch_mm, lowest_mm, highest_mm);
@@ -39,7 +33,7 @@ double strayed_slices(const model::Printer& printer, const model::StackInfo& inf
 
 void write_rays(std::ostream& out, const model::Printer& printer, const Detector& detector, int row) {
   const View view = projector_view(printer);
-  const double z_p_mm = row_mm(printer.projector, row);
+  const double z_p_mm = model::z_mm(printer.projector, row);
   out << "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T\n";
   for (int c = 0; c < detector.columns; ++c) {
     const double x_p_mm = detector.x_mm(c);

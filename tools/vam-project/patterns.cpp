@@ -6,6 +6,7 @@
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/image/frame_sink.hpp"
+#include "model/rows.hpp"
 #include "optics/frames.hpp"
 #include "optics/patterns.hpp"
 #include "vam-project/live.hpp"
@@ -55,7 +56,7 @@ model::StackInfo stack_info(const model::Projector& projector, int count) {
   info.count = count;
   info.pixel_mm = projector.pixel_mm;
   info.row_mm = -projector.pixel_mm;
-  info.z_start_mm = projector.axis_row * projector.pixel_mm;
+  info.z_start_mm = model::z_mm(projector, 0);
   info.units = "fraction of full grey";
   return info;
 }

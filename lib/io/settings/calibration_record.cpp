@@ -86,7 +86,8 @@ void take_over(model::Printer& printer, const CalibrationRecord& record) {
 }
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
-void require_possible(model::Printer& printer, const CalibrationRecord& record) {
+void require_possible(model::Printer printer, const CalibrationRecord& record) {
+  centre_axis(printer);
   const auto refuse = [&](const std::string& why) {
     throw Error{Fault::data, record.path + ": " + why + "; run vam-calibrate"};
   };

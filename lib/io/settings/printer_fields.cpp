@@ -1,6 +1,8 @@
 #include "io/settings/private/printer_fields.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "base/text.hpp"
 #include "model/device_schemes.hpp"
@@ -41,8 +43,8 @@ const std::vector<PrinterField> fields{
     {"projector", "response", at<&Printer::projector, &Projector::response>, "CSV file \"grey,intensity\", relative to this file; empty: linear"},
     {"projector", "bits", at<&Printer::projector, &Projector::bits>, "grey levels = 2^bits", 1, 16, false, {"1", "2", "4", "8", "10", "16"}},
     {"projector", "fps", at<&Printer::projector, &Projector::fps>, "frames per second", 0, 1e6, true},
-    {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "of the rotation axis, from 0 at the left, before orientation", -65536, 131072},
-    {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "of z = 0, from 0 at the top (z is up), before orientation", -65536, 131072},
+    {"projector", "axis_column", at<&Printer::projector, &Projector::axis_column>, "of the rotation axis, from 0 at the left, before orientation; the middle if absent", -65536, 131072},
+    {"projector", "axis_row", at<&Printer::projector, &Projector::axis_row>, "level with the lens, where z is 0; from 0 at the top, before orientation; the middle if absent", -65536, 131072},
     {"projector", "orientation", at<&Printer::projector, &Projector::orientation>, "normal, flip-columns, flip-rows or rotate-180", 0, 0, false, {"normal", "flip-columns", "flip-rows", "rotate-180"}},
     {"projector", "latency_ms", at<&Printer::projector, &Projector::latency_ms>, "delay from vertical blank to light output", -1000, 1000},
     {"projector", "max_led_current_percent", at<&Printer::projector, &Projector::max_led_current_percent>, "maximum LED current of the light engine, in per cent of its full current", 0, 100},
@@ -119,6 +121,18 @@ std::string mm(double value) { return format_number(value) + " mm"; }
 }  // namespace
 
 std::span<const PrinterField> printer_fields() { return fields; }
+
+Printer without_axis() {
+  Printer printer;
+  printer.projector.axis_column = printer.projector.axis_row = std::numeric_limits<double>::quiet_NaN();
+  return printer;
+}
+
+void centre_axis(Printer& printer) {
+  Projector& projector = printer.projector;
+  if (std::isnan(projector.axis_column)) projector.axis_column = 0.5 * (projector.columns - 1);
+  if (std::isnan(projector.axis_row)) projector.axis_row = 0.5 * (projector.rows - 1);
+}
 
 std::string replacement(std::string_view section, std::string_view key) {
   if (section != "projector" || key != "max_led_current") return "";

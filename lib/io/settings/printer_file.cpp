@@ -174,7 +174,7 @@ Printer read_settings(std::string_view text, const std::string& subject) {
       throw Error{Fault::data, place(subject, error.source()) + ": not TOML: " + std::string(error.description())};
     }
   }();
-  Printer printer;
+  Printer printer = without_axis();
   read_table(printer, root, subject);
   return printer;
 }
@@ -255,13 +255,14 @@ void warn_of_cut(const std::string& text, const std::string& file) {
 
 Printer parse_printer(std::string_view toml, const std::string& subject) {
   Printer printer = read_settings(toml, subject);
+  centre_axis(printer);
   check(printer, Fault::data, subject);
   return printer;
 }
 
 Printer load_printer(const std::string& file, const std::vector<std::string>& sets, Records records) {
   const std::string path = settings_file(file);
-  Printer printer;
+  Printer printer = without_axis();
   if (!path.empty()) {
     const std::string text = slurp(path);
     require_text_seal(text, path);
@@ -278,6 +279,7 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
     apply_records(printer, settled.calibration, utc_seconds());
   }
   for (const auto& set : sets) override_one(printer, set);
+  centre_axis(printer);
   std::string subject = path;  // with several --set any of them may be the cause
   if (path.empty() && !sets.empty()) subject = sets.size() == 1 ? "--set " + sets.front() : "printer settings";
   check(printer, sets.empty() ? Fault::data : Fault::usage, subject);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
@@ -62,6 +63,19 @@ TEST_CASE("settings that are absent keep their defaults; whole numbers serve as 
   const auto printer = parse_printer("[vial]\nradius_mm = 10\n", "p.toml");
   CHECK(printer.vial.radius_mm == 10);
   CHECK(printer.projector.columns == 1024);
+}
+
+TEST_CASE("the axis is in the middle of the image as set, unless it is said where") {
+  const auto axis = [](const vam::model::Printer& printer) {
+    return std::pair{printer.projector.axis_column, printer.projector.axis_row};
+  };
+  CHECK(axis(load_printer("", {})) == std::pair{511.5, 383.5});
+  CHECK(axis(load_printer("", {"projector.columns=240", "projector.rows=41"})) == std::pair{119.5, 20.0});
+  CHECK(axis(load_printer("", {"projector.axis_row=40", "projector.rows=41"})) == std::pair{511.5, 40.0});
+  const auto file = parse_printer("[projector]\ncolumns = 240\naxis_row = 7\n", "p.toml");
+  CHECK(axis(file) == std::pair{119.5, 7.0});
+  CHECK(has(refusal("[projector]\naxis_row = nan\n"), "p.toml:2: projector.axis_row: nan is not between"));
+  CHECK(printer_settings(file) == "projector.columns=240 projector.axis_column=119.5 projector.axis_row=7.0");
 }
 
 TEST_CASE("unknown keys name file, line and the nearest known key") {

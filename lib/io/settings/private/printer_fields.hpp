@@ -36,6 +36,11 @@ inline constexpr std::string_view printer_end = "# end of the settings";
 /// All fields, grouped by section in the order in which the file is printed.
 [[nodiscard]] std::span<const PrinterField> printer_fields();
 
+/// A printer at its defaults but for the axis, whose place is not a number until it is set.
+[[nodiscard]] model::Printer without_axis();
+/// The axis of a printer in the middle of its columns and rows, where it is not set.
+void centre_axis(model::Printer& printer);
+
 /// What a key that there is no more has to be instead: "; it was in ...: give ..."; empty for any other.
 [[nodiscard]] std::string replacement(std::string_view section, std::string_view key);
 
