@@ -1,6 +1,7 @@
 #include "optimize/run/private/pass.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace vam::optimize {
 
@@ -46,21 +47,29 @@ std::vector<Slab> collapse_images(const Pass& pass, const std::function<Image(in
   return sinograms;
 }
 
-std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinograms, const light::Operator& light) {
+std::vector<Image> expand_slab(const Pass& pass, std::size_t number, const Slab& sinogram,
+                               const light::Operator& light) {
   const light::Shape shape = light.image();
-  std::vector<Image> images;
   Slab packed(shape.width, shape.height);
+  light.expand(sinogram, packed);
+  const int first = pass.low + static_cast<int>(number) * lanes;
+  const int used = std::min(lanes, pass.high - first);
   Image one(shape.width, shape.height);
   std::vector<float> values(one.size() * lanes);
-  for (int first = pass.low; first < pass.high; first += lanes) {
-    const int used = std::min(lanes, pass.high - first);
-    light.expand(sinograms[(first - pass.low) / lanes], packed);
-    unpack(packed, used, values.data());
-    for (int job = std::max(first, pass.first); job < std::min(first + used, pass.last); ++job) {
-      const auto lane = static_cast<std::size_t>(job - first);
-      std::copy_n(values.data() + lane * one.size(), one.size(), one.values.begin());
-      images.push_back(one);
-    }
+  unpack(packed, used, values.data());
+  std::vector<Image> images;
+  for (int job = std::max(first, pass.first); job < std::min(first + used, pass.last); ++job) {
+    const auto lane = static_cast<std::size_t>(job - first);
+    std::copy_n(values.data() + lane * one.size(), one.size(), one.values.begin());
+    images.push_back(one);
+  }
+  return images;
+}
+
+std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinograms, const light::Operator& light) {
+  std::vector<Image> images;
+  for (std::size_t s = 0; s < sinograms.size(); ++s) {
+    for (Image& image : expand_slab(pass, s, sinograms[s], light)) images.push_back(std::move(image));
   }
   return images;
 }

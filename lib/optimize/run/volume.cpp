@@ -187,9 +187,19 @@ class Run {
       const auto i = static_cast<std::size_t>(job - pass.low);
       ledger_.add(doses[i], figures[i], times_[job]);
     }
-    std::vector<Image> images = expand_images(pass, state.g, light);
-    if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, images);
-    finished_.take(std::move(images));
+    hand_out(state, pass, light);
+  }
+
+  /// Slab by slab: images are several times as large as the light in them.
+  void hand_out(Iterate& state, const Pass& pass, const light::Operator& light) {
+    state.dose.clear();
+    for (std::size_t s = 0; s < state.g.size(); ++s) {
+      std::vector<Image> images = expand_slab(pass, s, state.g[s], light);
+      state.g[s] = {};
+      if (images.empty()) continue;
+      if (task_.interruption.to != nullptr) keep_finished(*task_.interruption.to, images);
+      finished_.take(std::move(images));
+    }
   }
 
   void keep(Archive& to, Work& work) {

@@ -30,7 +30,10 @@ struct PassInput {
 /// The sinograms whose images are image(job), fluence.
 [[nodiscard]] std::vector<Slab> collapse_images(const Pass& pass, const std::function<Image(int job)>& image,
                                                 const light::Operator& light);
-/// The images of sinograms; of the pass's own jobs only.
+/// The images of the pass's slab of that number, of its own jobs only.
+[[nodiscard]] std::vector<Image> expand_slab(const Pass& pass, std::size_t number, const Slab& sinogram,
+                                             const light::Operator& light);
+/// The images of all slabs.
 [[nodiscard]] std::vector<Image> expand_images(const Pass& pass, std::span<const Slab> sinograms,
                                                const light::Operator& light);
 
