@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/json.hpp"
@@ -19,6 +20,7 @@
 #include "printer.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
+#include "vam-slice/lift.hpp"
 #include "vam-slice/options.hpp"
 #include "vam-slice/part.hpp"
 
@@ -64,10 +66,13 @@ void run(const cli::App& app, Options& options) {
   solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));
   if (options.any_height) room.low_mm = -(room.high_mm = solid::any_height_mm);
-  const solid::Part part = part_of(options, room);
+  solid::Part part = part_of(options, room);
+  std::optional<solid::Part> insert = insert_of(options, part, room);
+  const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
+  part = solid::lifted(std::move(part), lift_mm);
+  if (insert) insert = solid::lifted(std::move(*insert), lift_mm);
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, size_option(options));
   double radius_mm = options.extent == "part" ? 0 : room.radius_mm;
-  const std::optional<solid::Part> insert = insert_of(options, part, room);
   if (insert) {
     solid::require_within(insert->extent, model::resin_radius_mm(printer.vial), insert->subject);
     radius_mm = std::max(radius_mm, insert->extent.radius_mm);
@@ -83,7 +88,8 @@ void run(const cli::App& app, Options& options) {
   volumes.push_back(volume_of("target", part, grid, content));
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);
   warn_of_size(app, options, part, content, grid, room);
-  const Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
+  Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
+  report["place"] = lift_figures(options, lift_mm);
   if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
   for (io::SparseVolume& volume : volumes) {
     volume.history.push_back(app.history());

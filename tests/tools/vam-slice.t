@@ -98,6 +98,23 @@ quiet "a size that is asked for" vam-slice inches.obj --scale 1 --voxel 0.1 -o o
 says 'no voxel .*covered to 0.33 at most.; --voxel' \
   vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb
 
+# The height in the image: level with the lens, in the image, or as asked for
+place() { vam-slice --shape cone:bottom=8,height=6 --voxel 0.25 "$@" -o out.vdb --report report.json && json report.json place.mm; }
+stretch=$(json gyroid.json stretch_z)
+is "level with the lens" "$(place)" 0.0
+holds "as high as is asked for, in whole voxels" "($(place --place 3) - 12 * 0.25 / $stretch)^2 < 1e-12"
+is "by the option" "$(json report.json place.by)" option
+low="--set projector.axis_row=767"
+holds "in an image that begins at the lens" "$(place $low) > 2.9 && $(place $low) < 3.3"
+is "by default" "$(json report.json place.by)" default
+holds "auto puts the base of a cone level with the lens" "$(place --place auto) > 2.8 && $(json report.json place.mm) < 3.3"
+is "by auto" "$(json report.json place.by)" auto
+quiet "a mesh, too" vam-slice cube.stl --voxel 0.25 --place auto $low -o out.vdb
+ok "an insert goes along" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 --place 2 -o out.vdb
+fails 65 'spans z = -57.*; --place auto finds a height in them' vam-slice --shape cone --voxel 0.25 --place -50 -o x.vdb
+fails 64 "'high' is neither a height in mm nor auto" vam-slice --shape cone --voxel 0.25 --place high -o x.vdb
+fails 64 'omit --any-height' vam-slice --shape cone --voxel 0.25 --place auto --any-height -o x.vdb
+
 # Inserts
 ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
 ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'

@@ -9,8 +9,9 @@ cli::Manual manual() {
       "vam-slice",
       "voxelise a mesh, images or a test part into the target volume",
       {"Writes the grid 'target': the fraction, 0 to 1, of every voxel that the part covers. Coordinates are "
-       "millimetres; x = y = 0 is the rotation axis, z points up along it, and z = 0 is the middle of the projector's "
-       "rows (projector.axis_row). A second grid, 'insert', is an opaque object to print around.",
+       "millimetres; x = y = 0 is the rotation axis, z points up along it, and z = 0 is level with the projector's "
+       "lens (projector.axis_row), the middle of its rows unless set. A second grid, 'insert', is an opaque object to "
+       "print around.",
        "PART is a mesh (" + io::mesh_format_names() +
            ", identified by content), or a folder of numbered grey images (PNG or "
            "TIFF), one for each slice from the lowest up, white inside, each pixel a voxel. --shape makes a test part "
@@ -23,6 +24,9 @@ cli::Manual manual() {
        "The vial reduces the image of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. 2022). "
        "The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the print "
        "has its true height. --stretch-z 1 disables this. The factor is recorded as vam:stretch_z.",
+       "Rays of a projector that is not telecentric climb, the more the farther from the height of the lens: level "
+       "faces there are less sharp than those level with it. --place lifts the part, --place auto to where its level "
+       "faces suffer least. The target has the part at that height, and so have its projections.",
        "A part that is too large is refused with the value of --scale (--fit, --voxel) that makes it fit. It must fit "
        "into the projector's rows, unless --any-height is given: a machine that lifts the vial during the print brings "
        "it past the image (vam-optimize --helix). A part that all but vanishes, without a voxel wholly inside or "
@@ -37,6 +41,8 @@ cli::Manual manual() {
        {"The disc grid of Orth et al. 2021 on a coarser grid, with a report:",
         "vam-slice --shape disc-grid:height=1 --voxel 0.13 --report discs.json -o discs.vdb"},
        {"A boat as large as the printer allows:", "vam-slice --shape boat --fit-writable --voxel 0.13 -o boat.vdb"},
+       {"A cone whose base is level with the lens, where rays do not climb:",
+        "vam-slice --shape cone:bottom=8,height=6 --voxel 0.13 --place auto -o cone.vdb"},
        {"A handle to be printed around the shaft of a screwdriver:",
         "vam-slice --shape handle --insert-shape screwdriver --voxel 0.13 -o handle.vdb"}},
       {},

@@ -39,6 +39,11 @@ void declare(cli::App& app, Options& options) {
   app.flag("--no-centre", options.no_centre,
            "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
   app.was("--no-center");
+  app.option(
+      "--place", "MM|auto", options.place,
+      "Lift the part by MM of the print from the height of the lens (projector.axis_row), in whole voxels. auto: to "
+      "the height at which climbing rays smear its level faces least. The report has what was chosen.");
+  app.default_is("level with the lens, or as near to it as the image allows");
   app.flag("--any-height", options.any_height,
            "The part may be taller than the projector's rows, for vam-optimize --helix and --poses, which lift it past "
            "them.");
@@ -61,6 +66,9 @@ void check(const cli::App& app, const Options& options) {
   }
   if (options.placement.fit_mm && options.placement.fit_writable) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
+  }
+  if (options.any_height && options.place == "auto") {
+    throw Error{Fault::usage, "--place auto: looks for a height in the image; omit --any-height"};
   }
   if (options.placement.fit_writable && options.no_centre) {
     throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-centre"};

@@ -28,6 +28,7 @@ struct Options {
   std::vector<double> rotate_deg;
   bool no_centre = false;
   bool any_height = false;
+  std::string place;
   std::optional<double> stretch_z;
   std::string report;
   cli::PrinterOptions printer;

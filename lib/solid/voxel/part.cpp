@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -28,6 +29,17 @@ Part shape_part(const std::string& text, const Placement& placement, const Writa
       sink(k, count, slices.data());
     }
     return Vote{};
+  };
+  return part;
+}
+
+Part lifted(Part part, double lift_mm) {
+  part.map.shift[2] += lift_mm;
+  part.extent.box.low[2] += lift_mm;
+  part.extent.box.high[2] += lift_mm;
+  part.fill = [lift_mm, fill = std::move(part.fill)](model::Grid grid, const SliceSink& sink) {
+    grid.origin_mm[2] -= lift_mm;
+    return fill(grid, sink);
   };
   return part;
 }

@@ -29,6 +29,9 @@ struct Part {
 /// The part of a shape (see make_shape) under a placement.
 [[nodiscard]] Part shape_part(const std::string& text, const Placement& placement, const Writable& room);
 
+/// The part moved up along z.
+[[nodiscard]] Part lifted(Part part, double lift_mm);
+
 enum class FillMode { automatic, exact, vote };
 
 /// The part of a mesh: moved by `map`, then repaired. Automatic fills exactly where the mesh is closed and votes where

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "model/rows.hpp"
 
 namespace vam::solid {
 
@@ -88,9 +89,7 @@ void require_radius(double reach_mm, const Writable& room, double voxel_mm, cons
 
 Writable writable(const model::Printer& printer, double radius_mm) {
   const model::Projector& projector = printer.projector;
-  // Rows are numbered downwards; z is up. Row r is centred at z = (axis_row - r) * pixel_mm.
-  return {radius_mm, (projector.axis_row - (projector.rows - 0.5)) * projector.pixel_mm,
-          (projector.axis_row + 0.5) * projector.pixel_mm};
+  return {radius_mm, model::z_mm(projector, projector.rows - 0.5), model::z_mm(projector, -0.5)};
 }
 
 Writable whole_resin(const model::Printer& printer) {
@@ -193,10 +192,12 @@ void require_writable(const PlacedExtent& part, const Writable& room, double vox
                      format_number(mm[2] / size.stretch_z, 4) + " mm, reaches",
                  remedy);
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
+    const bool fits = part.box.size()[2] <= room.high_mm - room.low_mm + rounding_mm;
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
                                  format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
                                  format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) + " mm; " +
-                                 remedy + " fits it, --any-height allows it for vam-optimize --helix"};
+                                 (fits ? "--place auto finds a height in them"
+                                       : remedy + " fits it, --any-height allows it for vam-optimize --helix")};
   }
 }
 

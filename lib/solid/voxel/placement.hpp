@@ -29,7 +29,7 @@ struct Placement {
 /// Negates the coordinate "x", "y" or "z".
 [[nodiscard]] Affine mirrored(const std::string& axis);
 
-/// The cylinder about the rotation axis in which a part may be, z = 0 in the middle of the projector's rows.
+/// The cylinder about the rotation axis in which a part may be, z = 0 at the projector's axis_row.
 struct Writable {
   double radius_mm = 0;
   double low_mm = 0;  // z, in the stretched frame of the focal plane

@@ -1,0 +1,49 @@
+// Level faces of a part, and how far rays that climb across them smear the dose up and down.
+#pragma once
+
+#include <vector>
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+
+namespace vam::light {
+
+/// A level face, or several at one height.
+struct FlatFace {
+  double z_mm = 0;  // in the plane of the rotation axis, as slices are counted
+  bool up = false;  // the part is below it
+  double width_mm = 0;
+  double area_mm2 = 0;
+};
+
+/// Finds the faces of a part slice by slice: where a voxel that is at least half covered lies on or under one that is
+/// not. The width is that of the largest circle within, to 12 %; narrower ones than four voxels are none.
+class FlatFaceFinder {
+ public:
+  explicit FlatFaceFinder(const model::Grid& grid);
+  /// `count` row-major slices of coverage, in ascending order.
+  void add(int count, const float* slices);
+  /// After the last slice: from the lowest up.
+  [[nodiscard]] std::vector<FlatFace> faces();
+
+ private:
+  using Mask = std::vector<char>;
+  void compare(const Mask& above);
+  void note(bool up, const Mask& face);
+
+  model::Grid grid_;
+  int slice_ = 0;  // the next one
+  Mask below_;
+  std::vector<FlatFace> faces_;
+};
+
+/// By how many voxels a ray climbs from one side of the face to the other: over so much the dose falls from the part's
+/// to the void's [physics §11]. 0 where rays stay level.
+[[nodiscard]] double smear_voxels(const model::Printer& printer, const FlatFace& face, double voxel_mm);
+
+/// The lift of the part, in whole voxels within the bounds, that makes the mean square of the smear over the area of
+/// all faces least; of equal ones that nearest to 0.
+[[nodiscard]] double best_lift_mm(const model::Printer& printer, const std::vector<FlatFace>& faces, double voxel_mm,
+                                  double least_mm, double most_mm);
+
+}  // namespace vam::light

@@ -1,0 +1,77 @@
+#include "light/flat_faces.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "model/magnification.hpp"
+#include "optics/skew_ray.hpp"
+
+using namespace vam;
+using namespace vam::light;
+
+namespace {
+
+/// A disc of radius_px in the slices [first, last) of a grid 60 voxels wide and 20 high, on a stem of 3 x 3.
+std::vector<FlatFace> faces_of_table(const model::Grid& grid, double radius_px, int first, int last) {
+  FlatFaceFinder finder(grid);
+  for (int k = 0; k < grid.nz; ++k) {
+    std::vector<float> slice(grid.slice_size(), 0.0F);
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        const double x = i - 0.5 * (grid.nx - 1);
+        const double y = j - 0.5 * (grid.ny - 1);
+        const bool stem = std::abs(x) < 2 && std::abs(y) < 2 && k < last;
+        const bool disc = std::hypot(x, y) <= radius_px && k >= first && k < last;
+        slice[static_cast<std::size_t>(j) * grid.nx + i] = stem || disc ? 1.0F : 0.0F;
+      }
+    }
+    finder.add(1, slice.data());
+  }
+  return finder.faces();
+}
+
+}  // namespace
+
+TEST_CASE("level faces are found, as high, as large and as wide as they are") {
+  const model::Grid grid = model::centred_grid(60, 60, 20, 0.1, 3);
+  const auto faces = faces_of_table(grid, 20.5, 8, 12);
+  REQUIRE(faces.size() == 2);  // the stem's end is too small
+  CHECK(!faces[0].up);
+  CHECK(faces[0].z_mm == doctest::Approx(grid.z_mm(7.5)));
+  // Between the stem and the rim. Chamfer distances are 6 % too short along diagonals, and voxels are counted whole.
+  CHECK(faces[0].width_mm == doctest::Approx(1.8).epsilon(0.12));
+  CHECK(faces[1].up);
+  CHECK(faces[1].z_mm == doctest::Approx(grid.z_mm(11.5)));
+  CHECK(faces[1].width_mm == doctest::Approx(4.1).epsilon(0.12));
+  CHECK(faces[1].area_mm2 == doctest::Approx(M_PI * 2.05 * 2.05).epsilon(0.02));
+  CHECK(faces_of_table(grid, 20.5, 8, 20).back().z_mm == doctest::Approx(grid.z_mm(19.5)));  // the grid ends on it
+}
+
+TEST_CASE("a face is smeared by what a ray climbs across it") {
+  const model::Printer printer;
+  FlatFace face{6.0, true, 10, 50};
+  const double climb = optics::skew_ray(optics::projector_view(printer), 0, 6).climb;
+  CHECK(climb == doctest::Approx(6 / (119.808 * 1.53)).epsilon(1e-2));  // z_p / (D n), to first order [physics §11]
+  CHECK(smear_voxels(printer, face, 0.1) == doctest::Approx(climb * 100 / model::vertical_magnification(printer)));
+  face.z_mm = -6;
+  CHECK(smear_voxels(printer, face, 0.1) > 0);
+  face.z_mm = 0;
+  CHECK(smear_voxels(printer, face, 0.1) == doctest::Approx(0));
+  model::Printer level;
+  level.projector.telecentric = true;
+  face.z_mm = 6;
+  CHECK(smear_voxels(level, face, 0.1) == 0);
+}
+
+TEST_CASE("the best height has the widest face level with the lens") {
+  const model::Printer printer;
+  const std::vector<FlatFace> one{{3, true, 10, 80}};
+  CHECK(best_lift_mm(printer, one, 0.1, -10, 10) == doctest::Approx(-3));
+  CHECK(best_lift_mm(printer, one, 0.1, -2.03, 10) == doctest::Approx(-2));  // as the image allows, in whole voxels
+  const std::vector<FlatFace> two{{3, true, 10, 80}, {-5, false, 10, 80}};
+  CHECK(best_lift_mm(printer, two, 0.1, -10, 10) == doctest::Approx(1).epsilon(0.2));
+  CHECK(best_lift_mm(printer, {}, 0.1, -10, 10) == 0);
+  CHECK(best_lift_mm(printer, {}, 0.1, 4, 10) == doctest::Approx(4));
+}

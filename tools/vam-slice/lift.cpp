@@ -1,0 +1,55 @@
+#include "vam-slice/lift.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "light/flat_faces.hpp"
+
+namespace vam::slice_tool {
+
+namespace {
+
+/// Where rays that climb smear the level faces of the part least.
+double sharpest_mm(const model::Printer& printer, const solid::Part& part, double voxel_mm, double least_mm,
+                   double most_mm) {
+  const model::Grid grid = solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject);
+  light::FlatFaceFinder finder(grid);
+  solid::fill(part, grid, [&](int, int count, const float* slices) { finder.add(count, slices); });
+  return light::best_lift_mm(printer, finder.faces(), voxel_mm, least_mm, most_mm);
+}
+
+double asked_mm(const Options& options) {
+  const auto mm = parse_number(options.place);
+  if (mm && std::isfinite(*mm)) return *mm * options.placement.stretch_z;
+  throw Error{Fault::usage, "--place: '" + options.place + "' is neither a height in mm nor auto"};
+}
+
+}  // namespace
+
+double lift_mm(const Options& options, const model::Printer& printer, const solid::Part& part,
+               const solid::Writable& room) {
+  const double voxel_mm = options.voxel_mm.value();
+  constexpr double rounding = 1e-6;
+  const double least_mm = room.low_mm - part.extent.box.low[2];
+  const double most_mm = room.high_mm - part.extent.box.high[2];
+  if (!options.place.empty() && options.place != "auto") {
+    return std::round(asked_mm(options) / voxel_mm) * voxel_mm;
+  }
+  if (most_mm < least_mm - rounding) return 0;  // taller than the image
+  if (options.place == "auto") return sharpest_mm(printer, part, voxel_mm, least_mm, most_mm);
+  if (options.no_centre) return 0;
+  if (least_mm > 0) return std::ceil(least_mm / voxel_mm - rounding) * voxel_mm;
+  return std::min(0.0, std::floor(most_mm / voxel_mm + rounding) * voxel_mm);
+}
+
+Json lift_figures(const Options& options, double lift_mm) {
+  return {{"mm", lift_mm / options.placement.stretch_z},
+          {"by", options.place.empty()     ? "default"
+                 : options.place == "auto" ? "auto"
+                                           : "option"}};
+}
+
+}  // namespace vam::slice_tool

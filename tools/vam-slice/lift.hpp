@@ -1,0 +1,20 @@
+// --place: the height of the part in the image.
+#pragma once
+
+#include "base/json_fwd.hpp"
+#include "model/printer.hpp"
+#include "solid/voxel/part.hpp"
+#include "vam-slice/options.hpp"
+
+namespace vam::slice_tool {
+
+/// By how much the part is lifted along z, in whole voxels of the stretched target: to the height asked for; to that
+/// with least smear by rays that climb; or, unless it keeps its origin, as little as brings it into the image. Throws
+/// Fault::usage for a height that is none.
+[[nodiscard]] double lift_mm(const Options& options, const model::Printer& printer, const solid::Part& part,
+                             const solid::Writable& room);
+
+/// For --report: the lift in the resin.
+[[nodiscard]] Json lift_figures(const Options& options, double lift_mm);
+
+}  // namespace vam::slice_tool
