@@ -179,6 +179,14 @@ fails 64 "'-1' is not a number above 0 in px" vam-optimize --robust axis=-1px pa
 fails 64 'requires --robust' vam-optimize --yield-printers 5 part.vdb -o out.exr
 fails 64 'are no printer' vam-optimize --robust lamp=150% coarse.vdb -o out.exr
 
+# The print at the threshold against the design of the same voxels: 0.1 voxels of 0.4 mm on average, RMS 0.25.
+vam-optimize --angles 90 coarse.vdb -o asked.exr && vam-dose asked.exr --like coarse.vdb -o dose.vdb 2>/dev/null
+vam-score dose.vdb --target coarse.vdb --isovalue 0.8 --mesh asked.ply >table
+vam-slice --shape disc-grid --voxel 0.1 -o fine.vdb && vam-score fine.vdb --grid target --isovalue 0.5 --mesh design.ply >table
+vam-sdf asked.ply design.ply --align none --samples 20000 --report asked-sdf.json >table
+sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["print_to_reference"][sys.argv[1]])' "$1"; }
+holds "the print is as large as the design" "$(sdf mean_mm) >= -0.04 && $(sdf mean_mm) <= 0.04 && $(sdf rms_mm) <= 0.1"
+fails 64 '--free-surface: method cal does not use it' vam-optimize --method cal --free-surface part.vdb -o out.exr
 quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"

@@ -35,6 +35,11 @@ void declare_constraints(cli::App& app, Options& options) {
              "HIGH: lower bound on the dose of part voxels.");
   app.option("--tolerance-mm", "MM", options.tolerance_mm, cli::non_negative,
              "Leave voxels within this distance of the part's surface unconstrained.");
+  app.flag(
+      "--free-surface", options.demands.free_surface,
+      readers("--free-surface") +
+          "do not ask for the threshold dose on the part's surface: often a wider process window, and a print that "
+          "is smaller by half a voxel all around.");
   app.flag("--surface", options.demands.surface,
            "Constrain surface voxels, too: as part when at least half covered, else as void.");
   app.option("--weights", "FILE", options.weights,

@@ -145,6 +145,7 @@ void settle(const cli::App& app, Options& options) {
   if (options.demands.grey && !app.given("--resin-response")) options.response = "linear";
   options.how.offset = options.negative == "offset";
   settle_limit(options, method);
+  if (!optimize::reads(method, "--free-surface")) options.demands.free_surface = true;
   options.limits.iterations = options.iterations.value_or(method.iterations);
   options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(app, options);
   if (!options.until.empty()) {

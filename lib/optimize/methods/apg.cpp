@@ -9,6 +9,7 @@
 #include "optimize/methods/private/loss.hpp"
 #include "optimize/methods/private/safeguard.hpp"
 #include "optimize/methods/private/step_length.hpp"
+#include "optimize/methods/private/surface_points.hpp"
 #include "optimize/methods/private/two_metric.hpp"
 
 namespace vam::optimize {
@@ -42,7 +43,10 @@ class Apg final : public Method {
   /// y = g_k + beta (g_k - g_{k-1}); g_{k+1} = max(0, y - s P A r(A* y)), where P is the floored ramp, r the slope of
   /// the loss, and A* y comes free from the doses of g_k and g_{k-1}.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
-    if (update_.empty()) update_ = iterate.g;
+    if (update_.empty()) {  // the first step, or the first after an interruption
+      update_ = iterate.g;
+      surface_ = SurfacePoints(problem);
+    }
     const float peak = largest_light(options_, light);
     const PerSlice beta = advance();
     residual(problem, iterate, beta);
@@ -105,8 +109,9 @@ class Apg final : public Method {
     length_ = filled(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
     momentum_ = filled(iterate.g.size(), momentum);
     half_width_ = filled(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
+    surface_ = SurfacePoints(problem);
     loss_ = losses(problem, light, iterate);
-    while (widen(problem)) loss_ = losses(problem, light, iterate);
+    widen(problem, light, iterate);
   }
 
   /// t_{k+1} = (1 + sqrt(1 + 4 t_k^2)) / 2, beta = (t_k - 1) / t_{k+1}.
@@ -128,10 +133,17 @@ class Apg final : public Method {
       for (std::size_t i = first; i < last; ++i) {
         const float now = iterate.dose[s].values[i];
         float& before = before_.dose[s].values[i];
-        const float ahead = now + beta[s][i % lanes] * (now - before);
-        before = slope(problem, window(problem, s, i % lanes), s, i, ahead);
+        before = now + beta[s][i % lanes] * (now - before);
       }
     });
+    const std::vector<float> misses = surface_.misses(before_.dose);
+    for_values(iterate.dose, [&](std::size_t s, std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        float& ahead = before_.dose[s].values[i];
+        ahead = slope(problem, window(problem, s, i % lanes), s, i, ahead);
+      }
+    });
+    surface_.add_slopes(misses, before_.dose);
   }
 
   /// A slice whose loss went up goes on with a shorter step, without momentum.
@@ -144,15 +156,27 @@ class Apg final : public Method {
         length_[s][lane] *= shorter;
       }
     }
-    while (widen(problem)) loss_ = losses(problem, light, iterate);
+    widen(problem, light, iterate);
   }
 
-  [[nodiscard]] PerSlice losses(const Problem& problem, const light::Operator& light, const Iterate& iterate) const {
+  /// Of the voxels.
+  [[nodiscard]] PerSlice voxel_losses(const Problem& problem, const light::Operator& light,
+                                      const Iterate& iterate) const {
     return pooled(summed(iterate.dose,
                          [&](std::size_t s, std::size_t i) {
                            return loss(problem, window(problem, s, i % lanes), s, i, iterate.dose[s].values[i]);
                          }),
                   light);
+  }
+
+  /// With the surface's.
+  [[nodiscard]] PerSlice losses(const Problem& problem, const light::Operator& light, const Iterate& iterate) const {
+    PerSlice sum = voxel_losses(problem, light, iterate);
+    const PerSlice surface = pooled(surface_.losses(surface_.misses(iterate.dose), sum.size()), light);
+    for (std::size_t s = 0; s < sum.size(); ++s) {
+      for (std::size_t lane = 0; lane < lanes; ++lane) sum[s][lane] += surface[s][lane];
+    }
+    return sum;
   }
 
   [[nodiscard]] DoseWindow window(const Problem& problem, std::size_t s, std::size_t lane) const {
@@ -163,25 +187,29 @@ class Apg final : public Method {
 
   /// A slice that has nearly met its thresholds is given wider ones: its window grows about the threshold, so that
   /// easy parts reach the widest process window they can and hard ones are not given thresholds they cannot reach.
-  bool widen(const Problem& problem) {
-    if (problem.demands.grey) return false;
-    bool any = false;
-    for (std::size_t s = 0; s < half_width_.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        float& half = half_width_[s][lane];
-        // One voxel that misses by a fifth of the half width costs so much.
-        const bool close = loss_[s][lane] <= 0.5F * close_enough * close_enough * half * half;
-        if (!close || half * wider > widest) continue;
-        half *= wider;
-        any = true;
+  void widen(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
+    if (problem.demands.grey) return;
+    for (bool any = true; any;) {
+      any = false;
+      const PerSlice losses_now = voxel_losses(problem, light, iterate);
+      for (std::size_t s = 0; s < half_width_.size(); ++s) {
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          float& half = half_width_[s][lane];
+          // One voxel that misses by a fifth of the half width costs so much.
+          const bool close = losses_now[s][lane] <= 0.5F * close_enough * close_enough * half * half;
+          if (!close || half * wider > widest) continue;
+          half *= wider;
+          any = true;
+        }
       }
+      if (any) loss_ = losses(problem, light, iterate);
     }
-    return any;
   }
 
   Iterate before_;
   std::vector<Slab> update_;
   PerSlice momentum_, length_, loss_;
+  SurfacePoints surface_;
   PerSlice half_width_;  // of each slice's window about the threshold
   TwoMetric bounds_;
 };
@@ -196,7 +224,7 @@ MethodEntry apg_method() {
           "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
           60,
           true,
-          {"--max-intensity", "--robust"},
+          {"--max-intensity", "--robust", "--free-surface"},
           make<Apg>};
 }
 

@@ -7,6 +7,6 @@ namespace vam::optimize {
 
 inline constexpr const char* automatic_method = "apg";
 inline constexpr const char* automatic_until = "ver=0,pw>=0.06";
-inline constexpr int automatic_iterations = 10;
+inline constexpr int automatic_iterations = 12;
 
 }  // namespace vam::optimize

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "optimize/methods/private/loss.hpp"
 #include "optimize/methods/private/safeguard.hpp"
 #include "optimize/methods/private/step_length.hpp"
+#include "optimize/methods/private/surface_points.hpp"
 #include "optimize/methods/private/two_metric.hpp"
 #include "optimize/methods/scenarios.hpp"
 
@@ -75,6 +77,7 @@ class Tolerant final : public Method {
   void tolerant_step(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     const float peak = largest_light(options_, light);
     const float beta = advance();
+    if (!surface_) surface_.emplace(problem);
     std::vector<Slab> ahead = look_ahead(iterate, beta);
     std::vector<Slab> update = gradient(problem, light, iterate, beta, ahead);
     bounds_.hold(update, peak, [&](std::size_t s, std::size_t i) { return ahead[s].values[i]; });
@@ -137,6 +140,7 @@ class Tolerant final : public Method {
   /// Doses become the slopes of their loss, a third of each: three lights are looked at.
   void to_slopes(const Problem& problem, std::vector<Slab>& doses) {
     const DoseWindow now = window(problem);
+    const std::vector<float> misses = surface_->misses(doses);
     const PerSlice losses = summed(doses, [&](std::size_t s, std::size_t i) {
       const float d = doses[s].values[i];
       const float r = slope(problem, now, s, i, d);
@@ -146,6 +150,7 @@ class Tolerant final : public Method {
     for (const auto& lane : losses) {
       for (const float v : lane) loss_ += static_cast<double>(v);
     }
+    surface_->add_slopes(misses, doses, third);
   }
 
   /// The window grows about the threshold while nearly all doses of all lights are outside it, as in apg.
@@ -178,6 +183,7 @@ class Tolerant final : public Method {
   Iterate before_;
   float momentum_ = 1, length_ = 0, half_width_ = 0;
   double loss_ = 0;  // at the last y
+  std::optional<SurfacePoints> surface_;
   TwoMetric bounds_;
 };
 

@@ -6,10 +6,11 @@
 namespace vam::optimize {
 
 PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, const SliceReader& reader,
-                    light::Shape object, const Circle& circle, const Demands& demands) {
+                    light::Shape object, const Circle& circle, const Demands& demands, bool stacked) {
   check(demands);
   PassInput input;
   input.problem.demands = demands;
+  input.problem.stacked = stacked;
   for (int first = pass.low; first < pass.high; first += lanes) {
     const int used = std::min(lanes, pass.high - first);
     SliceData all;
@@ -26,6 +27,7 @@ PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, 
     input.inserts.emplace_back(object.width, object.height);
     pack(all.insert.data(), used, input.inserts.back());
   }
+  if (stacked) settle(input.problem);
   return input;
 }
 

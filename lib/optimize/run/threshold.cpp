@@ -1,6 +1,8 @@
 #include "optimize/run/private/threshold.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "optimize/methods/metrics.hpp"
 
@@ -26,6 +28,27 @@ PerSlice to_threshold_of_all(const Scenarios& scenarios, const Problem& problem,
   return filled(state.g.size(), static_cast<float>(factor));
 }
 
+/// Scaled no more than puts the threshold in the middle half of the window: the dose on the surface is the threshold.
+/// 0 where void takes more than part.
+float true_to_surface(const model::DoseMetrics& m, double threshold) {
+  const double width = m.min_part - m.max_void;
+  if (m.part == 0 || !(width > 0)) return 0;
+  const double highest = threshold / (m.max_void + 0.25 * width);
+  const double lowest = threshold / (m.max_void + 0.75 * width);
+  return static_cast<float>(std::clamp(1.0, lowest, highest));
+}
+
+PerSlice true_to_surface(const Problem& problem, Together together, const Iterate& state, PerSlice otherwise) {
+  const double threshold = problem.demands.window.threshold();
+  const auto slices = together == Together::slice ? metrics(state.dose, problem) : std::vector<model::DoseMetrics>{};
+  const float shared = slices.empty() ? true_to_surface(body_metrics(state.dose, problem), threshold) : 0;
+  for (int k = 0; k < problem.slices; ++k) {
+    const float factor = slices.empty() ? shared : true_to_surface(slices[k], threshold);
+    if (factor > 0) otherwise[k / lanes][k % lanes] = factor;
+  }
+  return otherwise;
+}
+
 void keep_below(double max_intensity, const light::Operator& light, Together together, const Iterate& state,
                 PerSlice& factor) {
   PerSlice brightest = largest(state.g);
@@ -45,6 +68,9 @@ void bring_to_threshold(const Problem& problem, const light::Operator& light, To
   PerSlice factor = scenarios != nullptr         ? to_threshold_of_all(*scenarios, problem, state)
                     : together == Together::pass ? to_shared_threshold(state.dose, problem)
                                                  : to_common_threshold(metrics(state.dose, problem), problem);
+  if (scenarios == nullptr && asks_surface(problem.demands)) {
+    factor = true_to_surface(problem, together, state, std::move(factor));
+  }
   if (max_intensity > 0) keep_below(max_intensity, light, together, state, factor);
   scale(state.g, factor);
   scale(state.dose, factor);

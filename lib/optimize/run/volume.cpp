@@ -116,7 +116,8 @@ class Run {
   /// False when the pass was interrupted.
   bool run_pass(const Pass& pass, Work& work) {
     PassInput input = read_pass(
-        pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands);
+        pass, [&](int job) { return slice(job); }, reader_, light_.object(), task_.circle, task_.demands,
+        light_.couples_slices() || task_.blur_px > 0);
     std::unique_ptr<light::Operator> around;
     if (!input.inserts.empty()) around = with_inserts(input.problem, pass, input.inserts, work);
     const PassLight light(light_, std::move(around), task_.blur_px, pass.slices());

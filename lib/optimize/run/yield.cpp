@@ -56,7 +56,7 @@ class Bench {
     const Pass all{0, trial.grid.nz, 0, trial.grid.nz};
     const SliceReader reader(task.source, {trial.grid.nx, trial.grid.ny});
     return read_pass(
-        all, [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands);
+        all, [](int k) { return k; }, reader, {trial.grid.nx, trial.grid.ny}, task.circle, task.demands, true);
   }
 
   [[nodiscard]] Printed judged(const std::vector<Image>& doses, double intensity) const {

@@ -11,18 +11,26 @@ namespace vam::optimize {
 
 namespace {
 
-/// A slice without a whole part voxel, such as a thin wall's or one that the part's flat end cuts.
-void settle_thin(Slab& slab, std::size_t lane, std::vector<Label>& labels) {
-  constexpr float half = 0.5F;
-  float most = 0;
+bool has_part(const std::vector<Label>& labels, std::size_t lane) {
   for (std::size_t i = lane; i < labels.size(); i += lanes) {
-    if (labels[i] == Label::part) return;
-    most = std::max(most, slab.values[i]);
+    if (labels[i] == Label::part) return true;
   }
+  return false;
+}
+
+void settle_thin(Problem& problem, int slice) {
+  constexpr float half = 0.5F;
+  const auto s = static_cast<std::size_t>(slice / lanes);
+  const auto lane = static_cast<std::size_t>(slice % lanes);
+  Slab& slab = problem.target[s];
+  std::vector<Label>& labels = problem.labels[s];
+  float most = 0;
+  for (std::size_t i = lane; i < labels.size(); i += lanes) most = std::max(most, slab.values[i]);
   const float gain = most >= half ? 1.0F / most : 0.0F;
   for (std::size_t i = lane; i < labels.size(); i += lanes) {
     slab.values[i] *= gain;
-    if (labels[i] == Label::surface && slab.values[i] >= half) labels[i] = Label::part;
+    const bool counts = s >= problem.weight.size() || problem.weight[s].values[i] > 0;
+    if (counts && labels[i] == Label::surface && slab.values[i] >= half) labels[i] = Label::part;
   }
 }
 
@@ -48,9 +56,6 @@ std::vector<Label> labelled(Slab& slab, int used, const Circle& circle, const De
       }
     }
   });
-  if (!demands.grey) {
-    parallel_for(used, [&](int lane) { settle_thin(slab, static_cast<std::size_t>(lane), labels); });
-  }
   return labels;
 }
 
@@ -67,7 +72,26 @@ void free_weightless(Slab& weight, std::vector<Label>& labels) {
   }
 }
 
+/// From slice `first` on.
+void settle(Problem& problem, int first) {
+  if (problem.demands.grey) return;
+  std::vector<char> whole(static_cast<std::size_t>(problem.slices) + 1, 0);
+  parallel_for(problem.slices - first, [&](int n) {
+    const int k = first + n;
+    whole[k] = has_part(problem.labels[k / lanes], static_cast<std::size_t>(k % lanes)) ? 1 : 0;
+  });
+  const bool ends_are_known = problem.stacked && asks_surface(problem.demands);
+  parallel_for(problem.slices - first, [&](int n) {
+    const int k = first + n;
+    const bool is_end = ends_are_known && (whole[k + 1] != 0 || (k > 0 && whole[k - 1] != 0));
+    if (whole[k] != 0 || is_end) return;
+    settle_thin(problem, k);
+  });
+}
+
 }  // namespace
+
+void settle(Problem& problem) { settle(problem, 0); }
 
 void check(const Demands& demands) {
   const DoseWindow& w = demands.window;
@@ -85,6 +109,7 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
   problem.slices += count;
   problem.target.push_back(packed(slices.target));
   problem.labels.push_back(labelled(problem.target.back(), count, circle, problem.demands));
+  if (!problem.stacked) settle(problem, problem.slices - count);
   if (slices.weight != nullptr) {
     problem.weight.push_back(packed(slices.weight));
     free_weightless(problem.weight.back(), problem.labels.back());

@@ -25,8 +25,9 @@ struct DoseWindow {
 /// The demands on all slices.
 struct Demands {
   DoseWindow window;
-  bool surface = false;  // voxels on the surface are constrained too: part from half coverage on, else void
-  bool grey = false;     // the target is a response for every voxel, to be met within its tolerance
+  bool free_surface = false;  // the dose at the part's surface need not be the threshold
+  bool surface = false;       // voxels on the surface are constrained too: part from half coverage on, else void
+  bool grey = false;          // the target is a response for every voxel, to be met within its tolerance
   CureCurve curve = CureCurve::logistic(DoseWindow{}.threshold(), 0.05);  // of the losses that look at the response
   double band = 0.1;  // epsilon: how far the response may be from the target, where no tolerance is given
 };
@@ -34,11 +35,17 @@ struct Demands {
 /// Throws Fault::usage for contradictory thresholds.
 void check(const Demands& demands);
 
+/// Whether the dose is to be the threshold on the part's surface itself, and its voxels are free.
+[[nodiscard]] constexpr bool asks_surface(const Demands& demands) {
+  return !demands.grey && !demands.surface && !demands.free_surface;
+}
+
 /// Whether such a voxel is constrained.
 [[nodiscard]] constexpr bool is_constrained(Label label) { return label == Label::part || label == Label::void_; }
 
 struct Problem {
   int slices = 0;                          // lanes in use, from the first
+  bool stacked = false;                    // they follow each other in the part, and share light
   std::vector<Slab> target;                // coverage 0...1 or response, zero outside the circle
   std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values; grey: part where the target is not 0
   Demands demands;
@@ -60,10 +67,14 @@ struct Slices {
   const float* tolerance = nullptr;  // >= 0
 };
 
-/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out (check with reach()). A slice
-/// without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its largest
-/// coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it for
-/// part; otherwise it stays dark.
+/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out (check with reach()). Slices
+/// that are not stacked are settled.
 void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
+
+/// A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its
+/// largest coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it
+/// for part; otherwise it stays dark. Where slices are stacked and the dose at the surface is asked for, the slice
+/// beside one with such voxels is left as it is: its surface says where the part ends.
+void settle(Problem& problem);
 
 }  // namespace vam::optimize

@@ -36,10 +36,11 @@ inline std::unique_ptr<vam::light::Operator> parallel_light(int size, int angles
 /// any. Throws Fault::usage for contradictory thresholds.
 inline vam::optimize::Problem make_problem(const float* slices, int count, int width, int height,
                                            const vam::optimize::Circle& circle, const vam::optimize::Demands& demands,
-                                           const float* weight = nullptr, const float* tolerance = nullptr) {
+                                           const float* weight = nullptr, const float* tolerance = nullptr,
+                                           bool stacked = false) {
   check(demands);
   vam::optimize::Problem problem{
-      .slices = 0, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
+      .slices = 0, .stacked = stacked, .target = {}, .labels = {}, .demands = demands, .weight = {}, .tolerance = {}};
   const auto pixels = static_cast<std::size_t>(width) * height;
   const auto from = [&](const float* images, int first) {
     return images == nullptr ? nullptr : images + static_cast<std::size_t>(first) * pixels;
@@ -48,6 +49,7 @@ inline vam::optimize::Problem make_problem(const float* slices, int count, int w
     append(problem, {from(slices, first), from(weight, first), from(tolerance, first)},
            std::min(vam::lanes, count - first), width, height, circle);
   }
+  if (stacked) settle(problem);
   return problem;
 }
 

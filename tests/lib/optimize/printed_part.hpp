@@ -72,7 +72,8 @@ inline vam::model::Circle judged_circle(const Part& part, const vam::model::Prin
   return vam::model::writable_circle(part.grid, vam::optics::judged_radius_mm(printer, farthest));
 }
 
-/// Projector's light for the part. `method` as vam-optimize takes it; resampled: by way of parallel light.
+/// Projector's light for the part. `method` as vam-optimize takes it; resampled: by way of parallel light; not limited:
+/// neither in intensity nor by the surface, for the widest window.
 inline Light make_light(const Part& part, const vam::model::Printer& printer, int angles, const std::string& method,
                         bool resampled, bool limited = true) {
   using namespace vam::optimize;
@@ -87,6 +88,7 @@ inline Light make_light(const Part& part, const vam::model::Printer& printer, in
     options.max_intensity = max_intensity;
     return make_method(name, options);
   };
+  task.demands.free_surface = !limited;
   if (automatic && limited) {
     task.limit.of_even = usual_of_even;
     task.raising = usual_raising;

@@ -42,13 +42,14 @@ TEST_CASE(
     for (const char* method : {"fbp", "dose-norm"}) {
       CAPTURE(method);
       const auto simple = make_light(part, printer, 180, method, false);
-      const auto beats = [](const auto& ours, const auto& theirs) {
+      const auto beats = [](const auto& ours, const auto& theirs, double spared = 0) {
         CHECK(ours.ver <= theirs.ver);
-        CHECK(ours.pw >= theirs.pw);
+        CHECK(ours.pw >= theirs.pw - spared);
         CHECK(ours.iou >= theirs.iou);
       };
       beats(slow, judge(part, printer, simple));
-      beats(best, judge(part, printer, clipped(simple, peak(light))));
+      constexpr double surface = 0.01;  // of the window, at most, is what asking for the surface may cost
+      beats(best, judge(part, printer, clipped(simple, peak(light))), surface);
     }
   }
 }

@@ -23,9 +23,9 @@ struct PassInput {
   std::vector<Slab> inserts;  // coverage, a slab for every slab of the problem; empty without any
 };
 
-/// slice(job): the slice of the volume that the job computes.
+/// slice(job): the slice of the volume that the job computes; stacked: as in Problem.
 [[nodiscard]] PassInput read_pass(const Pass& pass, const std::function<int(int job)>& slice, const SliceReader& reader,
-                                  light::Shape object, const Circle& circle, const Demands& demands);
+                                  light::Shape object, const Circle& circle, const Demands& demands, bool stacked);
 
 /// The sinograms whose images are image(job), fluence.
 [[nodiscard]] std::vector<Slab> collapse_images(const Pass& pass, const std::function<Image(int job)>& image,

@@ -1,0 +1,44 @@
+// Points of the design's surface, whose dose is asked to be the threshold [physics §6].
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/per_slice.hpp"
+#include "optimize/target/problem.hpp"
+
+namespace vam::optimize {
+
+/// A point between the centres of two neighbouring voxels, one of at least half coverage and one of less:
+/// dose = (1 - share) dose[from] + share dose[to].
+struct SurfacePoint {
+  struct Voxel {
+    std::uint32_t slab, i;
+  };
+  Voxel from, to;
+  float share;   // 0...1
+  float weight;  // the lesser one of the two voxels
+};
+
+/// The points of a problem, each along the axis that is nearest to the surface's normal there; between two slices only
+/// where they are stacked. None where the surface is not asked for, or a voxel beside it is outside or has weight 0.
+class SurfacePoints {
+ public:
+  SurfacePoints() = default;
+  explicit SurfacePoints(const Problem& problem);
+
+  /// Dose - threshold at every point.
+  [[nodiscard]] std::vector<float> misses(std::span<const Slab> dose) const;
+  /// Sum of (1/8) (w/2) miss^2, for the slice that the point begins in.
+  [[nodiscard]] PerSlice losses(std::span<const float> misses, std::size_t slabs) const;
+  /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
+  void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;
+  [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
+
+ private:
+  std::vector<SurfacePoint> points_;
+  float threshold_ = 0;
+};
+
+}  // namespace vam::optimize

@@ -1,0 +1,156 @@
+#include "optimize/methods/private/surface_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace vam::optimize {
+
+namespace {
+
+constexpr float half = 0.5F;
+constexpr float cost = 0.125F;  // of a point, relative to a voxel
+
+/// Coverage by voxel, in the order of the slices.
+class Volume {
+ public:
+  using At = std::array<int, 3>;  // x, y, slice
+
+  explicit Volume(const Problem& problem) : problem_(problem) {}
+
+  [[nodiscard]] float coverage(const At& at) const {
+    const Slab& slab = problem_.target[0];
+    if (at[0] < 0 || at[0] >= slab.width || at[1] < 0 || at[1] >= slab.height) return 0.0F;
+    if (at[2] < 0 || at[2] >= problem_.slices) return 0.0F;
+    const SurfacePoint::Voxel v = voxel(at);
+    return problem_.target[v.slab].values[v.i];
+  }
+  [[nodiscard]] SurfacePoint::Voxel voxel(const At& at) const {
+    const auto pixel = static_cast<std::size_t>(at[1]) * problem_.target[0].width + static_cast<std::size_t>(at[0]);
+    return {static_cast<std::uint32_t>(at[2] / lanes), static_cast<std::uint32_t>(pixel * lanes + at[2] % lanes)};
+  }
+  [[nodiscard]] static At moved(At at, int axis, int by) {
+    at[axis] += by;
+    return at;
+  }
+
+  /// How steep the coverage is along an axis: differences across the voxel, smoothed by 1, 2, 1 along both others.
+  [[nodiscard]] float slope(const At& at, int axis) const {
+    float sum = 0;
+    for (int u = -1; u <= 1; ++u) {
+      for (int v = -1; v <= 1; ++v) {
+        const At here = moved(moved(at, (axis + 1) % 3, u), (axis + 2) % 3, v);
+        const auto weight = static_cast<float>((2 - std::abs(u)) * (2 - std::abs(v)));
+        sum += weight * (coverage(moved(here, axis, 1)) - coverage(moved(here, axis, -1)));
+      }
+    }
+    return sum;
+  }
+
+  /// Where the surface is between `at` and the next voxel: what the column of voxels through both contains, wholly
+  /// covered at one end, is its height above that end.
+  [[nodiscard]] float share(const At& at, int axis) const {
+    const float first = coverage(at);
+    const float second = coverage(moved(at, axis, 1));
+    const bool falls = first > second;
+    const auto inside = [&](float f) { return falls ? f : 1.0F - f; };
+    float height = inside(first) + inside(second) - half;
+    const float before = inside(coverage(moved(at, axis, -1)));
+    const float after = inside(coverage(moved(at, axis, 2)));
+    if (before >= inside(first)) height -= 1.0F - before;
+    if (after <= inside(second)) height += after;
+    return std::clamp(height, 0.0F, 1.0F);
+  }
+
+ private:
+  const Problem& problem_;
+};
+
+bool crosses(float a, float b) { return (a >= half) != (b >= half); }
+
+/// The points that begin in one row of voxels.
+class Row {
+ public:
+  Row(const Problem& problem, const Volume& volume, int axes) : problem_(problem), volume_(volume), axes_(axes) {}
+
+  void find(const Volume::At& at, std::vector<SurfacePoint>& points) const {
+    const float here = volume_.coverage(at);
+    for (int axis = 0; axis < axes_; ++axis) {
+      const Volume::At next = Volume::moved(at, axis, 1);
+      if (!crosses(here, volume_.coverage(next)) || !is_steepest(at, axis)) continue;
+      const SurfacePoint::Voxel from = volume_.voxel(at);
+      const SurfacePoint::Voxel to = volume_.voxel(next);
+      if (!is_lit(from) || !is_lit(to)) continue;
+      const float weight = std::min(problem_.weight_at(from.slab, from.i), problem_.weight_at(to.slab, to.i));
+      if (weight > 0) points.push_back({from, to, volume_.share(at, axis), weight});
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_steepest(const Volume::At& at, int axis) const {
+    const Volume::At next = Volume::moved(at, axis, 1);
+    const auto slope = [&](int along) { return std::abs(volume_.slope(at, along) + volume_.slope(next, along)); };
+    const float here = slope(axis);
+    for (int other = 0; other < axes_; ++other) {
+      const float there = other == axis ? 0.0F : slope(other);
+      if (there > here || (there == here && other < axis)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_lit(SurfacePoint::Voxel v) const { return problem_.labels[v.slab][v.i] != Label::outside; }
+
+  const Problem& problem_;
+  const Volume& volume_;
+  int axes_;
+};
+
+}  // namespace
+
+SurfacePoints::SurfacePoints(const Problem& problem)
+    : threshold_(static_cast<float>(problem.demands.window.threshold())) {
+  if (!asks_surface(problem.demands)) return;
+  const Slab& slab = problem.target[0];
+  const Volume volume(problem);
+  const Row row(problem, volume, problem.stacked ? 3 : 2);
+  const int slabs = static_cast<int>(problem.target.size());
+  std::vector<std::vector<SurfacePoint>> rows(static_cast<std::size_t>(slabs) * slab.height);
+  parallel_for(static_cast<int>(rows.size()), [&](int n) {
+    const int first = n / slab.height * lanes;
+    for (int x = 0; x < slab.width - 1; ++x) {
+      for (int k = first; k < std::min(first + lanes, problem.slices); ++k) row.find({x, n % slab.height, k}, rows[n]);
+    }
+  });
+  for (const auto& some : rows) points_.insert(points_.end(), some.begin(), some.end());
+}
+
+std::vector<float> SurfacePoints::misses(std::span<const Slab> dose) const {
+  std::vector<float> result(points_.size());
+  const auto at = [&](SurfacePoint::Voxel v) { return dose[v.slab].values[v.i]; };
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const SurfacePoint& p = points_[i];
+    result[i] = (1.0F - p.share) * at(p.from) + p.share * at(p.to) - threshold_;
+  }
+  return result;
+}
+
+PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs) const {
+  std::vector<double> sums(slabs * lanes, 0.0);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const SurfacePoint& p = points_[i];
+    sums[p.from.slab * lanes + p.from.i % lanes] += static_cast<double>(half * cost * p.weight * misses[i] * misses[i]);
+  }
+  PerSlice result = filled(slabs, 0.0F);
+  for (std::size_t k = 0; k < sums.size(); ++k) result[k / lanes][k % lanes] = static_cast<float>(sums[k]);
+  return result;
+}
+
+void SurfacePoints::add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share) const {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const SurfacePoint& p = points_[i];
+    const float slope = share * cost * p.weight * misses[i];
+    slopes[p.from.slab].values[p.from.i] += (1.0F - p.share) * slope;
+    slopes[p.to.slab].values[p.to.i] += p.share * slope;
+  }
+}
+
+}  // namespace vam::optimize

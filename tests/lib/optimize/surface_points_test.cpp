@@ -1,0 +1,188 @@
+// Points of the design's surface: where they lie, what their doses cost, and that prints come out to size.
+#include "optimize/methods/private/surface_points.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "lib/optimize/parts.hpp"
+#include "oracle/part_2d.hpp"
+
+using namespace vam;
+using namespace vam::optimize;
+
+namespace {
+
+constexpr int size = 40;
+constexpr int slices = 36;  // of three slabs, the last one not full
+constexpr double radius = 13.3;
+using Point = std::array<double, 3>;  // in voxels from the middle of the ball
+
+double from_middle(double x, double y, double z) { return std::hypot(x - 20.3, y - 18.9, z - 17.6); }
+
+/// Coverage of voxels by a ball, 6 samples along each axis.
+std::vector<float> ball() {
+  constexpr int samples = 6;
+  std::vector<float> values;
+  for (int z = 0; z < slices; ++z) {
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        int inside = 0;
+        for (int n = 0; n < samples * samples * samples; ++n) {
+          const auto at = [&](int i) { return (i % samples + 0.5) / samples - 0.5; };
+          inside += from_middle(x + at(n), y + at(n / samples), z + at(n / samples / samples)) < radius ? 1 : 0;
+        }
+        values.push_back(static_cast<float>(inside) / (samples * samples * samples));
+      }
+    }
+  }
+  return values;
+}
+
+Problem problem_of(const std::vector<float>& volume, const Demands& demands, const float* weight = nullptr,
+                   bool stacked = true) {
+  return parts::make_problem(volume.data(), slices, size, size, parts::circle(size), demands, weight, nullptr, stacked);
+}
+
+double distance(const SurfacePoint& p) {
+  const auto at = [](SurfacePoint::Voxel v) {
+    const int pixel = static_cast<int>(v.i) / lanes;
+    const int row = pixel / size;
+    return Point{static_cast<double>(pixel % size), static_cast<double>(row),
+                 static_cast<double>(v.slab) * lanes + v.i % lanes};
+  };
+  const Point a = at(p.from);
+  const Point b = at(p.to);
+  const auto share = static_cast<double>(p.share);
+  const auto mix = [&](int i) { return (1 - share) * a[i] + share * b[i]; };
+  return from_middle(mix(0), mix(1), mix(2)) - radius;
+}
+
+std::vector<Slab> noise(std::size_t count) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(0, 1);
+  std::vector<Slab> doses = slabs(count, size, size);
+  for (Slab& slab : doses) std::generate(slab.values.begin(), slab.values.end(), [&] { return uniform(random); });
+  return doses;
+}
+
+}  // namespace
+
+TEST_CASE("points lie on the surface, at least one for every 1.75 voxel faces of it") {
+  const SurfacePoints surface(problem_of(ball(), {}));
+  double worst = 0;
+  double sum = 0;
+  for (const SurfacePoint& p : surface.points()) {
+    worst = std::max(worst, std::abs(distance(p)));
+    sum += distance(p);
+  }
+  const auto count = static_cast<double>(surface.points().size());
+  // Columns of voxels are one wide: they do not see how a ball bends within them, nor where it leaves by their side.
+  CHECK(worst < 0.15);
+  CHECK(std::abs(sum / count) < 0.02);
+  const double area = 4 * std::numbers::pi * radius * radius;
+  CHECK(count > area / std::sqrt(3.0));  // a surface at 45 degrees to all axes
+  CHECK(count < area);
+}
+
+TEST_CASE("a flat face between the layers of voxels is found where it is") {
+  for (const float covered : {0.1F, 0.4F, 0.6F, 0.9F}) {
+    CAPTURE(covered);
+    std::vector<float> block(static_cast<std::size_t>(slices) * size * size, 0.0F);
+    for (int z = 10; z < 20; ++z) {
+      for (int i = 15; i < 25; ++i) {
+        for (int j = 15; j < 25; ++j) block[(z * size + i) * size + j] = j == 24 ? covered : 1.0F;
+      }
+    }
+    int faces = 0;
+    const SurfacePoints surface(problem_of(block, {}));
+    for (const SurfacePoint& p : surface.points()) {
+      const auto x = static_cast<int>(p.from.i / lanes % size);
+      if (x != 23 && x != 24) continue;
+      if (p.to.i != p.from.i + lanes) continue;  // of another face
+      ++faces;
+      CHECK(static_cast<float>(x) + p.share == doctest::Approx(23.5F + covered));
+    }
+    CHECK(faces >= 8 * 8);
+  }
+}
+
+TEST_CASE("slopes are the transpose of misses, and the derivative of the losses") {
+  const Problem problem = problem_of(ball(), {});
+  const SurfacePoints surface(problem);
+  const std::vector<Slab> dose = noise(problem.target.size());
+  const std::vector<float> misses = surface.misses(dose);
+  std::vector<Slab> slopes = slabs(dose.size(), size, size);
+  surface.add_slopes(misses, slopes);
+  double along = 0;  // <dose, slopes> = 1/8 <misses + threshold, misses>
+  for (std::size_t s = 0; s < dose.size(); ++s) {
+    for (std::size_t i = 0; i < dose[s].values.size(); ++i) {
+      along += static_cast<double>(dose[s].values[i]) * static_cast<double>(slopes[s].values[i]);
+    }
+  }
+  double expected = 0;
+  double loss = 0;
+  for (const float miss : misses) expected += 0.125 * (static_cast<double>(miss) + 0.8) * static_cast<double>(miss);
+  for (const auto& lane : surface.losses(misses, dose.size())) {
+    for (const float v : lane) loss += static_cast<double>(v);
+  }
+  CHECK(along == doctest::Approx(expected).epsilon(1e-5));
+  double half_squares = 0;
+  for (const float miss : misses) half_squares += 0.0625 * static_cast<double>(miss) * static_cast<double>(miss);
+  CHECK(loss == doctest::Approx(half_squares).epsilon(1e-5));
+}
+
+TEST_CASE("a surface is asked only where it is neither free nor constrained otherwise") {
+  const std::vector<float> volume = ball();
+  const auto count = [&](const Demands& demands, const float* weight, bool stacked) {
+    return SurfacePoints(problem_of(volume, demands, weight, stacked)).points().size();
+  };
+  const std::size_t all = count({}, nullptr, true);
+  CHECK(count({}, nullptr, false) > all / 2);
+  Demands demands;
+  demands.free_surface = true;
+  CHECK(count(demands, nullptr, true) == 0);
+  demands = {};
+  demands.surface = true;
+  CHECK(count(demands, nullptr, true) == 0);
+  demands = {};
+  demands.grey = true;
+  CHECK(count(demands, nullptr, true) == 0);
+  std::vector<float> weight(volume.size(), 1.0F);
+  for (std::size_t i = 0; i < weight.size(); ++i) weight[i] = i % size < 20 ? 0.0F : 1.0F;
+  const std::size_t half = count({}, weight.data(), true);
+  CHECK(half > 0.4 * static_cast<double>(all));
+  CHECK(half < 0.6 * static_cast<double>(all));
+}
+
+TEST_CASE("apg brings the dose on the surface to the threshold, in light that is limited, too") {
+  const auto parts = std::vector{vam::oracle::wheel(96), vam::oracle::disc_grid(96, 0.6)};
+  const auto light = parts::parallel_light(96, 180);
+  const auto all = parts::stacked(parts);
+  // Root mean square of dose - threshold on the surface.
+  const auto missed = [&](bool free, double max_intensity) {
+    Demands demands;
+    const auto asked = parts::make_problem(all.data(), 2, 96, 96, parts::circle(96), demands);
+    demands.free_surface = free;
+    const auto problem = parts::make_problem(all.data(), 2, 96, 96, parts::circle(96), demands);
+    MethodOptions options;
+    options.max_intensity = max_intensity;
+    Iterate state;
+    run_method(*make_method("apg", options), problem, *light, {.iterations = 25, .until = {}, .patience = 0}, state);
+    const auto misses = SurfacePoints(asked).misses(state.dose);
+    double squares = 0;
+    for (const float miss : misses) squares += static_cast<double>(miss) * static_cast<double>(miss);
+    return std::sqrt(squares / static_cast<double>(misses.size()));
+  };
+  for (const double limit : {0.0, 0.3}) {
+    CAPTURE(limit);
+    const double free = missed(true, limit);
+    const double asked = missed(false, limit);
+    MESSAGE("free " << free << ", asked " << asked);
+    CHECK(asked < 0.5 * free);
+  }
+}
