@@ -38,8 +38,13 @@ Inputs read(const Options& options) {
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice makes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.tolerances.empty()) in.tolerance.push_back(read_own(options.tolerances, "tolerance"));
-  for (auto* volumes : {&in.insert, &in.weight, &in.tolerance}) {
-    if (!volumes->empty()) volumes->front().extend_to(in.grid());  // other programs leave the void around out
+  if (!in.insert.empty()) in.insert.front().extend_to(in.grid());  // other programs leave the void around it out
+  for (const auto* volumes : {&in.weight, &in.tolerance}) {
+    if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
+    throw Error{Fault::data,
+                options.input + ": the grid of '" + volumes->front().name() +
+                    "' differs from the target's; slice both together (vam-slice --insert) or with the same "
+                    "--voxel and size"};
   }
   return in;
 }

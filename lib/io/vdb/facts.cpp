@@ -71,6 +71,10 @@ CoordBBox box_of(const FloatGrid& sparse) {
   return box;
 }
 
+bool is_of_part(const std::string& name) {
+  return name == "target" || name == "insert" || name == "weight" || name == "tolerance";
+}
+
 // A target of another program has the box of its voxels, which ends at the part: it gets the void around the part, out
 // to the circle about the axis that holds the box.
 CoordBBox with_void(CoordBBox box, const model::Grid& grid) {
@@ -129,7 +133,7 @@ VolumeFacts facts_of(const FloatGrid& sparse, Coord& first) {
   facts.background = sparse.background();
   set_box(box, facts.grid, first);
   set_transform(sparse, first, facts.grid);
-  if (facts.name == "target" && !sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
+  if (is_of_part(facts.name) && !sparse.getMetadata<openvdb::Vec3IMetadata>(shape_key)) {
     set_box(with_void(box, facts.grid), facts.grid, first);
     set_transform(sparse, first, facts.grid);
   }
