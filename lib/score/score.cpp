@@ -51,7 +51,8 @@ const std::vector<Figure>& figure_list() {
 
 }  // namespace
 
-Score::Score(const ScoreOptions& options, int width, int height) : options_(options), statistics_(options.threshold) {
+Score::Score(const ScoreOptions& options, int width, int height)
+    : options_(options), whole_(options.threshold), with_cut_(options.threshold) {
   inside_.reserve(width * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -62,7 +63,11 @@ Score::Score(const ScoreOptions& options, int width, int height) : options_(opti
 
 void Score::add(const float* dose, const float* target, int count) {
   std::vector<model::DoseStatistics> slices;
-  for (int s = 0; s < count; ++s) slices.emplace_back(options_.threshold);
+  std::vector<model::DoseStatistics> cut;
+  for (int s = 0; s < count; ++s) {
+    slices.emplace_back(options_.threshold);
+    cut.emplace_back(options_.threshold);
+  }
   std::vector<std::int64_t> surface(static_cast<std::size_t>(count), 0);
   parallel_for(count, [&](int s) {
     const std::size_t first = static_cast<std::size_t>(s) * inside_.size();
@@ -70,17 +75,19 @@ void Score::add(const float* dose, const float* target, int count) {
       const float d = dose[first + i];
       const float f = target[first + i];
       if (!std::isfinite(d)) throw Error{Fault::data, "the dose is not finite everywhere; compute it again"};
-      auto label = model::label_of(f);
+      const auto label = model::label_of(f);
       if (!inside_[i] && label == model::Label::void_) continue;
       if (label == model::Label::surface) {
         ++surface[s];
-        if (options_.surface) label = f >= 0.5F ? model::Label::part : model::Label::void_;
+        cut[s].add(d, f >= 0.5F ? model::Label::part : model::Label::void_);
       }
       slices[s].add(d, label);
     }
   });
   for (int s = 0; s < count; ++s) {
-    statistics_.merge(slices[s]);
+    whole_.merge(slices[s]);
+    with_cut_.merge(slices[s]);
+    with_cut_.merge(cut[s]);
     surface_ += surface[s];
   }
 }
@@ -96,11 +103,11 @@ const std::vector<std::string>& Score::names() {
 
 double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
-  if (name == "trimmed_ver") return statistics_.trimmed(options_.trim, !options_.absolute).ver;
-  if (name == "trimmed_pw") return statistics_.trimmed(options_.trim, !options_.absolute).pw;
+  if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
+  if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_intensity_mw_cm2") {
     if (!options_.exposure) return none;
-    const model::DoseMetrics doses = statistics_.metrics(false);
+    const model::DoseMetrics doses = judged().metrics(false);
     if (!(window_middle(doses) > 0)) return none;
     const ExposurePlan plan = plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer);
     if (name == "turns") return plan.turns;
@@ -108,17 +115,17 @@ double Score::figure(const std::string& name) const {
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
   }
   if (name.starts_with("cured_")) {
-    const auto at = statistics_.at_threshold();
+    const auto at = judged().at_threshold();
     if (!at) return none;
     if (name == "cured_part") return at->part_cured;
     if (name == "cured_void") return at->void_cured;
     return name == "cured_iou" ? at->iou : at->wrong;
   }
-  return model::figure(statistics_.metrics(!options_.absolute), name);
+  return model::figure(judged().metrics(!options_.absolute), name);
 }
 
 Json Score::figures() const {
-  const auto m = statistics_.metrics(!options_.absolute);
+  const auto m = judged().metrics(!options_.absolute);
   if (m.part == 0) throw Error{Fault::data, "the target has no voxel wholly inside the part; use smaller voxels"};
   if (m.void_ == 0)
     throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to compare"};
@@ -130,10 +137,16 @@ Json Score::figures() const {
     const double value = figure(name);
     if (std::isfinite(value)) json[name] = value;
   }
+  add_to(json, verdict());
   json["trim"] = options_.trim;
   if (options_.threshold) json["critical_dose"] = *options_.threshold;
   json["relative"] = !options_.absolute;
   return json;
+}
+
+Verdict Score::verdict() const {
+  const double seconds = figure("seconds");
+  return {whole_.metrics(), with_cut_.metrics(), std::isfinite(seconds) ? std::optional(seconds) : std::nullopt};
 }
 
 std::string Score::table() const {
@@ -146,7 +159,7 @@ std::string Score::table() const {
                   format_number(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
   }
-  return text;
+  return text + "verdict      " + words(verdict()) + "\n";
 }
 
 }  // namespace vam::score

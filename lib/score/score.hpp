@@ -9,6 +9,7 @@
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/printer.hpp"
+#include "score/verdict.hpp"
 
 namespace vam::score {
 
@@ -43,13 +44,17 @@ class Score {
   /// The figures by name (for --require), in the order of the table.
   [[nodiscard]] static const std::vector<std::string>& names();
   [[nodiscard]] double figure(const std::string& name) const;
-  /// Aligned lines "figure value meaning".
+  /// Of the relative figures, whatever the options say.
+  [[nodiscard]] Verdict verdict() const;
+  /// Aligned lines "figure value meaning", and the verdict in words.
   [[nodiscard]] std::string table() const;
 
  private:
+  [[nodiscard]] const model::DoseStatistics& judged() const { return options_.surface ? with_cut_ : whole_; }
+
   ScoreOptions options_;
-  std::vector<bool> inside_;  // of a slice, whether the circle has it
-  model::DoseStatistics statistics_;
+  std::vector<bool> inside_;                // of a slice, whether the circle has it
+  model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
   std::int64_t surface_ = 0;
 };

@@ -1,15 +1,18 @@
 #include "vam-optimize/publish.hpp"
 
+#include <optional>
 #include <string>
 
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/frames.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
+#include "score/verdict.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -33,13 +36,13 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
 
 /// Turns and seconds at full grey, of a resin that is known. Frames that are shown once have no number of turns to
 /// plan.
-void add_exposure(Json& report, const optimize::VolumeOutcome& outcome, const model::Printer& printer,
-                  const model::StackInfo& info, const Options& options) {
-  if (!model::repeat(info.poses)) return;
+std::optional<score::ExposurePlan> exposure(const optimize::VolumeOutcome& outcome, const model::Printer& printer,
+                                            const model::StackInfo& info, const Options& options) {
+  if (!model::repeat(info.poses)) return std::nullopt;
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
-  if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return;
-  add_to(report, score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info)));
+  if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return std::nullopt;
+  return score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info));
 }
 
 }  // namespace
@@ -52,7 +55,13 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();
-  add_exposure(report, outcome, printer, info, options);
+  const auto plan = exposure(outcome, printer, info, options);
+  if (plan) add_to(report, *plan);
+  if (!options.demands.grey) {
+    const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt};
+    add_to(report, verdict);
+    note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
+  }
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
   io::write_report(options.report, "vam-optimize/1", report);
 }

@@ -66,22 +66,38 @@ PerSlice sums(std::span<const Slab> images, const Problem& problem) {
   });
 }
 
-std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem) {
+namespace {
+
+/// As label(s, i) counts the voxels.
+template <class LabelOf>
+std::vector<model::DoseStatistics> counted(std::span<const Slab> dose, const Problem& problem, LabelOf label) {
   std::vector<model::DoseStatistics> slices(static_cast<std::size_t>(problem.slices));
   const int items = (problem.slices + lanes_per_item - 1) / lanes_per_item;
   parallel_for(items, [&](int item) {
     const int first = item * lanes_per_item;
     const int used = std::min(lanes_per_item, problem.slices - first);
     const auto s = static_cast<std::size_t>(first / lanes);
-    const float* values = dose[s].values.data() + first % lanes;
-    const Label* labels = problem.labels[s].data() + first % lanes;
-    for (std::size_t i = 0; i < dose[s].values.size(); i += lanes) {
+    const auto offset = static_cast<std::size_t>(first % lanes);
+    for (std::size_t i = offset; i < dose[s].values.size(); i += lanes) {
       for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
-        slices[static_cast<std::size_t>(first) + lane].add(values[i + lane], labels[i + lane]);
+        slices[static_cast<std::size_t>(first) + lane].add(dose[s].values[i + lane], label(s, i + lane));
       }
     }
   });
   return slices;
+}
+
+}  // namespace
+
+std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem) {
+  return counted(dose, problem, [&](std::size_t s, std::size_t i) { return problem.labels[s][i]; });
+}
+
+std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem) {
+  return counted(dose, problem, [&](std::size_t s, std::size_t i) {
+    if (problem.labels[s][i] != Label::surface) return Label::outside;
+    return problem.target[s].values[i] >= 0.5F ? Label::part : Label::void_;
+  });
 }
 
 std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Problem& problem) {

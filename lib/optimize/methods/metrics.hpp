@@ -15,6 +15,8 @@ namespace vam::optimize {
 [[nodiscard]] PerSlice sums(std::span<const Slab> images, const Problem& problem);
 /// Dose statistics of each slice in use.
 [[nodiscard]] std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const Problem& problem);
+/// Of the voxels that the surface cuts and nobody constrains: part from half coverage on, else void.
+[[nodiscard]] std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem);
 
 /// Figures of each slice in use. Of a grey target: ver = share of the voxels whose response is outside its tolerance,
 /// pw = the least margin that any has to the edge of it, negative when outside, ipdr = largest error, cv = root mean

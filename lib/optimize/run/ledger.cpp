@@ -38,6 +38,7 @@ void Ledger::exchange(Archive& archive) {
   last_.exchange(archive);
   archive(seen_);
   total_.exchange(archive);
+  cut_.exchange(archive);
   figures_.exchange(archive);
   archive(reason_);
   archive(iterations_);
@@ -54,6 +55,10 @@ VolumeOutcome Ledger::outcome(bool grey) const {
     ended.add(ends_[i]);
   }
   outcome.metrics = grey ? figures_.mean() : total_.metrics();
+  model::DoseStatistics with_cut;
+  with_cut.merge(total_);
+  with_cut.merge(cut_);
+  if (!grey) outcome.with_cut = with_cut.metrics();
   outcome.iterations = iterations_;
   outcome.reason = reason_;
   outcome.dark_part_voxels = dark_part_voxels_;

@@ -183,10 +183,12 @@ class Run {
       bring_to_threshold(problem, light, whole_ ? Together::pass : Together::slice, max_intensity_, scenarios, state);
     }
     const auto doses = statistics(state.dose, problem);
+    const auto cut = cut_statistics(state.dose, problem);
     const auto figures = metrics(state.dose, problem);
     for (int job = pass.first; job < pass.last; ++job) {
       const auto i = static_cast<std::size_t>(job - pass.low);
       ledger_.add(doses[i], figures[i], times_[job]);
+      ledger_.add_cut(cut[i], times_[job]);
     }
     hand_out(state, pass, light);
   }

@@ -49,6 +49,7 @@ struct VolumeOutcome {
   std::string reason;                     // of the pass with most iterations; "interrupted": there is no result
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
+  model::DoseMetrics with_cut;            // with the voxels that the surface cuts: part from half coverage on
   double efficiency = 0;
   double max_intensity = 0;           // the limit, as raised; 0: none
   double even_intensity = 0;          // 0: not asked for

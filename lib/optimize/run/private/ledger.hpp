@@ -19,6 +19,8 @@ class Ledger {
   void add_dark(std::int64_t voxels) { dark_part_voxels_ += voxels; }
   /// A slice as it leaves the optimiser, and how often it occurs.
   void add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times);
+  /// Its voxels that the surface cuts.
+  void add_cut(const model::DoseStatistics& statistics, int times) { cut_.merge(statistics, times); }
   void exchange(Archive& archive);
   /// Everything but efficiency and jobs.
   [[nodiscard]] VolumeOutcome outcome(bool grey) const;
@@ -27,7 +29,7 @@ class Ledger {
   std::vector<SliceFigures> rows_, ends_;  // per iteration: of passes that got there, of passes that ended there
   SliceFigures last_;
   int seen_ = -1;
-  model::DoseStatistics total_;
+  model::DoseStatistics total_, cut_;
   SliceFigures figures_;
   std::string reason_;
   int iterations_ = 0;

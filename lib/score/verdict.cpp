@@ -1,0 +1,39 @@
+#include "score/verdict.hpp"
+
+#include "base/json.hpp"
+#include "base/text.hpp"
+
+namespace vam::score {
+
+namespace {
+
+std::int64_t voxels(const model::DoseMetrics& m) { return m.part + m.void_; }
+
+std::string margin(const model::DoseMetrics& m) { return (m.pw > 0 ? "+" : "") + format_number(m.pw, 3); }
+
+}  // namespace
+
+bool prints(const Verdict& verdict) { return verdict.whole.pw >= 0; }
+
+std::string words(const Verdict& verdict) {
+  const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
+  std::string line = std::string(prints(verdict) ? "will print" : "will not print") + ": process window " +
+                     margin(verdict.whole) + " of the largest dose, VER " + format_number(verdict.whole.ver, 3) +
+                     ", of " + std::to_string(voxels(verdict.whole)) + " voxels";
+  if (cut > 0) {
+    line += "; with the " + std::to_string(cut) + " that the surface cuts " + margin(verdict.with_cut) + ", VER " +
+            format_number(verdict.with_cut.ver, 3);
+  }
+  if (verdict.seconds) line += "; " + format_number(*verdict.seconds, 4) + " s";
+  return line;
+}
+
+void add_to(Json& figures, const Verdict& verdict) {
+  figures["verdict"] = words(verdict);
+  figures["with_surface"] = {{"voxels", voxels(verdict.with_cut)},
+                             {"ver", verdict.with_cut.ver},
+                             {"pw", verdict.with_cut.pw},
+                             {"iou", verdict.with_cut.iou}};
+}
+
+}  // namespace vam::score

@@ -1,0 +1,31 @@
+// What a dose is worth, in one line for people: will it print, with what margin, how long, and of how many voxels that
+// is said.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/json_fwd.hpp"
+#include "model/dose_metrics.hpp"
+
+namespace vam::score {
+
+/// Figures are relative (DoseStatistics::metrics(true)).
+struct Verdict {
+  model::DoseMetrics whole;       // of the voxels wholly in part or void
+  model::DoseMetrics with_cut;    // with those that the surface cuts, as part from half coverage on, else as void
+  std::optional<double> seconds;  // of the print; none: the resin is not known
+};
+
+/// Some threshold dose prints all voxels that are wholly in part or void.
+[[nodiscard]] bool prints(const Verdict& verdict);
+
+/// "will print: process window +0.065 of the largest dose, VER 0, of 412345 voxels; with the 43492 that the surface
+/// cuts -0.31, VER 0.004; 360 s".
+[[nodiscard]] std::string words(const Verdict& verdict);
+
+/// verdict, and with_surface: ver, pw, iou and the number of voxels.
+void add_to(Json& figures, const Verdict& verdict);
+
+}  // namespace vam::score

@@ -1,0 +1,48 @@
+#include "score/verdict.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/json.hpp"
+
+using namespace vam;
+using namespace vam::score;
+
+namespace {
+
+Verdict verdict() {
+  Verdict made;
+  made.whole.part = 100;
+  made.whole.void_ = 900;
+  made.whole.pw = 0.0653;
+  made.with_cut = made.whole;
+  made.with_cut.part = 150;
+  made.with_cut.void_ = 960;
+  made.with_cut.pw = -0.312;
+  made.with_cut.ver = 0.0041;
+  return made;
+}
+
+}  // namespace
+
+TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that are known") {
+  CHECK(words(verdict()) ==
+        "will print: process window +0.0653 of the largest dose, VER 0, of 1000 voxels; with the 110 that the surface "
+        "cuts -0.312, VER 0.0041");
+  Verdict hollow = verdict();
+  hollow.with_cut = hollow.whole;
+  hollow.whole.pw = hollow.with_cut.pw = -0.02;
+  hollow.whole.ver = 0.003;
+  hollow.seconds = 360.04;
+  CHECK(words(hollow) == "will not print: process window -0.02 of the largest dose, VER 0.003, of 1000 voxels; 360 s");
+}
+
+TEST_CASE("a window of width 0 prints, and the report says what the line says") {
+  Verdict edge = verdict();
+  edge.whole.pw = 0;
+  CHECK(prints(edge));
+  Json figures;
+  add_to(figures, edge);
+  CHECK(figures["verdict"] == words(edge));
+  CHECK(figures["with_surface"]["voxels"] == 1110);
+  CHECK(figures["with_surface"]["pw"] == -0.312);
+}
