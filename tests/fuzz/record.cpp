@@ -1,0 +1,21 @@
+// Records in JSON: calibrations, resins, and the logs of prints and captures.
+#include "fuzz/fuzz.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "io/settings/flip_log.hpp"
+#include "io/settings/pose_file.hpp"
+#include "io/settings/resin_record.hpp"
+#include "model/printer.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  const fuzz::File file(fuzz::text_of(bytes, size));
+  fuzz::attempt([&] { (void)vam::io::gelation_isovalue(file.path); });
+  fuzz::attempt([&] { (void)vam::io::read_shown(file.path); });
+  fuzz::attempt([&] { (void)vam::io::read_wobble(file.path, {}, 1); });
+  return fuzz::attempt([&] {
+    const auto record = vam::io::read_record(file.path);
+    for (const char* name : {"axis_column", "vial_radius"}) {
+      fuzz::attempt([&] { (void)(record.value(name) + record.sigma(name)); });
+    }
+    (void)vam::io::objection(record, {}, 1.7e9);
+  });
+}
