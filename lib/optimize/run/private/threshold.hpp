@@ -10,8 +10,9 @@ namespace vam::optimize {
 enum class Together { slice, pass };
 
 /// Scales a pass, slice by slice or as one, so that the threshold lies in the middle of its process window, or, where
-/// it is asked for on the surface, no more than puts it in the middle half; with scenarios, in the middle between the largest void and the least part dose of any of them or of the nominal light.
-/// No light exceeds max_intensity (0: no limit).
+/// it is asked for on the surface, no more than puts it in the middle half; with scenarios, in the middle between the
+/// largest void and the least part dose of any of them or of the nominal light. No light exceeds max_intensity (0: no
+/// limit).
 void bring_to_threshold(const Problem& problem, const light::Operator& light, Together together, double max_intensity,
                         const Scenarios* scenarios, Iterate& state);
 
