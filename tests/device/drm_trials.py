@@ -15,7 +15,7 @@ sys.dont_write_bytecode = True
 from screen import raw_grey  # noqa: E402
 from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
 
-ROOM, PITCH, COLUMNS, ROWS = 1 << 14, 320, 64, 48
+COLUMNS, ROWS = 64, 48
 
 
 def lines(path):
@@ -23,28 +23,28 @@ def lines(path):
     return [json.loads(line) for line in text.split("\n")[:-1]]
 
 
-def image(memory, framebuffer):
-    """Row-major grey of an image in the card's memory."""
-    start = (framebuffer - 100) * ROOM
-    rows = [memory[start + y * PITCH:start + y * PITCH + 4 * COLUMNS] for y in range(ROWS)]
-    assert all(row[0::4] == row[1::4] == row[2::4] for row in rows)
-    return b"".join(row[0::4] for row in rows)
+def fingerprint(grey):
+    """As the card has it: FNV-1a of three bytes a pixel."""
+    value = 0xCBF29CE484222325
+    for byte in grey:
+        for _ in range(3):
+            value = (value ^ byte) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return "%016x" % value
 
 
 def images(frames, flips):
     card = lines("card/log")
-    memory = open("card/memory", "rb").read(ROOM * 1000)
-    wanted = [raw_grey(path) for path in sorted(pathlib.Path(frames).glob("*.png"))]
+    wanted = [fingerprint(raw_grey(path)) for path in sorted(pathlib.Path(frames).glob("*.png"))]
     shown = {line["sequence"]: line for line in card if line["event"] == "flip"}
     told = [line for line in lines(flips) if line["event"] == "flip"]
-    black = bytes(COLUMNS * ROWS)
+    black = fingerprint(bytes(COLUMNS * ROWS))
     for line in told:
         flip = shown[line["sequence"]]
-        assert image(memory, flip["framebuffer"]) == (black if line["frame"] < 0 else wanted[line["frame"]])
+        assert flip["pixels"] == (black if line["frame"] < 0 else wanted[line["frame"]])
         assert abs(flip["t_monotonic_s"] - line["t_monotonic_s"]) < 2e-6
     lit = next(i for i, line in enumerate(card) if line.get("shade") == "lit")
     buffers = [i for i, line in enumerate(card) if line["event"] == "buffer"]
-    assert len(buffers) == len(wanted) + 1 and buffers[-1] < lit  # all are there before the first is shown
+    assert len(buffers) == 3 and buffers[-1] < lit  # all are there before the first is shown
     sequences = [line["sequence"] for line in told]
     missed = sum(line.get("missed", 0) for line in told[1:])
     assert missed == sequences[-1] - sequences[0] + 1 - len(sequences)

@@ -38,6 +38,29 @@ is 'is set' "$(grep -o '"columns":[0-9]*' card/log | tail -n 1)" '"columns":32'
 fails 64 'no mode 1920x1080; the screen has: 32x24@60, 64x48@60' grey mode=1920x1080
 fails 64 'no mode 64x48@50' grey mode=64x48@50
 
+# Frames are kept as grey, a byte a pixel, whatever the card needs: 720 of 1920 x 1080 pixels in less than 2 GB.
+cat >hd.toml <<'TOML'
+[projector]
+columns = 1920
+rows = 1080
+pixel_mm = 0.02
+axis_column = 959.5
+axis_row = 539.5
+TOML
+peak_mb() {  # peak_mb FRAMES
+  rm -f card/log card/memory
+  LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card_hd.so VAM_PRINTER=hd.toml python3 -c 'import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e3)' \
+    vam-project --pattern ramp --steps $1 --hold 0.001 -o drm:HDMI-A-1 --missed 1
+}
+if ! sanitized; then
+  few=$(peak_mb 4); many=$(peak_mb 36)
+  echo "# 4 frames: $few MB, 36 frames: $many MB"
+  holds 'a frame takes a byte a pixel' "($many - $few) / 32 < 1.1 * 1920 * 1080 / 1e6"
+  holds 'so that 720 take less than 2 GB' "$few + 716 * ($many - $few) / 32 < 2000"
+fi
+
 FAKE_DRM_FAULT=skip:10 print --missed 1 --log flips
 is 'blanks are missed' $? 0
 $judge images frames flips >judged
@@ -67,7 +90,7 @@ spoilt() {  # spoilt STATUS REGEX LAST-SHADE FAULT
 wrong() { fails "$1" "$2" env LD_PRELOAD="$card" FAKE_DRM_FAULT="$3" vam-project part.exr -o drm:HDMI-A-1 --light sim:; }
 wrong 75 'the GPU is in use' not-master
 wrong 69 'the connector rejects its own mode' no-mode
-spoilt 71 "no GPU memory for frame 10" black no-memory:12
+wrong 71 'no GPU memory for an image of 64 x 48 pixels' no-memory:3
 spoilt 76 'gamma table' black gamma
 spoilt 75 'rejected a page flip' black busy:20
 spoilt 75 'rejected a page flip' '' lost:20

@@ -1,5 +1,4 @@
 #include <poll.h>
-#include <sys/mman.h>
 #include <unistd.h>
 #include <xf86drm.h>
 #include <xf86drmMode.h>
@@ -8,12 +7,14 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/projector/display_backends.hpp"
+#include "device/projector/private/drm_buffer.hpp"
 #include "device/projector/private/drm_output.hpp"
 
 namespace vam::device {
@@ -31,12 +32,6 @@ Fault fault_of_card() {
   return Fault::io;
 }
 
-// An image in the card's memory.
-struct Buffer {
-  std::uint32_t handle = 0;
-  std::uint32_t framebuffer = 0;
-};
-
 class DrmDisplay final : public Display {
  public:
   DrmDisplay(const std::string& connector, const std::string& mode, std::optional<int> bits, Clock& clock,
@@ -50,8 +45,9 @@ class DrmDisplay final : public Display {
     }
     mode_ = {output_.mode.hdisplay, output_.mode.vdisplay,
              output_.mode.clock * 1000.0 / (output_.mode.htotal * output_.mode.vtotal)};
-    black_ = load(std::vector<std::uint8_t>(static_cast<std::size_t>(mode_.columns) * mode_.rows));
+    black_ = std::make_unique<DrmBuffer>(output_, name_);
     if (!show_black()) throw Error{Fault::absent, name_ + ": the connector rejects its own mode" + reason()};
+    for (auto& image : images_) image = std::make_unique<DrmBuffer>(output_, name_);
     straighten_gamma(output_, name_);
     send_full_range(output_, name_);
     if (bits) limit_bits(output_, name_, *bits);
@@ -65,24 +61,24 @@ class DrmDisplay final : public Display {
     } catch (...) {
       // The guardian is gone; black is on.
     }
-    for (const Buffer& buffer : frames_) drop(buffer);
+    for (auto& image : images_) image.reset();
     close(output_.card);
   }
 
   DisplayMode mode() const override { return mode_; }
 
   int add(const GreyImage& levels) override {
-    frames_.push_back(load(screen_bytes(levels, mode_)));
+    frames_.push_back(screen_bytes(levels, mode_));
     return static_cast<int>(frames_.size()) - 1;
   }
 
   Flip present(int index) override {
     watch(index >= 0);
-    const std::uint32_t framebuffer = index < 0 ? black_.framebuffer : frames_[index].framebuffer;
+    const bool again = index >= 0 && held_[0] == index;  // it is on, or black followed it
     flip_.sequence = -1;
     drm_mode_crtc_page_flip order{};
     order.crtc_id = output_.crtc;
-    order.fb_id = framebuffer;
+    order.fb_id = index < 0 ? black_->framebuffer() : again ? images_[0]->framebuffer() : ready(index);
     order.flags = DRM_MODE_PAGE_FLIP_EVENT;
     order.user_data = ++asked_;
     if (drmIoctl(output_.card, DRM_IOCTL_MODE_PAGE_FLIP, &order) != 0) {
@@ -90,48 +86,31 @@ class DrmDisplay final : public Display {
     }
     wait_for_flip();
     if (index < 0) unwatch();
+    if (!again) prepare(index + 1);
     return flip_;
   }
 
  private:
-  Buffer load(const std::vector<std::uint8_t>& bytes) {
-    drm_mode_create_dumb make{};
-    make.width = output_.mode.hdisplay;
-    make.height = output_.mode.vdisplay;
-    make.bpp = 32;
-    if (drmIoctl(output_.card, DRM_IOCTL_MODE_CREATE_DUMB, &make) != 0) {
-      throw Error{Fault::memory, name_ + ": no GPU memory for frame " + std::to_string(frames_.size()) + reason()};
-    }
-    Buffer buffer{make.handle, 0};
-    drm_mode_map_dumb where{};
-    where.handle = make.handle;
-    void* pixels = MAP_FAILED;
-    if (drmModeAddFB(output_.card, make.width, make.height, 24, 32, make.pitch, make.handle, &buffer.framebuffer) ==
-            0 &&
-        drmIoctl(output_.card, DRM_IOCTL_MODE_MAP_DUMB, &where) == 0) {
-      pixels =
-          mmap(nullptr, make.size, PROT_READ | PROT_WRITE, MAP_SHARED, output_.card, static_cast<off_t>(where.offset));
-    }
-    if (pixels == MAP_FAILED) throw Error{Fault::memory, name_ + ": cannot write a frame to GPU memory" + reason()};
-    for (std::uint32_t y = 0; y < make.height; ++y) {
-      auto* row =
-          reinterpret_cast<std::uint32_t*>(static_cast<char*>(pixels) + static_cast<std::size_t>(y) * make.pitch);
-      for (std::uint32_t x = 0; x < make.width; ++x)
-        row[x] = bytes[static_cast<std::size_t>(y) * make.width + x] * 0x010101U;
-    }
-    munmap(pixels, make.size);
-    return buffer;
+  // One image is on the screen; the other holds the frame to come, most often the next, or is filled now: within the
+  // time of a vertical blank for 1920 x 1080 pixels.
+  std::uint32_t ready(int index) {
+    if (held_[1] != index) hold_back(index);
+    std::swap(images_[0], images_[1]);
+    std::swap(held_[0], held_[1]);
+    return images_[0]->framebuffer();
   }
-
-  void drop(const Buffer& buffer) const {
-    drmModeRmFB(output_.card, buffer.framebuffer);
-    drm_mode_destroy_dumb gone{buffer.handle};
-    drmIoctl(output_.card, DRM_IOCTL_MODE_DESTROY_DUMB, &gone);
+  void prepare(int next) {
+    if (next >= static_cast<int>(frames_.size())) next = 0;
+    if (!frames_.empty() && held_[1] != next) hold_back(next);
+  }
+  void hold_back(int index) {
+    images_[1]->fill(frames_[index]);
+    held_[1] = index;
   }
 
   bool show_black() {
-    return drmModeSetCrtc(output_.card, output_.crtc, black_.framebuffer, 0, 0, &output_.connector, 1, &output_.mode) ==
-           0;
+    return drmModeSetCrtc(output_.card, output_.crtc, black_->framebuffer(), 0, 0, &output_.connector, 1,
+                          &output_.mode) == 0;
   }
 
   // An event carries the number of its flip: that of an earlier one, given up as late, may come first.
@@ -171,7 +150,7 @@ class DrmDisplay final : public Display {
                                 {"order", 0},
                                 {"name", "screen"},
                                 {"crtc", output_.crtc},
-                                {"framebuffer", black_.framebuffer}},
+                                {"framebuffer", black_->framebuffer()}},
                                output_.card);
     }
     guardian_->beat();
@@ -186,9 +165,11 @@ class DrmDisplay final : public Display {
   DrmOutput output_;
   std::string name_;
   DisplayMode mode_;
-  Buffer black_;
-  std::vector<Buffer> frames_;
-  std::uint64_t asked_ = 0;  // flips so far
+  std::unique_ptr<DrmBuffer> black_;
+  std::array<std::unique_ptr<DrmBuffer>, 2> images_;  // that was shown last, and the other
+  std::array<int, 2> held_{-1, -1};                   // frames, in them
+  std::vector<std::vector<std::uint8_t>> frames_;     // grey, at a byte a pixel
+  std::uint64_t asked_ = 0;                           // flips so far
   Flip flip_;
   int action_ = 0;
 };
