@@ -119,7 +119,7 @@ stage_down
 
 # A GRBL board that its port resets has lost its position.
 stage_up --protocol grbl --reset-at-open
-fails 76 'not referenced: its zero may be anywhere; give --home, or run `vam-stage home`' \
+fails 65 'not referenced: its zero may be anywhere; give --home, or run `vam-stage home`' \
   env LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 60
 stage_down
 
@@ -136,7 +136,7 @@ stage_down
 for old in '' --old-firmware; do
   stage_up --protocol zaber $old --address 2 --acceleration 5000
   zaber() { verb=$1; shift; LD_PRELOAD=$shim vam-stage $verb --device "zaber:$PWD/stage?address=2" "$@"; }
-  fails 76 'not referenced' zaber spin --speed 360
+  fails 65 'not referenced' zaber spin --speed 360
   fails 75 'no answer' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage"
   fails 76 'BADAXIS' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?address=2&axis=2"
   fails 64 'axis' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?axis=X"

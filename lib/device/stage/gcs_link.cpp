@@ -38,6 +38,7 @@ bool printable(const std::string& line) {
   });
 }
 
+// By the maker's picontrollererrors.h.
 std::string gcs_meaning(int code) {
   static const std::map<int, std::string> meanings{
       {1, "parameter syntax"},
@@ -51,8 +52,16 @@ std::string gcs_meaning(int code) {
       {17, "parameter out of range"},
       {23, "illegal axis"},
       {24, "wrong number of parameters"},
-      {27, "cannot set position in reference mode"},
+      {25, "not a number"},
+      {26, "parameter missing"},
+      {27, "soft limits out of range"},
+      {45, "the reference move failed"},
+      {50, "referencing is disabled"},
       {54, "unknown parameter"},
+      {63, "initialisation in progress"},
+      {84, "the motor is off"},
+      {88, "not allowed in reference mode"},
+      {93, "not allowed while the axis moves"},
       {-1024, "motion error: position error too large, servo switched off"}};
   const auto found = meanings.find(code);
   return found == meanings.end() ? "" : found->second;
@@ -163,7 +172,7 @@ void GcsLink::order(const std::string& text, int harmless) {
   send(text);
   const int code = take_error();
   if (code != 0 && code != harmless) {
-    if (code == not_referenced) throw Error{Fault::protocol, port_->name() + ": " + gcs_meaning(code)};
+    if (code == not_referenced) throw Error{Fault::data, port_->name() + ": " + gcs_meaning(code)};
     throw Error{Fault::protocol, port_->name() + ": '" + text + "' was refused with error " + gcs_error_text(code)};
   }
 }

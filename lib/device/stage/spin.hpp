@@ -36,16 +36,16 @@ struct SpinCourse {
 /// Turns the stage and reports its angle. Angles count from 0 where printing begins: negative during ramp and run-up,
 /// past 360 * turns when it ends. Angle 0 is the stage's own zero (its reference after homing), whatever the number of
 /// runs before. One long motion, inside the controller's limits, re-zeroed before each run.
-/// Throws Fault::data (limits too narrow for so many turns), Fault::protocol (a stage that is not referenced, speed off
-/// by more than the tolerance shortly before angle 0, or a stage that does not follow its own line), and what the stage
-/// throws. Stops the stage whenever it leaves.
+/// Throws Fault::data (limits too narrow for so many turns, or a stage that is not referenced), Fault::protocol (speed
+/// off by more than the tolerance shortly before angle 0, or a stage that does not follow its own line), and what the
+/// stage throws. Stops the stage whenever it leaves.
 void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<void(const AngleSample&)>& report);
 
 /// Waits until the stage stands, sampling every period_s. Throws Fault::busy after timeout_s.
 void wait_until_standing(Stage& stage, Clock& clock, double period_s, double timeout_s,
                          const std::function<void(const AngleSample&)>& report = {});
 
-/// Turns to an absolute angle, or by an angle, and waits until the stage stands. Throws Fault::protocol when an
+/// Turns to an absolute angle, or by an angle, and waits until the stage stands. Throws Fault::data when an
 /// absolute angle is asked of a stage that is not referenced.
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s);
 
@@ -56,7 +56,7 @@ void halt(Stage& stage, Clock& clock, Stop how);
 void follow(Stage& stage, Clock& clock, double period_s, std::optional<double> seconds,
             const std::function<void(const AngleSample&)>& report);
 
-/// Throws Fault::protocol when the stage is not referenced.
+/// Throws Fault::data when the stage is not referenced.
 void require_referenced(Stage& stage);
 
 /// Throws Fault::data when the stage reports a lower largest speed.

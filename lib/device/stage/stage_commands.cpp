@@ -26,7 +26,7 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
 
 void require_referenced(Stage& stage) {
   if (stage.referenced()) return;
-  throw Error{Fault::protocol,
+  throw Error{Fault::data,
               "stage: not referenced: its zero may be anywhere; give --home, or run `vam-stage home` if the controller "
               "keeps it"};
 }

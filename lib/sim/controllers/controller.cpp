@@ -16,6 +16,14 @@ SimController::SimController(const SimGcsSettings& settings, double now_s, SimLo
   motor_.set_angle(settings.home_deg);
 }
 
+void SimController::receive(std::string_view bytes, double now_s) {
+  advance(now_s);
+  for (const char c : bytes) {
+    if (silent()) return;
+    hear(c);
+  }
+}
+
 void SimController::advance(double now_s) {
   const bool moved = motor_.moving();
   while (motor_.moving() && next_log_s_ <= now_s) {

@@ -1,3 +1,6 @@
+// Sources, named beside each behaviour by the name of the command: Texas Instruments' DLPC350 Programmer's Guide
+// (DLPU010) and DLPC900 Programmer's Guide (DLPU018). For what guide and board disagree about: TI forum, thread 451589.
+// Public drivers that send the same bytes: pyCrafter4500 (github.com/SivyerLab/pyCrafter4500).
 #include "sim/controllers/dlp.hpp"
 
 #include <cmath>
@@ -16,25 +19,31 @@ class SimDlp final : public device::UsbLink {
  public:
   SimDlp(const SimDlpSettings& settings, SimLog log) : settings_(settings), log_(std::move(log)) {
     name_ = settings.dlpc900 ? "usb:0451:c900:LCR6500" : "usb:0451:6401:LCR4500";
-    registers_[0x0200] = std::string(1, '\1');  // asleep
+    registers_[0x0200] = std::string(1, '\1');  // Power Control: standby
+    // Retrieve Firmware Version: four numbers, the least significant byte first.
     registers_[0x0205] = std::string("\x01\x00\x00\x04", 4) + std::string(12, '\0');
+    // LED PWM Polarity: 0 normal, 1 inverted.
     registers_[0x1A05] = std::string(1, settings.inverted ? '\1' : '\0');
+    // LED Driver Current Control: red, green, blue; by the guide 255 is full at normal polarity, which a DLPC900 does
+    // and the drivers of a LightCrafter 4500 turn round (thread 451589).
     const double share = settings.current_percent / 100;
     const bool upside_down = settings.inverted != !settings.dlpc900;
     registers_[0x0B01].assign(3, static_cast<char>(std::lround(255 * (upside_down ? 1 - share : share))));
+    // Input Source Selection; the status commands Hardware (bit 0: initialised), System, Main (bit 1: sequencer runs);
+    // Display Mode: 0 video, 1 pattern (DLPC350), 2 video pattern (DLPC900); Pattern Display Start/Stop.
     registers_[0x1A00] = std::string(1, '\x0A');
-    registers_[0x1A07] = std::string(1, '\x08');  // LEDs by the sequencer
+    registers_[0x1A07] = std::string(1, '\x08');  // LED Enable Outputs: bit 3, by the sequencer
     registers_[0x1A0A] = std::string(1, '\x01');
     registers_[0x1A0B] = std::string(1, '\x01');
     registers_[0x1A0C] = std::string(1, '\x02');
     registers_[0x1A1B] = std::string(1, '\x01');
     registers_[0x1A24] = std::string(1, '\x00');
     if (settings.dlpc900) {
-      registers_[0x1A01] = std::string(1, '\x00');  // video receiver off
+      registers_[0x1A01] = std::string(1, '\x00');  // Port and Clock / IT6535 Power Mode: receiver off
       registers_[0x1A31] = std::string(6, '\0');    // table of patterns
       registers_[0x1A34] = std::string(12, '\0');   // the pattern set last
     } else {
-      registers_[0x1A0E] = std::string(1, '\x80');  // gamma on
+      registers_[0x1A0E] = std::string(1, '\x80');  // Gamma Correction: bit 7, on as delivered
     }
     for (const int command : {0x0200, 0x1A0C, 0x1A1B}) slow_[command] = settings.slow_reads;
   }

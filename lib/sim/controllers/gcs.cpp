@@ -1,3 +1,6 @@
+// Sources, named beside each behaviour: a number alone is a section of the maker's manual of the C-863.11 (PI MS249E);
+// "errors" is the maker's list of codes, picontrollererrors.h, as public drivers have it (EPICS, epics-modules/motor,
+// motorApp/PIGCS2Src).
 #include "sim/controllers/gcs.hpp"
 
 #include <algorithm>
@@ -48,6 +51,21 @@ const char* const help_lines[] = {"#5 - Request motion status",
 
 constexpr double homing_speed_deg_s = 30;
 
+// Of "errors", PI_CNTR_...
+constexpr int unknown_command = 2;          // UNKNOWN_COMMAND
+constexpr int no_reference_or_servo = 5;    // MOVE_WITHOUT_REF_OR_NO_SERVO
+constexpr int beyond_limits = 7;            // POS_OUT_OF_LIMITS
+constexpr int too_fast = 8;                 // VEL_OUT_OF_LIMITS
+constexpr int stopped = 10;                 // STOP: by command
+constexpr int no_such_axis = 15;            // INVALID_AXIS_IDENTIFIER
+constexpr int parameter_out_of_range = 17;  // PARAM_OUT_OF_RANGE
+constexpr int wrong_number = 24;            // PARAM_NR: of parameters
+constexpr int no_real_number = 25;          // INVALID_REAL_NR
+constexpr int reference_disabled = 50;      // REF_WITH_REF_DISABLED
+constexpr int unknown_parameter = 54;       // UNKNOWN_PARAMETER
+constexpr int reference_mode_is_on = 88;    // REF_MODE_IS_ON
+constexpr int axis_in_motion = 93;          // CMD_NOT_ALLOWED_WHILE_AXIS_IN_MOTION
+
 std::string decimal(double value, const char* format = "%.5f") {
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), format, value);
@@ -58,30 +76,27 @@ class SimGcs final : public SimController {
  public:
   using SimController::SimController;
 
-  void receive(std::string_view bytes, double now_s) override {
-    advance(now_s);
-    for (const char c : bytes) {
-      if (silent()) return;
-      if (c == 5 || c == 7 || c == 24) {
-        // An address may precede single bytes, too; they need no LF (PI MS249E, 8.2 and 8.3).
-        const bool for_someone = line_.find_first_not_of("0123456789 ") == std::string::npos;
-        handle((for_someone ? std::exchange(line_, "") : "") + "#" + std::to_string(static_cast<int>(c)));
-      } else if (c == '\n') {
-        handle(std::exchange(line_, ""));
-      } else {
-        line_ += c;
-      }
+ private:
+  // 8.2 and 8.3: an address may precede single bytes, too; they need no LF.
+  void hear(char c) override {
+    if (c == 5 || c == 7 || c == 24) {
+      const bool for_someone = line_.find_first_not_of("0123456789 ") == std::string::npos;
+      handle((for_someone ? std::exchange(line_, "") : "") + "#" + std::to_string(static_cast<int>(c)));
+    } else if (c == '\n') {
+      handle(std::exchange(line_, ""));
+    } else {
+      line_ += c;
     }
   }
 
- private:
   void on_standing() override {
     if (homing_) referenced_ = motor_.target_deg() == 0;
     homing_ = false;
   }
 
   // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us. Without an address a command, single
-  // bytes included, is for controller 1 (PI MS249E, 8.3 "Target and sender address").
+  // bytes included, is for controller 1; a sender is only told where an address was given (8.3 "Target and sender
+  // address").
   void handle(const std::string& line) {
     auto words = split(line, ' ');
     std::erase(words, "");
@@ -99,7 +114,7 @@ class SimGcs final : public SimController {
     const std::string fault = arrive(line, command);
     if (silent()) return;
     if (fault == "error") {
-      error_ = 17;
+      error_ = parameter_out_of_range;
       return;
     }
     const std::string text = reply(command, words);
@@ -107,7 +122,8 @@ class SimGcs final : public SimController {
     answer_spoilt(fault, text, addressed_ ? "0 " + std::to_string(settings_.address) + " " : "");
   }
 
-  // The whole answer with its LF; empty for an order.
+  // The whole answer with its LF; empty for an order (8.4: only questions are answered). #5: a bit for each axis that
+  // moves, hexadecimal; #7: B1 or B0; ERR? clears; #24 and STP stop abruptly and set error 10.
   std::string reply(const std::string& command, const std::vector<std::string>& words) {
     if (command == "#5") return decimal(motor_.moving() ? 1 : 0, "%.0f") + "\n";
     if (command == "#7") return std::string(1, homing_ ? '\xB0' : '\xB1') + "\n";
@@ -117,11 +133,15 @@ class SimGcs final : public SimController {
     if (command == "SAI?") return "1\n";
     if (command == "ERR?") return std::to_string(std::exchange(error_, 0)) + "\n";
     if (command == "#24" || command == "STP") return stop(&SimMotor::brake);
-    if (words.empty() || words.front() != "1") return refuse(words.empty() ? 24 : 15);
-    if (command.back() == '?') return words.front() + query(command, words);
+    if (words.empty() || words.front() != "1") return refuse(words.empty() ? wrong_number : no_such_axis);
+    if (command.back() == '?') {
+      const std::string text = query(command, words);
+      return text.empty() ? "" : words.front() + text;
+    }
     return execute(command, words);
   }
 
+  // 8.4: of an answer of several lines all but the last end in a space.
   static std::string help() {
     std::string text;
     for (const char* line : help_lines) text += std::string(text.empty() ? "" : " \n") + line;
@@ -131,7 +151,7 @@ class SimGcs final : public SimController {
   std::string stop(void (SimMotor::*how)()) {
     if (motor_.moving()) (motor_.*how)();
     homing_ = false;
-    error_ = 10;
+    error_ = stopped;
     return "";
   }
 
@@ -155,16 +175,16 @@ class SimGcs final : public SimController {
     if (command == "SPA?" && words.size() == 2 && words[1] == "0xA") {
       return " 0xA=" + decimal(settings_.max_speed_deg_s) + "\n";
     }
-    error_ = command == "SPA?" ? 54 : 2;
-    return "";
+    return refuse(command == "SPA?" ? unknown_parameter : unknown_command);
   }
 
+  // RON 0 lets POS set the position, which counts as a reference (8.4, "POS", "RON"); never in motion.
   std::string execute(const std::string& command, const std::vector<std::string>& words) {
     if (command == "HLT") return stop(&SimMotor::halt);
     if (command == "FRF") return reference();
-    if (words.size() != 2) return refuse(24);
+    if (words.size() != 2) return refuse(wrong_number);
     const auto number = parse_number(words[1]);
-    if (!number) return refuse(1);
+    if (!number) return refuse(no_real_number);
     const double value = *number;
     if (command == "MOV") return travel(value);
     if (command == "MVR") return travel(motor_.target_deg() + value);
@@ -174,35 +194,37 @@ class SimGcs final : public SimController {
     } else if (command == "RON") {
       reference_mode_ = value != 0;
     } else if (command == "POS") {
-      if (reference_mode_ || motor_.moving()) return refuse(27);
+      if (reference_mode_) return refuse(reference_mode_is_on);
+      if (motor_.moving()) return refuse(axis_in_motion);
       motor_.set_angle(value);
       referenced_ = true;
       note("zeroed", {{"angle_deg", value}});
     } else if (command == "VEL") {
-      if (value < 0 || value > settings_.max_speed_deg_s) return refuse(8);
+      if (value < 0 || value > settings_.max_speed_deg_s) return refuse(too_fast);
       speed_deg_s_ = value;
       motor_.set_speed(value);
     } else {
-      return refuse(2);
+      return refuse(unknown_command);
     }
     return "";
   }
 
   std::string reference() {
-    if (!servo_ || !reference_mode_) return refuse(5);
+    if (!reference_mode_) return refuse(reference_disabled);
+    if (!servo_) return refuse(no_reference_or_servo);
     homing_ = true;
     go(0, homing_speed_deg_s);
     return "";
   }
 
+  // 8.4, "MOV": servo on, referenced, inside the limits.
   std::string travel(double target_deg) {
-    if (!servo_ || !referenced_ || homing_) return refuse(5);
-    if (target_deg < settings_.min_deg || target_deg > settings_.max_deg) return refuse(7);
+    if (!servo_ || !referenced_ || homing_) return refuse(no_reference_or_servo);
+    if (target_deg < settings_.min_deg || target_deg > settings_.max_deg) return refuse(beyond_limits);
     go(target_deg, speed_deg_s_);
     return "";
   }
 
-  std::string line_;
   int error_ = 0;
   double speed_deg_s_ = 10;
   bool addressed_ = false;

@@ -19,26 +19,23 @@ class SimGrbl final : public SimController {
  public:
   using SimController::SimController;
 
-  void receive(std::string_view bytes, double now_s) override {
-    advance(now_s);
-    for (const char c : bytes) {
-      if (silent()) return;
-      if (c == '?') {
-        asked_while_homing_ = homing_;  // reports pause: limits.c, limits_go_home, looks at reset and door only
-        if (!homing_) reply("?", "?", status());
-      } else if (c == '\x85') {
-        cancel();
-      } else if (c == '\x18') {
-        reset();
-      } else if (c == '\n') {
-        handle(std::exchange(line_, ""));
-      } else if (c != '!' && c != '~' && c != '\r') {
-        line_ += c;
-      }
+ private:
+  // Commands, "Real-Time Commands": single bytes, acted on at once, anywhere in a line, without an "ok".
+  void hear(char c) override {
+    if (c == '?') {
+      asked_while_homing_ = homing_;  // reports pause: limits.c, limits_go_home, looks at reset and door only
+      if (!homing_) reply("?", "?", status());
+    } else if (c == '\x85') {
+      cancel();
+    } else if (c == '\x18') {
+      reset();
+    } else if (c == '\n') {
+      handle(std::exchange(line_, ""));
+    } else if (c != '!' && c != '~' && c != '\r') {
+      line_ += c;
     }
   }
 
- private:
   void on_standing() override {
     if (!homing_) return;
     homing_ = false;
@@ -126,7 +123,6 @@ class SimGrbl final : public SimController {
     if (inside && !silent()) go(*target_deg, std::min(*feed / 60, settings_.max_speed_deg_s));
   }
 
-  std::string line_;
   bool homing_ = false;
   bool greeted_ = false;
   bool asked_while_homing_ = false;

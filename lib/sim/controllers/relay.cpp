@@ -1,3 +1,4 @@
+// Source of all of it: the firmware that vam-devices(7), section 7, prints.
 #include "sim/controllers/relay.hpp"
 
 #include <utility>
@@ -15,14 +16,6 @@ class SimRelay final : public SimController {
  public:
   using SimController::SimController;
 
-  void receive(std::string_view bytes, double now_s) override {
-    advance(now_s);
-    for (const char c : bytes) {
-      if (silent()) return;
-      handle(c);
-    }
-  }
-
   // Another question than a heartbeat's comes too late when the time is over.
   void advance(double now_s) override {
     SimController::advance(now_s);
@@ -34,7 +27,7 @@ class SimRelay final : public SimController {
     if (std::exchange(closed_, false)) note("open", {{"reason", why}});
   }
 
-  void handle(char command) {
+  void hear(char command) override {
     const std::string name(1, command);
     const std::string fault = arrive(name, name);
     if (silent()) return;

@@ -1,3 +1,6 @@
+// Sources, named beside each behaviour: Pololu's Tic Stepper Motor Controller User's Guide, chapters "Variable
+// reference" and "Command reference"; codes and offsets also in Pololu's own software
+// (github.com/pololu/pololu-tic-software, include/tic_protocol.h).
 #include "sim/controllers/tic.hpp"
 
 #include <cmath>
@@ -11,7 +14,6 @@ namespace vam::sim {
 
 namespace {
 
-// Source: Pololu, Tic Stepper Motor Controller User's Guide, chapters 7 (variables) and 8 (commands).
 class SimTic final : public device::UsbLink {
  public:
   SimTic(const SimTicSettings& settings, device::Clock& clock, SimLog log)
@@ -29,39 +31,39 @@ class SimTic final : public device::UsbLink {
     switch (request) {
       case 0x85:
         energized_ = true;
-        break;  // energize
+        break;  // Energize
       case 0x83:
         safe_start_ = false;
-        break;  // exit safe start
+        break;  // Exit safe start: motion is refused before
       case 0x8C:
-        break;  // reset command time-out
+        break;  // Reset command timeout, as every other command does, too
       case 0x89:
         motor_.brake();
         uncertain_ = true;
         homing_ = to_position_ = false;
         note("halt");
-        break;  // halt and hold: abruptly, steps may be lost
+        break;  // Halt and hold: abruptly, so that the position is uncertain
       case 0xE3:
         if (argument != 0) throw Error{Fault::protocol, name_ + ": turns to positions only"};
         to_position_ = false;
         motor_.halt();
         note("slowing");
-        break;  // target velocity
+        break;  // Set target velocity: 0 decelerates
       case 0xE6:
         motor_.set_speed(argument * 1e-4 / settings_.steps_per_deg);
-        break;  // maximum speed
+        break;  // Set max speed: microsteps per 10 000 s
       case 0xEC:
         motor_.set_angle(angle(argument));
         uncertain_ = homing_ = to_position_ = false;
-        break;  // halt and set position
+        break;  // Halt and set position: clears the position uncertain flag
       case 0x97:
         homing_ = true;
         go(0);
-        break;  // go home
+        break;  // Go home: to the limit switch, where the position is 0 and certain
       case 0xE0:
         to_position_ = true;
         go(angle(argument));
-        break;  // target position
+        break;  // Set target position
       default:
         throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
     }
@@ -114,6 +116,7 @@ class SimTic final : public device::UsbLink {
     if (log_) log_({{"t_monotonic_s", clock_.now_s()}, {"event", event}, {"angle_deg", motor_.angle_deg()}});
   }
 
+  // Settings, "Command timeout": stops when no command came for so long.
   void advance() {
     const bool moved = motor_.moving();
     motor_.advance(std::min(clock_.now_s(), heard_s_ + settings_.command_timeout_s));
@@ -123,6 +126,9 @@ class SimTic final : public device::UsbLink {
     if (moved && !motor_.moving()) note("standing");
   }
 
+  // Variable reference, by offset: operation state (2 de-energized, 4 soft error, 10 normal) and the flags after it,
+  // misc flags 1 (bits 0 energized, 1 position uncertain, 4 homing active), error status, planning mode, target
+  // position, max acceleration (microsteps per 100 s^2), current position, current velocity (microsteps per 10 000 s).
   std::int64_t variable(int offset) const {
     const auto steps = [&](double deg) { return std::llround(deg * settings_.steps_per_deg); };
     switch (offset) {

@@ -31,20 +31,16 @@ class SimZaber final : public SimController {
     max_speed_ = std::llround(settings.max_speed_deg_s * steps_per_deg * speed_units);
   }
 
+ private:
   // Manual, "Command": a command ends with CR, LF or both.
-  void receive(std::string_view bytes, double now_s) override {
-    advance(now_s);
-    for (const char c : bytes) {
-      if (silent()) return;
-      if (c != '\n' && c != '\r') {
-        line_ += c;
-      } else if (!line_.empty()) {
-        handle(std::exchange(line_, ""));
-      }
+  void hear(char c) override {
+    if (c != '\n' && c != '\r') {
+      line_ += c;
+    } else if (!line_.empty()) {
+      handle(std::exchange(line_, ""));
     }
   }
 
- private:
   // Manual, "Alerts": when a motion ends, "!01 1 IDLE --", if comm.alert is 1, as here.
   void on_standing() override {
     if (std::exchange(homing_, false)) {
@@ -204,7 +200,6 @@ class SimZaber final : public SimController {
     return "0";
   }
 
-  std::string line_;
   std::set<std::string> warnings_{"WR"};  // manual, "WR": no reference position after power-on
   double zero_deg_;                       // where its position is 0
   long long max_speed_ = 0;

@@ -60,7 +60,7 @@ TEST_CASE("The unit of an axis is degrees, however it is written; a stage withou
   VirtualStage lab;
   CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
   lab.stage->enable();
-  CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::protocol)
+  CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::data)
             .find("not referenced: give --home, or run `vam-stage home` if the controller keeps it") !=
         std::string::npos);
 }

@@ -33,9 +33,9 @@ TEST_CASE("GRBL: refuses motion before homing") {
   SpinPlan plan;
   plan.speed_deg_s = 60;
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; give --home") !=
+  CHECK(error_of(print, Fault::data).find("not referenced: its zero may be anywhere; give --home") !=
         std::string::npos);
-  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK_FALSE(lab.truly_moves());
   move(*lab.stage, lab.clock, 10, true, 30, 60);  // by an angle it may turn
   home(*lab.stage, lab.clock, 60);

@@ -56,9 +56,9 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   SpinPlan plan;
   plan.speed_deg_s = 60;
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::protocol).find("not referenced: its zero may be anywhere; give --home") !=
+  CHECK(error_of(print, Fault::data).find("not referenced: its zero may be anywhere; give --home") !=
         std::string::npos);
-  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK(lab.log.empty());
   home(*lab.stage, lab.clock, 60);
   print();
@@ -66,7 +66,7 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   lab.stage->enable();
   lab.stage->start_move(90);
   halt(*lab.stage, lab.clock, Stop::abrupt);  // which may lose steps
-  CHECK(fault_of(print) == Fault::protocol);
+  CHECK(fault_of(print) == Fault::data);
 }
 
 TEST_CASE("Tic stops after its command time-out") {

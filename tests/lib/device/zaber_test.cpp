@@ -86,9 +86,9 @@ TEST_CASE("Zaber: the speed goes with the motion, into the memory only of old fi
 TEST_CASE("Zaber: refuses motion to an angle before homing, and takes one by an angle") {
   ZaberLab lab;
   lab.open();
-  CHECK(error_of([&] { spin(*lab.stage, lab.clock, one_turn(), [](const AngleSample&) {}); }, Fault::protocol)
+  CHECK(error_of([&] { spin(*lab.stage, lab.clock, one_turn(), [](const AngleSample&) {}); }, Fault::data)
             .find("not referenced") != std::string::npos);
-  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::protocol);
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK_FALSE(lab.truly_moves());
   move(*lab.stage, lab.clock, 10, true, 30, 60);
   CHECK(std::abs(lab.stage->sample().angle_deg - 10) < microstep_deg);

@@ -12,12 +12,15 @@ namespace vam::sim {
 class SimController : public SimDevice {
  public:
   SimController(const SimGcsSettings& settings, double now_s, SimLog log);
+  void receive(std::string_view bytes, double now_s) final;
   void advance(double now_s) override;
   [[nodiscard]] std::optional<double> next_due_s() const override;
   std::string take(double now_s) override;
   [[nodiscard]] bool unplugged() const override { return unplugged_; }
 
  protected:
+  /// A byte has come; none after the cable was pulled.
+  virtual void hear(char c) = 0;
   /// The stage has come to rest.
   virtual void on_standing() {}
   void note(const std::string& event, const Json& facts);
@@ -33,6 +36,7 @@ class SimController : public SimDevice {
 
   SimGcsSettings settings_;
   SimMotor motor_;
+  std::string line_;  // what has come of a command
   double now_s_;
 
  private:
