@@ -1,4 +1,4 @@
-// Source of all of it: the firmware that vam-devices(7), section 7, prints.
+// Source of all of it: the firmware that [devices §7] prints.
 #include "sim/controllers/relay.hpp"
 
 #include <utility>
