@@ -13,6 +13,8 @@ namespace vam::io {
 
 namespace {
 
+constexpr std::uint64_t most_pixels_a_byte = std::uint64_t{8} * 1032;  // of 1 bit; deflate makes a byte of at most 1032
+
 struct Source {
   const char* at;
   std::size_t left;
@@ -86,6 +88,11 @@ GreyImage decode_png(const std::string& bytes, const std::string& name) {
   if (!reader.begin()) throw damaged();
   if (std::uint64_t{reader.width()} * reader.height() > max_pixels) {
     throw Error{Fault::data, too_large(name, reader.width(), reader.height())};
+  }
+  if (std::uint64_t{reader.width()} * reader.height() > most_pixels_a_byte * bytes.size()) {
+    throw Error{Fault::data, name + ": the PNG is damaged: its " + std::to_string(bytes.size()) +
+                                 " bytes cannot hold " + std::to_string(reader.width()) + " x " +
+                                 std::to_string(reader.height()) + " pixels"};
   }
   GreyImage image(static_cast<int>(reader.width()), static_cast<int>(reader.height()), reader.bits());
   std::vector<png_byte> pixels(reader.row_bytes() * reader.height());

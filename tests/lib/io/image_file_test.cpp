@@ -1,6 +1,7 @@
 #include "io/image/image_file.hpp"
 
 #include <doctest/doctest.h>
+#include <zlib.h>
 
 #include <array>
 #include <cstdio>
@@ -121,4 +122,22 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
   error_of([&] { ImageFolder{(folder / "none")}; }, vam::Fault::no_input);
   std::filesystem::create_directory(folder / "empty");
   CHECK(has(error_of([&] { ImageFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));
+}
+
+TEST_CASE("a PNG that announces more pixels than its bytes can hold is refused before they are") {
+  const scratch::Folder folder;
+  write_png(folder / "a.png", GreyImage(1, 1, 8));
+  std::string bytes = scratch::slurp(folder / "a.png");
+  const auto put = [&](std::size_t at, std::uint32_t number) {
+    for (int i = 0; i < 4; ++i) bytes[at + static_cast<std::size_t>(i)] = static_cast<char>(number >> (24 - 8 * i));
+  };
+  put(16, 16384);
+  put(20, 16384);
+  put(29, static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(bytes.data()) + 12, 17)));
+  scratch::spill(folder / "b.png", bytes);
+  std::string line;
+  CHECK(scratch::status([&] { (void)read_image(folder / "b.png"); }, &line) == 65);
+  CHECK(line.find("bytes cannot hold 16384 x 16384 pixels") != std::string::npos);
+  write_png(folder / "c.png", GreyImage(4096, 4096, 1));  // as small as a file of so many pixels gets
+  CHECK(read_image(folder / "c.png").width == 4096);
 }
