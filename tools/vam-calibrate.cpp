@@ -55,9 +55,10 @@ cli::Manual manual() {
 enum class Flips { none, optional, required };
 
 void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
-  scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.", "--from");
+  scan.positional("FRAMES", o.from, "EXR stack or folder of vam-capture, or a folder of images.", "--from").reads();
   if (flips != Flips::none) {
-    scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.");
+    scan.option("--flips", "FILE", o.flips, "Log of vam-project during the capture: which pattern frame was on.")
+        .reads();
     flips == Flips::required ? scan.required() : scan.default_is("frame n shows pattern frame n");
   }
   scan.option("--devices", "FILE", o.devices,
@@ -66,14 +67,16 @@ void add_input(cli::App& scan, ScanOptions& o, Flips flips) {
 }
 
 void add_dark(cli::App& scan, ScanOptions& o) {
-  scan.option("--dark", "FILE", o.dark, "Image or stack taken with the projector dark; its mean is subtracted.");
+  scan.option("--dark", "FILE", o.dark, "Image or stack taken with the projector dark; its mean is subtracted.")
+      .reads();
 }
 
 void add_resin(cli::App& resin, ResinOptions& o) {
-  resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).");
+  resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
   resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
   resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
-  resin.option("--profile", "FILE.png", o.profile, "Profilometer height map of the standard, to measure its diameter.");
+  resin.option("--profile", "FILE.png", o.profile, "Profilometer height map of the standard, to measure its diameter.")
+      .reads();
   resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel of the height map.");
 }
 
@@ -113,7 +116,8 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   auto& late = app.subcommand("lag", "delay of the camera's time stamps, from a bead that turns both ways", o.command);
   add_input(late, o, Flips::none);
   late.positional("REVERSE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).",
-                  "--reverse");
+                  "--reverse")
+      .reads();
   late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
   add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o,
             Flips::required);

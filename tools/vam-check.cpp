@@ -11,7 +11,6 @@
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/input_name.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "vam-check/inspect.hpp"
 
@@ -68,7 +67,6 @@ std::string report(const std::string& path, const std::vector<Finding>& findings
 }
 
 void check(const Options& options) {
-  io::refuse_two_stdins(options.files);
   std::map<std::string, std::vector<Finding>> found;
   Names names;
   std::vector<Error> damaged;
@@ -112,7 +110,8 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   cli::App app(manual());
   Options options;
-  app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or any others.");
+  app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or any others.")
+      .reads();
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
   app.flag(
       "--seal", options.seal,

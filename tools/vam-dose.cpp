@@ -4,7 +4,6 @@
 #include "base/json.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "printer.hpp"
@@ -23,8 +22,6 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
-  io::refuse_two_stdins({options.input, options.like, options.poses});
-  io::refuse_same_file(options.input, options.output);
 
   io::StackReader in(options.input);
   io::require(options.input, in.info(), model::Kind::sinogram);

@@ -6,7 +6,6 @@
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "model/grid_size.hpp"
 #include "optimize/run/printable.hpp"
@@ -26,13 +25,6 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-void refuse_same_files(const Options& options) {
-  for (const auto* input :
-       {&options.input, &options.init, &options.weights, &options.tolerances, &options.poses, &options.wobble}) {
-    if (!input->empty()) io::refuse_same_file(*input, options.output);
-  }
-}
-
 /// Three arrays of a slice and of a sinogram (three and six where other printers are faced), of all slices where light
 /// couples them.
 void require_memory_for(const Scene& scene, const light::Operator& light, bool tolerant, const std::string& subject) {
@@ -51,8 +43,6 @@ void run(const cli::App& app, Options& options) {
   settle(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
-  io::refuse_two_stdins({options.input, options.weights, options.tolerances, options.init, options.poses});
-  refuse_same_files(options);
   settle_response(app, options);
 
   const optimize_tool::Inputs in = optimize_tool::read(options);

@@ -4,7 +4,6 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/standard_input.hpp"
 #include "moved.hpp"
 #include "printer.hpp"
 #include "vam-ost/print.hpp"
@@ -69,7 +68,7 @@ cli::Manual manual() {
 }
 
 void declare(cli::App& app, Options& o) {
-  app.positional("VIEWS", o.views, "EXR frame stack, folder of images or video; - is standard input.");
+  app.positional("VIEWS", o.views, "EXR frame stack, folder of images or video; - is standard input.").reads();
   cli::add_output(app, o.output);
   app.group("Camera");
   app.option("--angle-step", "DEG", o.step_deg, cli::any,
@@ -77,10 +76,11 @@ void declare(cli::App& app, Options& o) {
       .default_is("none")
       .was("--step");
   app.option("--dark", "FILE", o.dark,
-             "Image or stack without a print (in the dark, or of the vial before printing); its mean is subtracted.");
-  app.option(
-      "--flat", "FILE", o.flat,
-      "Image or stack of a uniform scene; views are divided by it after dark subtraction. Default: camera.flat.");
+             "Image or stack without a print (in the dark, or of the vial before printing); its mean is subtracted.")
+      .reads();
+  app.option("--flat", "FILE", o.flat,
+             "Image or stack of a uniform scene; views are divided by it after dark subtraction. Default: camera.flat.")
+      .reads();
   app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels of the views, in addition to camera.binning.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pixel pitch at the axis before binning. Default: the stack's, else camera.pixel_mm.");
@@ -104,7 +104,7 @@ void declare(cli::App& app, Options& o) {
   app.flag("--no-refraction", o.no_refraction, "Treat image columns as parallel rays (for comparison).");
   app.group("Print");
   app.option("--isovalue", "VALUE", o.isovalue, cli::positive, "Gelation threshold I_p.").was("--level");
-  app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.");
+  app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin that holds I_p.").reads();
   app.option("--pieces", "MM3", o.pieces_mm3, cli::non_negative,
              "Smallest body that belongs to the print. Default: 1 % of the largest body's volume.");
   app.option("--mesh", "FILE", o.mesh, "Surface at I_p: .ply or .stl.")
@@ -114,7 +114,8 @@ void declare(cli::App& app, Options& o) {
       .writes({".png"});
   app.option("--target", "FILE.vdb", o.reference,
              "Volume with the part to compare with, in the same frame of reference.")
-      .was("--reference");
+      .was("--reference")
+      .reads();
   app.group("Live");
   app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.");
   app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.").needs({"--live"});
@@ -164,7 +165,6 @@ void run(const cli::App& app, const Options& options) {
   if (options.live && app.given("--report")) {
     throw Error{Fault::usage, "--report: is of one volume; with --live the figures of each go to --log"};
   }
-  io::refuse_two_stdins({options.views, options.dark, options.flat, options.reference});
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

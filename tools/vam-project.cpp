@@ -37,7 +37,6 @@ void run(const cli::App& app, Options& options) {
   }
   if (options.only_plan) return print_plan(options, printer);
   if (live) return device::interruptible([&] { print_live(app, options, printer); });
-  if (io::frame_output(options.output) != io::FrameOutput::folder) io::refuse_same_file(options.input, options.output);
   if (project::is_folder(options.input)) {
     return write_slices(app, options, printer, project::slice_folder(options.input));
   }

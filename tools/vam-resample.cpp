@@ -58,7 +58,6 @@ void run(const cli::App& app, Options& options) {
   options.alignment.angle_offset_rad = options.angle_offset_deg * rad_per_deg;
   if (options.explain) return explain(options, printer, how);
 
-  io::refuse_same_file(options.input, options.output);
   io::StackReader in(options.input);
   if (projector && in.info().kind == model::Kind::sinogram && in.info().space == model::Space::projector) {
     throw Error{Fault::data, io::input_name(options.input) +

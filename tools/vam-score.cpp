@@ -10,7 +10,6 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/conditions.hpp"
@@ -65,15 +64,11 @@ void add_light(score::Score& result, const std::string& sinogram) {
   for (model::ImageInfo about; light.next(image, about);) result.add_projection(image.values);
 }
 
-void refuse_same_files(const Options& options) {
+void require_files_for_outputs(const Options& options) {
   for (const auto& output : {options.print, options.report, options.reach}) {
-    if (output.empty()) continue;
-    if (output == "-") {
-      throw Error{Fault::usage,
-                  "--mesh, --reach, --report: standard output holds the figures of merit; name a file instead of -"};
-    }
-    io::refuse_same_file(options.input, output);
-    if (!options.target.empty()) io::refuse_same_file(options.target, output);
+    if (output != "-") continue;
+    throw Error{Fault::usage,
+                "--mesh, --reach, --report: standard output holds the figures of merit; name a file instead of -"};
   }
 }
 
@@ -82,8 +77,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, score::Score::names());
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
-  io::refuse_two_stdins({options.input, options.target, options.sinogram});
-  refuse_same_files(options);
+  require_files_for_outputs(options);
   const Inputs in = read(options);
   settle_exposure(options.how, in, printer);
   score::Score result = score(in, options.how);

@@ -48,14 +48,14 @@ cli::Manual manual() {
 }
 
 void declare(cli::App& app, Options& options) {
-  app.positional("PRINT", options.print, "Mesh (" + io::mesh_format_names() + ") or volume (.vdb).");
-  app.positional("REFERENCE", options.reference, "Mesh or volume of the design.");
+  app.positional("PRINT", options.print, "Mesh (" + io::mesh_format_names() + ") or volume (.vdb).").reads();
+  app.positional("REFERENCE", options.reference, "Mesh or volume of the design.").reads();
   app.option("-o,--output", "FILE.ply", options.output,
              "Write the aligned print with distances and colours at its vertices.")
       .writes({".ply"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
-  app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.");
+  app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.").reads();
   app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
              "Isovalue of a reference volume's surface.");
   app.was("--reference-level");
@@ -79,8 +79,9 @@ void declare(cli::App& app, Options& options) {
 
 void declare_height(cli::App& app, HeightOptions& options) {
   app.positional("IMAGE", options.image,
-                 "Profilometer's heights (PNG, TIFF or EXR), or a mesh or volume, viewed from above.");
-  app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.");
+                 "Profilometer's heights (PNG, TIFF or EXR), or a mesh or volume, viewed from above.")
+      .reads();
+  app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.").reads();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel size of the image.");
   app.option(
       "--full", "MM", options.full_mm, cli::positive,

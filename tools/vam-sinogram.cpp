@@ -57,7 +57,6 @@ void run(const cli::App& app, const Options& options) {
   if (options.cutoff && options.filter == "none") throw Error{Fault::usage, "--cutoff: requires --filter"};
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
-  io::refuse_same_file(options.input, options.output);
   const io::SparseVolume volume = io::read_volume(options.input, options.grid);
   io::require_usable(options.input, volume);
   const tomo::ProjectionSpec spec = make_spec(options, printer, volume.grid());

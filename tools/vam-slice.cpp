@@ -11,7 +11,6 @@
 #include "base/slab.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/grid_size.hpp"
@@ -58,10 +57,6 @@ void run(const cli::App& app, Options& options) {
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
   settle(options, printer);
-  io::refuse_two_stdins({options.shape.empty() ? options.input : "", options.insert});
-  for (const std::string& input : {options.input, options.insert}) {
-    if (!input.empty()) io::refuse_same_file(input, options.output);
-  }
 
   solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));

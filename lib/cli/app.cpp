@@ -44,6 +44,7 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
   parsed->expected(option.repeatable ? -1 : 1)->type_size(1)->allow_extra_args(false);
   parsed->multi_option_policy(option.repeatable ? CLI::MultiOptionPolicy::TakeAll : CLI::MultiOptionPolicy::Throw);
   state_->current_group().options.push_back(std::move(option));
+  state_->operand_last = false;
   return *this;
 }
 
@@ -51,14 +52,16 @@ App& App::declare(Option option, const std::function<void(const std::string&)>& 
 App& App::positional(const std::string& value_name, std::string& target, const std::string& help,
                      const std::string& former) {
   state_->parser->add_option(value_name, target)->type_size(1)->expected(1);
-  state_->tool.positionals.push_back({value_name, help, target, former});
+  state_->tool.positionals.push_back({value_name, help, target, former, [&target] { return std::vector{target}; }});
+  state_->operand_last = true;
   if (!target.empty()) return *this;
   for (auto& positional : state_->tool.positionals) positional.default_text.clear();
   return *this;
 }
 
 App& App::positional(const std::string& value_name, std::vector<std::string>& target, const std::string& help) {
-  state_->tool.positionals.push_back({value_name, help, join(target, " ")});
+  state_->tool.positionals.push_back({value_name, help, join(target, " "), {}, [&target] { return target; }});
+  state_->operand_last = true;
   state_->parser->add_option(split(value_name, ' ').front(), target)->type_size(1)->expected(-1);
   return *this;
 }
@@ -159,6 +162,7 @@ App& App::choice(const std::string& flag, std::string& target, const std::vector
 App& App::flag(const std::string& name, bool& target, const std::string& help) {
   state_->parser->add_flag(name, target);
   state_->current_group().options.push_back({name, "", help, "", "", {}});
+  state_->operand_last = false;
   state_->current_group().options.back().value = [&target] { return std::string(target ? "1" : "0"); };
   return *this;
 }
@@ -175,6 +179,16 @@ App& App::required() {
 
 App& App::not_in_job() {
   state_->current_group().options.back().in_job = false;
+  return *this;
+}
+
+App& App::reads(const std::vector<std::string>& unless) {
+  if (state_->operand_last) {
+    state_->tool.positionals.back().reads = true;
+    state_->tool.positionals.back().unless = unless;
+  } else {
+    state_->current_group().options.back().reads = true;
+  }
   return *this;
 }
 

@@ -89,6 +89,9 @@ class App {
   /// The option declared last names a file that the tool writes: no two of them may name the same one. Of what kind it
   /// is: its name must end in one of `endings`, if any; "-" and devices may be called anything.
   App& writes(const std::vector<std::string>& endings = {});
+  /// The operand or option declared last names a file that the tool reads; - is standard input. At most one input is
+  /// standard input, and no output is an input. `unless`: options that stand for the operand.
+  App& reads(const std::vector<std::string>& unless = {});
   /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
   App& needs(const std::vector<std::string>& any_of);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
@@ -105,9 +108,12 @@ class App {
   /// "vam-slice 0.1.0 part.stl --voxel 0.1": the line for vam:history; known once run() has parsed. No paths of other
   /// machines, time stamps or host names are added.
   [[nodiscard]] std::string history() const;
-  /// A line "--flag=value" for each option but those not_in_job(), with the values in force: which job a kept state is
-  /// of. An option is part of it unless its declaration says otherwise.
+  /// A line "--flag=value" for each option but those not_in_job(), with the values in force, and the hash of each file
+  /// that such an option reads: which job a kept state is of. An option is part of it unless its declaration says
+  /// otherwise.
   [[nodiscard]] std::string job() const;
+  /// The files that are read, in the order of their declaration.
+  [[nodiscard]] std::vector<std::string> inputs() const;
   /// Did the user give this option?
   [[nodiscard]] bool given(const std::string& flag) const;
 
@@ -119,6 +125,7 @@ class App {
   bool print_about(int argc, char** argv) const;
   void require_present() const;
   void require_needed() const;
+  void require_own_inputs() const;
   void require_own_outputs() const;
   [[noreturn]] void fail_on_count(const std::vector<std::string>& reversed_words) const;
   [[nodiscard]] Declaration whole() const;

@@ -27,6 +27,7 @@ struct Option {
   std::function<std::string()> value = {};           // in force
   bool required = false;                             // in its form of the tool
   bool in_job = true;                                // App::job() lists it
+  bool reads = false;                                // names a file that is read
   bool writes = false;                               // names a file that is written
   std::vector<std::string> endings = {};             // of which its name has one; empty: any
 };
@@ -39,8 +40,11 @@ struct Group {
 struct Positional {
   std::string value_name;
   std::string help;
-  std::string default_text;  // empty: must be given
-  std::string former = {};   // the option that it was; not shown
+  std::string default_text;                               // empty: must be given
+  std::string former = {};                                // the option that it was; not shown
+  std::function<std::vector<std::string>()> values = {};  // in force
+  bool reads = false;                                     // names files that are read,
+  std::vector<std::string> unless = {};                   // unless one of these options is given
 };
 
 struct Declaration {

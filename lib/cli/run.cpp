@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <new>
 #include <optional>
 #include <set>
@@ -25,8 +24,6 @@
 namespace vam::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 // Shell quoting for the history line: words of harmless characters stay as they are.
 std::string quoted(const std::string& word) {
@@ -54,28 +51,11 @@ Declaration asked_about(Declaration tool, const std::vector<std::string>& words)
   return tool;
 }
 
-// A device or a pipe is no file that a second writer would replace.
-bool is_one_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
-  return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
-}
-
 }  // namespace
 
 bool App::given(const std::string& flag) const { return state_->parser->get_option(flag)->count() > 0; }
 
 std::string App::history() const { return state_->history; }
-
-std::string App::job() const {
-  std::string text;
-  for (const auto& group : state_->tool.groups) {
-    for (const auto& option : group.options) {
-      if (option.in_job) text += long_flag(option) + "=" + option.value() + "\n";
-    }
-  }
-  return text;
-}
 
 // The declaration with those of its subcommands, for printing.
 Declaration App::whole() const {
@@ -132,42 +112,6 @@ void App::require_needed() const {
 
 namespace {
 
-// A name that says another format than the file's would mislead whoever opens it.
-void require_ending(const Option& option) {
-  const std::string path = option.value();
-  if (option.endings.empty() || path == "-" || path.starts_with("/dev/")) return;
-  const auto ends = [&](const std::string& ending) { return path.ends_with(ending); };
-  if (std::any_of(option.endings.begin(), option.endings.end(), ends)) return;
-  throw Error{Fault::usage, long_flag(option) + ": '" + path + "' must end in " + join(option.endings, " or ")};
-}
-
-}  // namespace
-
-void App::require_own_outputs() const {
-  std::vector<const Option*> before;
-  for (const auto& group : state_->tool.groups) {
-    for (const auto& option : group.options) {
-      if (!option.writes || option.value().empty()) continue;
-      require_ending(option);
-      for (const Option* other : before) {
-        if (option.value() == "-" && other->value() == "-") {
-          throw Error{Fault::usage, long_flag(option) + ": would write to standard output, as " + long_flag(*other) +
-                                        " does; name a file for one of them"};
-        }
-        if (!is_one_file(option.value(), other->value())) continue;
-        throw Error{Fault::usage, long_flag(option) + ": would write to " + option.value() + ", as " +
-                                      long_flag(*other) + " does; name another file"};
-      }
-      before.push_back(&option);
-    }
-  }
-  for (const auto& nested : state_->subcommands) {
-    if (nested->state_->parser->parsed()) nested->require_own_outputs();
-  }
-}
-
-namespace {
-
 // By the text of --memory.
 void bound(const std::optional<std::string>& gib) {
   constexpr double bytes_per_gib = 1 << 30;
@@ -203,6 +147,7 @@ void App::parse(int argc, char** argv) {
   }
   require_present();
   require_needed();
+  require_own_inputs();
   require_own_outputs();
 }
 

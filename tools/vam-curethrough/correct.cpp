@@ -173,7 +173,7 @@ Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
 }  // namespace
 
 void declare(cli::App& app, CorrectOptions& options) {
-  app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.");
+  app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.").reads();
   cli::add_output(app, options.output);
   app.option("--png", "FOLDER", options.png,
              "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
@@ -216,7 +216,6 @@ void declare(cli::App& app, CorrectOptions& options) {
 void run(const cli::App& root, const cli::App& app, const CorrectOptions& options) {
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
-  if (stack) io::refuse_same_file(options.part.path, options.output);
   if (stack && !options.catalogue.empty() && options.output == "-") {
     throw Error{Fault::usage, "--catalogue: the table goes to standard output; give -o a file name"};
   }

@@ -9,7 +9,6 @@
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"
@@ -198,12 +197,14 @@ void declare(cli::App& app, ModelOptions& options) {
   options.part.path.clear();
   app.positional("SLICES", options.input,
                  "EXR frame stack, folder of numbered images, or a target volume (.vdb, or standard input): maximum "
-                 "intensity in the part, minimum outside.");
+                 "intensity in the part, minimum outside.")
+      .reads();
   app.option("-o,--output", "FILE", options.output,
              "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).")
       .writes();
   app.option("--target", "FILE", options.part.path, "Part that the slices should give, for the cure map.")
-      .was("--part");
+      .was("--part")
+      .reads();
   add_part(app, options.part);
   app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of images without --target.");
   app.group("Figure");
@@ -223,8 +224,6 @@ void declare(cli::App& app, ModelOptions& options) {
 }
 
 void run(const cli::App& root, const cli::App& app, const ModelOptions& options) {
-  io::refuse_two_stdins({options.input, options.part.path});
-  if (!options.output.empty()) io::refuse_same_file(options.input, options.output);
   const Inputs in = open_inputs(app, options);
   Judge judge(options, in);
   read_twice(in, judge);

@@ -76,7 +76,8 @@ std::string table_of(const resin::WorkingCurve& curve, const io::CsvTable& csv,
 }  // namespace
 
 void declare(cli::App& app, WorkingCurveOptions& options) {
-  app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; one line per measurement.");
+  app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; one line per measurement.")
+      .reads();
   app.option("--confidence", "FRACTION", options.confidence, {0.5, 0.9999}, "Confidence level of the intervals.");
   app.option("--plot", "FILE", options.plot, "PNG of the samples, the line and its interval.").writes();
   cli::add_report(app, options.report);

@@ -7,19 +7,21 @@
 namespace vam::dose_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) of a projector, or a virtual one.");
+  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) of a projector, or a virtual one.").reads();
   cli::add_output(app, options.output);
   cli::add_report(app, options.report);
   app.group("Volume");
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose voxels the dose is computed on; a grid 'target' is the part of the report, a grid "
-             "'insert' an opaque object in the beam.");
+             "'insert' an opaque object in the beam.")
+      .reads();
   app.option("--size", "MM", options.size_mm, cli::positive,
              "Edge of the square around the axis. Voxels are as high as slices.");
   app.default_is("all that is lit from every side (projector), or the width of the sinogram (virtual)");
   app.option("--poses", "FILE", options.poses,
              "Pose of the vial or the part in every frame: a table (CSV) with the columns "
-             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame.");
+             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line a frame.")
+      .reads();
   app.default_is("the poses of the stack, or none");
   app.group("Beam and resin");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,

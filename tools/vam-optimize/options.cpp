@@ -44,7 +44,8 @@ void declare_constraints(cli::App& app, Options& options) {
            "Constrain surface voxels, too: as part when at least half covered, else as void.");
   app.option("--weights", "FILE", options.weights,
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
-             "leaves the voxel unconstrained.");
+             "leaves the voxel unconstrained.")
+      .reads();
   app.default_is("the grid 'weight' of the target file, if present");
   app.flag("--grey-target", options.demands.grey,
            "Grey target: a dose (or response) for every voxel, to be met within --band.");
@@ -52,7 +53,8 @@ void declare_constraints(cli::App& app, Options& options) {
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
              readers("--band", ", --grey-target") + "largest deviation of the resin's response from the target.");
   app.option("--tolerances", "FILE", options.tolerances,
-             "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.");
+             "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
+      .reads();
   app.default_is("the grid 'tolerance' of the target file, if present");
   app.option("--resin-response", "CURVE", options.response,
              readers("--resin-response", ", --grey-target") +
@@ -75,7 +77,7 @@ void declare_stopping(cli::App& app, Options& options) {
   app.option("--patience", "N", options.limits.patience, {0, 1000000},
              "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
   app.not_in_job();
-  app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).");
+  app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.option("--checkpoint", "FILE", options.checkpoint,
              "State of the run if interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from it with "
              "bit-identical results; target, printer and all options that affect the result must be the same. Removed "
@@ -162,7 +164,7 @@ void declare_beam(cli::App& app, Options& options) {
 }  // namespace
 
 void declare(cli::App& app, Options& options) {
-  app.positional("TARGET", options.input, "Volume (VDB) with a grid 'target' of coverage 0...1.");
+  app.positional("TARGET", options.input, "Volume (VDB) with a grid 'target' of coverage 0...1.").reads();
   cli::add_output(app, options.output);
   std::vector<std::string> methods = optimize::method_names();
   methods.insert(methods.begin(), "auto");
@@ -178,16 +180,18 @@ void declare(cli::App& app, Options& options) {
              "Number of detector bins of a parallel beam, each one voxel wide.");
   app.default_is("as many as cover the writable circle");
   app.group("Poses of vial and part");
-  app.option(
-      "--poses", "FILE", options.poses,
-      "Pose of the vial or the part in every frame: a table (CSV) with the columns angle_deg,dx_mm,dy_mm,dz_mm,moves, "
-      "one line a frame, 360 / --angles degrees apart, for any number of turns. "
-      "Becomes part of the stack.");
+  app.option("--poses", "FILE", options.poses,
+             "Pose of the vial or the part in every frame: a table (CSV) with the columns "
+             "angle_deg,dx_mm,dy_mm,dz_mm,moves, "
+             "one line a frame, 360 / --angles degrees apart, for any number of turns. "
+             "Becomes part of the stack.")
+      .reads();
   app.option("--helix", "MM", options.helix_mm, cli::any,
              "For parts taller than the image: the vial is lifted (below 0: lowered) by so much a turn, in as many "
              "turns as the whole part takes to pass the image.");
   app.option("--wobble", "RECORD", options.wobble,
-             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis tells.");
+             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis tells.")
+      .reads();
   declare_constraints(app, options);
   declare_stopping(app, options);
   declare_parameters(app, options);

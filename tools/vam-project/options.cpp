@@ -54,7 +54,8 @@ void add_patterns(cli::App& app, PatternOptions& options) {
 void declare(cli::App& app, Options& options) {
   app.positional("SINOGRAM", options.input,
                  "Sinogram stack (EXR) for the projector, with --flatland a virtual one; or the slices of "
-                 "vam-curethrough, a frame stack (EXR) or a folder of images.");
+                 "vam-curethrough, a frame stack (EXR) or a folder of images.")
+      .reads({"--pattern"});
   cli::add_output(app, options.output);
   app.group("Time");
   app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second.")

@@ -5,7 +5,8 @@
 namespace vam::resample_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --to virtual.");
+  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --to virtual.")
+      .reads({"--explain"});
   cli::add_output(app, options.output);
   app.choice("--to", options.to, {"projector", "virtual"}, "Output: projector columns, or virtual detector bins.");
   app.choice("--interpolation", options.interpolation, {"linear", "cubic"}, "Interpolation across columns and angles.");

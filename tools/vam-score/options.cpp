@@ -3,11 +3,11 @@
 namespace vam::score_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("DOSE", options.input, "Volume (VDB) with the dose.");
+  app.positional("DOSE", options.input, "Volume (VDB) with the dose.").reads();
   app.option("--grid", "NAME", options.grid, "Grid to score; 'scatter' is a reconstruction of vam-ost.");
-  app.option("--target", "FILE", options.target, "Volume with the grid 'target', of the same size and place.");
+  app.option("--target", "FILE", options.target, "Volume with the grid 'target', of the same size and place.").reads();
   app.default_is("the grid 'target' of DOSE");
-  app.option("--sinogram", "FILE", options.sinogram, "Projections (EXR), for the light efficiency.");
+  app.option("--sinogram", "FILE", options.sinogram, "Projections (EXR), for the light efficiency.").reads();
   app.group("Score");
   app.option(
       "--require", "CONDITIONS", options.require,

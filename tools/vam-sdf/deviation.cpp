@@ -13,7 +13,6 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 #include "model/conditions.hpp"
 #include "plot/plot.hpp"
@@ -91,10 +90,6 @@ void deviation(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
-  io::refuse_two_stdins({options.print, options.reference});
-  for (const auto& input : {options.print, options.reference}) {
-    if (!options.output.empty()) io::refuse_same_file(input, options.output);
-  }
   const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_isovalue);
   std::optional<metrology::BodyCount> bodies;
   model::TriangleSoup print = read_print(options.print, isovalue, options.pieces_mm3, bodies);

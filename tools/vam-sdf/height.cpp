@@ -9,7 +9,6 @@
 #include "io/image/image_file.hpp"
 #include "io/image/view_source.hpp"
 #include "io/settings/report.hpp"
-#include "io/stream/standard_input.hpp"
 #include "metrology/compare/emboss.hpp"
 #include "model/conditions.hpp"
 #include "plot/contour.hpp"
@@ -94,7 +93,6 @@ void draw_section(const std::string& path, const metrology::Section& section) {
 }  // namespace
 
 void height(const HeightOptions& options) {
-  io::refuse_two_stdins({options.image, options.design});
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
   const model::TriangleSoup design = read_surface(options.design, options.reference_isovalue);

@@ -11,11 +11,11 @@
 namespace vam::slice_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("PART", options.input, "Mesh, or folder of numbered images.");
+  app.positional("PART", options.input, "Mesh, or folder of numbered images.").reads({"--shape"});
   cli::add_output(app, options.output);
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.");
-  app.option("--insert", "MESH", options.insert, "Object to print around, in the coordinates of PART.");
+  app.option("--insert", "MESH", options.insert, "Object to print around, in the coordinates of PART.").reads();
   app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape,
              "Object to print around, by name; in mm, centred on the axis.");
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},

@@ -1,13 +1,12 @@
 #include "vam-view/options.hpp"
 
 #include "base/error.hpp"
-#include "io/stream/standard_input.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::view_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.");
+  app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.").reads();
   app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes({".png"});
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
@@ -18,7 +17,8 @@ void declare(cli::App& app, Options& options) {
   app.default_is("the middle one; of frames the first");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
              "Number of sections, slices or frames on one sheet, evenly spaced.");
-  app.option("--target", "FILE", options.target, "Volume with the grid 'target', for the outline or for --histogram.");
+  app.option("--target", "FILE", options.target, "Volume with the grid 'target', for the outline or for --histogram.")
+      .reads();
   app.default_is("for --histogram the grid in FILE, else no outline");
   app.flag("--histogram", options.histogram, "Show dose distributions inside and outside the part.");
   app.group("Appearance");
@@ -42,10 +42,6 @@ void check(const Options& options) {
   if (!options.exported.empty() && options.output != "-") {
     throw Error{Fault::usage, "--export: writes the values instead of the image; leave out --output"};
   }
-  const std::string& written = options.exported.empty() ? options.output : options.exported;
-  io::refuse_two_stdins({options.input, options.target});
-  io::refuse_same_file(options.input, written);
-  if (!options.target.empty()) io::refuse_same_file(options.target, written);
 }
 
 }  // namespace vam::view_tool

@@ -21,6 +21,7 @@ struct App::State {
   std::vector<std::unique_ptr<App>> subcommands;  // declared under this one
   std::string history;
   std::string heading = App::plain_heading;  // of the options that follow
+  bool operand_last = false;                 // what was declared last is an operand
 
   Group& current_group() {
     const auto found = std::find_if(tool.groups.begin(), tool.groups.end(),

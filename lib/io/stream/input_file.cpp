@@ -19,11 +19,6 @@ namespace {
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
 constexpr int pipe_bytes = 1 << 20;
 
-// False when there is no such file; "-" is the given standard descriptor.
-bool identify(const std::string& path, int standard, struct stat& about) {
-  return (path == "-" ? fstat(standard, &about) : stat(path.c_str(), &about)) == 0;
-}
-
 }  // namespace
 
 InputFile::InputFile(const std::string& path, Content content) : name_(input_name(path)) {
@@ -103,14 +98,6 @@ std::string read_all(const std::string& path, Content content, std::uint64_t lim
     file.skip(ready.size());
   }
   return bytes;
-}
-
-void refuse_same_file(const std::string& input, const std::string& output) {
-  struct stat in = {};
-  struct stat out = {};
-  if (!identify(input, STDIN_FILENO, in) || !identify(output, STDOUT_FILENO, out)) return;
-  if (!S_ISREG(in.st_mode) || in.st_dev != out.st_dev || in.st_ino != out.st_ino) return;
-  throw Error{Fault::usage, (output == "-" ? "stdout" : output) + ": is also the input; write to another file"};
 }
 
 std::string sha256_of(const std::string& path) {

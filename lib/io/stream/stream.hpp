@@ -106,7 +106,4 @@ class OutputFile {
 /// Writes a whole text; throws as OutputFile does.
 void write_text(const std::string& path, std::string_view text);
 
-/// Throws Fault::usage when both are the same regular file, by whatever names ("-" included).
-void refuse_same_file(const std::string& input, const std::string& output);
-
 }  // namespace vam::io

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <optional>
 
@@ -317,6 +318,44 @@ TEST_CASE("what a form cannot do without is shown as such and refused where miss
   CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; --help explains it\n");
   CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; --help explains it\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
+}
+
+TEST_CASE("inputs: one standard input, none of them an output, their contents part of the job") {
+  const std::string file = "/tmp/vam-cli-input." + std::to_string(getpid());
+  std::ofstream(file) << "first";
+  const auto said = [](const std::vector<std::string>& words, std::string* job = nullptr) {
+    std::string part = "-", weights, shape, out;
+    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    app.positional("PART", part, "What to read.").reads({"--shape"});
+    app.option("--weights", "FILE", weights, "Weights.").reads();
+    app.option("--shape", "NAME", shape, "Instead of PART.");
+    app.option("-o,--output", "FILE", out, "Output.").not_in_job().writes();
+    const std::string text = written_to(stderr, [&] { run_app(app, words); });
+    if (job != nullptr) *job = app.job();
+    return text;
+  };
+  CHECK(said({"--weights", "-"}) ==
+        "vam-demo: 2 inputs are standard input, which can be read once; name files for the others\n");
+  CHECK(said({"--weights", "-", "--shape", "cube"}).empty());
+  CHECK(said({file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
+  CHECK(said({"--weights", file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
+  const std::string link = file + ".link";
+  for (const auto make : {&::link, &::symlink}) {
+    CHECK(make(file.c_str(), link.c_str()) == 0);
+    CHECK(said({file, "-o", link}) == "vam-demo: " + link + ": is also the input; write to another file\n");
+    CHECK(said({link, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
+    unlink(link.c_str());
+  }
+  CHECK(said({"/dev/null", "-o", "/dev/null"}).empty());
+  CHECK(said({file, "-o", file + ".absent"}).empty());
+  std::string before, same, after;
+  CHECK(said({"--weights", file}, &before).empty());
+  CHECK(said({"--weights", file}, &same).empty());
+  std::ofstream(file) << "second";
+  CHECK(said({"--weights", file}, &after).empty());
+  CHECK(before == same);
+  CHECK(before != after);
+  unlink(file.c_str());
 }
 
 TEST_CASE("an output's name does not say another format") {

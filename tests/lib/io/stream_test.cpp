@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "io/stream/output_folder.hpp"
-#include "io/stream/standard_input.hpp"
 #include "lib/io/scratch.hpp"
 
 using namespace vam::io;
@@ -228,11 +227,6 @@ TEST_CASE("removes temporaries of killed writers, keeps those of live ones") {
   waitpid(alive, nullptr, 0);
 }
 
-TEST_CASE("two standard inputs are one too many") {
-  refuse_two_stdins({"-", "a", ""});
-  CHECK(status([] { refuse_two_stdins({"-", "a", "-"}); }) == 64);
-}
-
 TEST_CASE("- is stdout, written directly, and stdin") {
   const scratch::Folder folder;
   {
@@ -281,20 +275,4 @@ TEST_CASE("read_all has a limit") {
   spill(folder / "a", std::string(3000, 'x'));
   CHECK(read_all(folder / "a", Content::text, 3000).size() == 3000);
   CHECK(status([&] { (void)read_all(folder / "a", Content::text, 2999); }) == 65);
-}
-
-TEST_CASE("output equal to input is refused, by any name") {
-  const scratch::Folder folder;
-  spill(folder / "a", "x");
-  spill(folder / "b", "x");
-  std::filesystem::create_hard_link(folder / "a", folder / "hard");
-  std::filesystem::create_symlink("a", folder / "soft");
-  CHECK(status([&] { refuse_same_file(folder / "a", folder / "a"); }) == 64);
-  CHECK(status([&] { refuse_same_file(folder / "a", folder / "hard"); }) == 64);
-  CHECK(status([&] { refuse_same_file(folder / "soft", folder / "a"); }) == 64);
-  CHECK(status([&] { refuse_same_file(folder / "a", folder / "b"); }) == 0);
-  CHECK(status([&] { refuse_same_file(folder / "a", folder / "absent"); }) == 0);
-  CHECK(status([&] { refuse_same_file("/dev/null", "/dev/null"); }) == 0);
-  const scratch::Redirect to(STDIN_FILENO, folder / "a");
-  CHECK(status([&] { refuse_same_file("-", folder / "a"); }) == 64);
 }

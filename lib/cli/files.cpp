@@ -1,0 +1,137 @@
+// The files that a tool reads and writes: no input is lost to an output, no stream is used twice.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/App.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/error.hpp"
+#include "base/sha256.hpp"
+#include "base/text.hpp"
+#include "cli/app.hpp"
+#include "cli/private/app_state.hpp"
+
+namespace vam::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A device or a pipe is no file that a second writer would replace.
+bool is_one_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  if (fs::exists(a, ignored) && !fs::is_regular_file(a, ignored)) return false;
+  return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
+}
+
+// A name that says another format than the file's would mislead whoever opens it.
+void require_ending(const Option& option) {
+  const std::string path = option.value();
+  if (option.endings.empty() || path == "-" || path.starts_with("/dev/")) return;
+  const auto ends = [&](const std::string& ending) { return path.ends_with(ending); };
+  if (std::any_of(option.endings.begin(), option.endings.end(), ends)) return;
+  throw Error{Fault::usage, long_flag(option) + ": '" + path + "' must end in " + join(option.endings, " or ")};
+}
+
+// "-" is the given standard descriptor.
+bool is_same_file(const std::string& input, const std::string& output) {
+  struct stat in = {};
+  struct stat out = {};
+  const auto identify = [](const std::string& path, int standard, struct stat& about) {
+    return (path == "-" ? fstat(standard, &about) : stat(path.c_str(), &about)) == 0;
+  };
+  if (!identify(input, STDIN_FILENO, in) || !identify(output, STDOUT_FILENO, out)) return false;
+  return S_ISREG(in.st_mode) && in.st_dev == out.st_dev && in.st_ino == out.st_ino;
+}
+
+// The contents of a file that may change between two runs of a job.
+std::string hash_of(const std::string& path) {
+  if (!fs::is_regular_file(path)) return "";
+  std::ifstream file(path, std::ios::binary);
+  Sha256 hash;
+  std::vector<char> block(1 << 20);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
+    hash.add(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  return hash.digest();
+}
+
+}  // namespace
+
+std::vector<std::string> App::inputs() const {
+  std::vector<std::string> paths;
+  for (const auto& positional : state_->tool.positionals) {
+    const auto& unless = positional.unless;
+    if (!positional.reads || std::any_of(unless.begin(), unless.end(), [&](const auto& flag) { return given(flag); })) {
+      continue;
+    }
+    for (const auto& path : positional.values()) paths.push_back(path);
+  }
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (option.reads) paths.push_back(option.value());
+    }
+  }
+  std::erase(paths, "");
+  return paths;
+}
+
+void App::require_own_inputs() const {
+  for (const auto& nested : state_->subcommands) {
+    if (nested->state_->parser->parsed()) return nested->require_own_inputs();
+  }
+  const auto paths = inputs();
+  const auto streams = std::count(paths.begin(), paths.end(), "-");
+  if (streams > 1) {
+    throw Error{Fault::usage, std::to_string(streams) +
+                                  " inputs are standard input, which can be read once; name files for the others"};
+  }
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      const std::string output = option.writes ? option.value() : "";
+      if (output.empty()) continue;
+      if (std::none_of(paths.begin(), paths.end(), [&](const auto& path) { return is_same_file(path, output); }))
+        continue;
+      throw Error{Fault::usage, (output == "-" ? "stdout" : output) + ": is also the input; write to another file"};
+    }
+  }
+}
+
+void App::require_own_outputs() const {
+  std::vector<const Option*> before;
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (!option.writes || option.value().empty()) continue;
+      require_ending(option);
+      for (const Option* other : before) {
+        if (option.value() == "-" && other->value() == "-") {
+          throw Error{Fault::usage, long_flag(option) + ": would write to standard output, as " + long_flag(*other) +
+                                        " does; name a file for one of them"};
+        }
+        if (!is_one_file(option.value(), other->value())) continue;
+        throw Error{Fault::usage, long_flag(option) + ": would write to " + option.value() + ", as " +
+                                      long_flag(*other) + " does; name another file"};
+      }
+      before.push_back(&option);
+    }
+  }
+  for (const auto& nested : state_->subcommands) {
+    if (nested->state_->parser->parsed()) nested->require_own_outputs();
+  }
+}
+
+std::string App::job() const {
+  std::string text;
+  for (const auto& group : state_->tool.groups) {
+    for (const auto& option : group.options) {
+      if (!option.in_job) continue;
+      text += long_flag(option) + "=" + option.value() + "\n";
+      if (option.reads) text += hash_of(option.value()) + "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace vam::cli
