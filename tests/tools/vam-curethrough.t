@@ -125,6 +125,6 @@ mkdir letters; echo hello >letters/letter.txt
 fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters
 fails 64 'the table goes to standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
-quiet "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
+ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
 fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --threshold 1 -o no.exr
 done_testing
