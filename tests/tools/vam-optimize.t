@@ -22,8 +22,8 @@ is "auto reaches its goal" "$(value auto.json stopped_by)" goal
 holds "no voxel is wrong" "$(value auto.json ver) == 0"
 
 resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
-quiet "unlimited" vam-optimize --angles 180 $resin --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
-quiet "limited by default" vam-optimize --angles 180 $resin --report limited.json part.vdb -o limited.exr
+quiet "unlimited" vam-optimize --angles 180 $resin --free-surface --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
+quiet "limited by default" vam-optimize --angles 180 $resin --free-surface --report limited.json part.vdb -o limited.exr
 holds "a limit prints at least three times as fast" "3 * $(value limited.json seconds) <= $(value spikes.json seconds)"
 holds "at nearly the same process window" "$(value limited.json pw) > $(value spikes.json pw) - 0.02"
 quiet "in so many turns" vam-optimize --angles 180 $resin --turns 3 --report turns.json part.vdb -o turns.exr
@@ -134,7 +134,8 @@ open("cut.state", "wb").write(bytes[:3000])
 EOF
 fails 65 'nan.state: .*NaN' vam-optimize --iterations 100000 --patience 0 --checkpoint nan.state part.vdb -o out.exr
 fails 65 'cut.state' vam-optimize --iterations 100000 --patience 0 --checkpoint cut.state part.vdb -o out.exr
-fails 65 'not a checkpoint' vam-optimize --checkpoint part.vdb part.vdb -o out.exr
+cp part.vdb other.vdb
+fails 65 'not a checkpoint' vam-optimize --checkpoint other.vdb part.vdb -o out.exr
 
 # The front of duration against window.
 vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
