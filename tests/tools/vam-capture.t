@@ -37,6 +37,10 @@ is 'is marked in manifest, log and report' "$(head -n 1 marked/manifest.jsonl | 
 $take --frames 1 --compression none -o marked.exr
 is 'and in a stack' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
 
+for name in x.png x.vdb x.mkv; do
+  fails 64 "'$name': frames go to .exr, a folder .* or -, not to .${name#x.}" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
+done
+
 # A stack, and the same frames out of it again.
 quiet 'a stack of frames' $take --frames 12 -o views.exr
 quiet 'from a recording' vam-capture --device replay:views.exr --frames 12 -o again.exr --compression none

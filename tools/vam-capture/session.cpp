@@ -34,6 +34,13 @@ Json facts(device::Camera& camera) {
 
 constexpr const char* simulated_frames = "frames of a simulated camera";  // in the history of a stack
 
+void require_stack_or_folder(const std::string& path) {
+  const std::string ending = std::filesystem::path(path).extension();
+  if (path == "-" || path.starts_with("/dev/") || ending.empty() || ending == ".exr") return;
+  throw Error{Fault::usage,
+              "--output: '" + path + "': frames go to .exr, a folder (end its name in /) or -, not to " + ending};
+}
+
 bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
 
 device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
@@ -102,6 +109,7 @@ std::string device_of(const Options& o, const model::Printer& printer) {
 bool is_recording(const std::string& device) { return device.rfind("replay:", 0) == 0; }
 
 void check(const Options& o, const model::Printer& printer) {
+  require_stack_or_folder(o.output);
   if (!o.follow.empty() && o.speed_deg_s)
     throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
   if (o.angle_deg && (!o.follow.empty() || o.speed_deg_s || o.every_deg)) {
