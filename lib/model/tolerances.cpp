@@ -31,7 +31,10 @@ std::size_t named(std::string_view name, const std::string& clause) {
 }
 
 double amount(std::string text, std::string_view unit, const std::string& clause) {
-  if (text.ends_with(unit)) text = trimmed(std::string_view(text).substr(0, text.size() - unit.size()));
+  if (!text.ends_with(unit)) {
+    throw Error{Fault::usage, "'" + clause + "': is not in " + std::string(unit) + std::string(example)};
+  }
+  text = trimmed(std::string_view(text).substr(0, text.size() - unit.size()));
   const auto value = parse_number(text);
   if (value && std::isfinite(*value) && *value > 0) return *value;
   throw Error{Fault::usage, "'" + clause + "': '" + text + "' is not a number above 0" +

@@ -30,7 +30,7 @@ using Tolerances = std::array<double, tolerance_table.size()>;
 /// Of one printer: -1...1 of each tolerance.
 using Deviation = std::array<double, tolerance_table.size()>;
 
-/// "axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm", any of them; units may be omitted, blanks may
+/// "axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm", any of them, with their units; blanks may
 /// stand around the commas. Throws Fault::usage naming the clause that is wrong and what there is.
 [[nodiscard]] Tolerances parse_tolerances(const std::string& text);
 

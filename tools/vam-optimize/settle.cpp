@@ -91,10 +91,11 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
 
 /// The front is that of rising limits, whatever the print is at each.
 void settle_tradeoff(const cli::App& app, Options& options) {
-  if (options.limit.of_even <= 0 || options.shortest || app.given("--until") || app.given("--iterations")) {
+  if (options.limit.of_even <= 0 || options.shortest || app.given("--until") || app.given("--iterations") ||
+      app.given("--patience")) {
     throw Error{Fault::usage,
                 "--tradeoff: sets the maximum intensity and the iterations; omit --max-intensity, --turns, --shortest, "
-                "--until, --iterations and --grey-target, and use a method that reads --max-intensity"};
+                "--until, --iterations, --patience and --grey-target, and use a method that reads --max-intensity"};
   }
   options.until.clear();
   options.raising = optimize::front_raising;

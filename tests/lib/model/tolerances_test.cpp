@@ -9,10 +9,10 @@
 using namespace vam;
 using namespace vam::model;
 
-TEST_CASE("tolerances are read with and without units") {
-  const Tolerances all = parse_tolerances("axis=0.5px, index=0.005,angle=0.25 deg,radius=0.2%,lamp=3,psf=0.05mm");
+TEST_CASE("tolerances are read with their units") {
+  const Tolerances all = parse_tolerances("axis=0.5px, index=0.005,angle=0.25 deg,radius=0.2%,lamp=3 %,psf=0.05mm");
   CHECK(all == Tolerances{0.5, 0.005, 0.25, 0.2, 3, 0.05});
-  CHECK(parse_tolerances("psf=0.1") == Tolerances{0, 0, 0, 0, 0, 0.1});
+  CHECK(parse_tolerances("psf=0.1mm") == Tolerances{0, 0, 0, 0, 0, 0.1});
 }
 
 TEST_CASE("what is wrong with tolerances is said") {
@@ -20,8 +20,11 @@ TEST_CASE("what is wrong with tolerances is said") {
                        Error);
   CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("axis")), doctest::Contains("'axis' has no '='"), Error);
   CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("")), doctest::Contains("no tolerance"), Error);
-  CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("axis=1,axis=2")), doctest::Contains("twice"), Error);
-  for (const char* bad : {"axis=", "axis=-1px", "axis=0", "axis=1mm", "lamp=nan%", "lamp=inf", "axis=1px,"}) {
+  CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("axis=1px,axis=2px")), doctest::Contains("twice"), Error);
+  CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("axis=0.5")), doctest::Contains("'axis=0.5': is not in px"),
+                       Error);
+  for (const char* bad :
+       {"axis=", "axis=-1px", "axis=0px", "axis=1mm", "lamp=nan%", "lamp=inf%", "psf=0.1", "axis=1px,"}) {
     CAPTURE(bad);
     CHECK_THROWS_AS(static_cast<void>(parse_tolerances(bad)), Error);
   }
