@@ -38,7 +38,7 @@ TEST_CASE("one threshold dose prints all slices: the middle of the window, in ev
   };
   const std::vector<std::vector<float>> slices{disc(4), disc(12), disc(24), vam::oracle::wheel(size)};
   VolumeTask task;
-  task.demands.free_surface = true;  // fbp does not ask for it
+  task.demands.free_surface = true;                           // fbp does not ask for it
   task.make = [](double) { return make_method("fbp", {}); };  // clipping alone gives each of them another scale
   const auto result = run(slices, task);
   for (std::size_t s = 0; s < slices.size(); ++s) {
