@@ -14,6 +14,8 @@ namespace vam::io {
 
 namespace {
 
+constexpr std::uint16_t most_samples = 8;  // a pixel: colours, transparency and what else a camera adds
+
 /// A file in memory, as libtiff wants it.
 struct Memory {
   std::string bytes;
@@ -117,6 +119,8 @@ GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
   if (width == 0 || height == 0) refuse(name, "it is truncated or damaged");
   if (std::uint64_t{width} * height > max_pixels) throw Error{Fault::data, too_large(name, width, height)};
   const auto bits = field(tiff.get(), TIFFTAG_BITSPERSAMPLE);
+  const auto samples = field(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
+  if (samples > most_samples) refuse(name, "it has " + std::to_string(samples) + " samples a pixel");
   if (bits > 16) refuse(name, "it has " + std::to_string(bits) + " bits a sample; convert it first");
   GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);
   (bits == 16 ? decode_wide : decode_narrow)(tiff.get(), name, image);

@@ -46,12 +46,16 @@ void check_count(std::uint64_t count, const char* what, const std::string& bytes
 
 void check_ply_header(const std::string& bytes) {
   std::istringstream lines(bytes.substr(0, bytes.find("end_header")));
+  bool in_element = false;
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string keyword;
     std::string name;
     std::uint64_t count = 0;
-    if (words >> keyword >> name >> count && keyword == "element") check_count(count, name.c_str(), bytes);
+    const bool counted = static_cast<bool>(words >> keyword >> name >> count);
+    in_element = in_element || keyword == "element";
+    if (keyword == "property" && !in_element) throw MeshProblem{"the PLY header has a property of no element"};
+    if (counted && keyword == "element") check_count(count, name.c_str(), bytes);
   }
   if (bytes.find("end_header") == std::string::npos)
     throw MeshProblem{"the PLY header has no end_header; the file is truncated"};

@@ -141,3 +141,17 @@ TEST_CASE("a PNG that announces more pixels than its bytes can hold is refused b
   write_png(folder / "c.png", GreyImage(4096, 4096, 1));  // as small as a file of so many pixels gets
   CHECK(read_image(folder / "c.png").width == 4096);
 }
+
+TEST_CASE("a TIFF of more samples than a pixel has is refused before its rows are taken") {
+  const scratch::Folder folder;
+  write_tiff(folder / "a.tif", GreyImage(5, 4, 16));
+  std::string bytes = scratch::slurp(folder / "a.tif");
+  const std::string tag("\x15\x01\x03\x00\x01\x00\x00\x00\x01\x00", 10);  // SamplesPerPixel, a short: 1
+  const auto at = bytes.find(tag);
+  REQUIRE(at != std::string::npos);
+  bytes[at + 8] = bytes[at + 9] = '\x7f';
+  scratch::spill(folder / "b.tif", bytes);
+  std::string line;
+  CHECK(scratch::status([&] { (void)read_image(folder / "b.tif"); }, &line) == 65);
+  CHECK(line.find("it has 32639 samples a pixel") != std::string::npos);
+}

@@ -222,3 +222,11 @@ TEST_CASE("meshes that crashed or starved a library: one line and status 65, at 
   CHECK(refusal(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n") != "no error");
   CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(20));
 }
+
+TEST_CASE("a PLY property of no element is named, and does not crash the child") {
+  const scratch::Folder folder;
+  scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n");
+  std::string line;
+  CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
+  CHECK(line.find("the PLY header has a property of no element") != std::string::npos);
+}
