@@ -21,6 +21,7 @@
 #include "solid/voxel/size_doubt.hpp"
 #include "vam-slice/lift.hpp"
 #include "vam-slice/options.hpp"
+#include "vam-slice/overprint.hpp"
 #include "vam-slice/part.hpp"
 
 namespace {
@@ -79,13 +80,22 @@ void run(const cli::App& app, Options& options) {
   require_memory(2.0 * sizeof(float) * lanes * static_cast<double>(grid.slice_size()),
                  part.subject + ": " + model::size_text(grid), "use a larger --voxel");
   solid::FillSummary content;
+  std::optional<io::SparseVolume> opaque;
+  solid::Part printed = part;
+  if (insert) {
+    opaque.emplace(volume_of("insert", *insert, grid, content));
+    printed = slice_tool::around(part, *opaque, options);
+  }
   std::vector<io::SparseVolume> volumes;
-  volumes.push_back(volume_of("target", part, grid, content));
+  volumes.push_back(volume_of("target", printed, grid, content));
   solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);
   warn_of_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   report["place"] = lift_figures(options, lift_mm);
-  if (insert) volumes.push_back(volume_of("insert", *insert, grid, content));
+  if (opaque) {
+    report["insert"] = slice_tool::insert_figures(volumes.front(), *opaque, *insert, options);
+    volumes.push_back(std::move(*opaque));
+  }
   for (io::SparseVolume& volume : volumes) {
     volume.history.push_back(app.history());
     volume.metadata["vam:printer"] = io::printer_settings(printer);

@@ -31,6 +31,7 @@ open("quads.obj", "w").write("".join("v %g %g %g\n" % tuple((1 if n >> a & 1 els
     + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
 PY
 python3 mesh.py
+cp cube.stl small.stl
 for size in metres=0.01 inches=0.3; do  # half of their edges
   awk -v half="${size#*=}" '$1 == "v" { print "v", $2 * half, $3 * half, $4 * half; next } { print }' quads.obj \
     >"${size%=*}.obj"
@@ -119,6 +120,24 @@ fails 64 'omit --any-height' vam-slice --shape cone --voxel 0.25 --place auto --
 ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
 ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
 ok "a mesh as insert, longer than the part" vam-slice cube.stl --insert hollow.stl --voxel 0.25 -o insert.vdb
+
+cutting="vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=2,y=2,z=8 --voxel 0.25"
+quiet "an insert cut out of the part" $cutting --cut-insert 0 --report report.json -o insert.vdb
+holds "takes its volume" "($(json report.json volume_mm3) - (144 - 16))^2 < 1e-4"
+holds "they touch and share nothing" "$(json report.json insert.contact_voxels) > 500 && $(json report.json insert.shared_mm3) < 1e-6"
+is "in all slices of the part" "$(json report.json insert.slices_of_part)" "$(json report.json voxels.2)"
+quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o insert.vdb
+# The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
+holds "its volume" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
+says 'takes up 16 mm3 of the part; --cut-insert 0 subtracts it' $cutting -o insert.vdb
+says 'small.stl: misses the part; it is 1 x 1 x 1 mm large, its middle at .5, 0, 0. mm; check --insert-unit' \
+  vam-slice cube.stl --insert small.stl --insert-scale 0.25 --insert-at 5,0,0 --voxel 0.25 -o insert.vdb
+says 'takes up' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert small.stl --insert-unit cm --insert-scale 0.05 \
+  --voxel 0.25 --report report.json -o insert.vdb
+holds "the insert keeps its size" "($(json report.json insert.size_mm.0) - 2)^2 + ($(json report.json insert.size_mm.2) - 2)^2 < 1e-9"
+holds "the part has its own" "($(json report.json size_mm.2) - 8)^2 < 1e-9"
+fails 64 'requires --insert or --insert-shape' vam-slice cube.stl --cut-insert 0 -o x.vdb
+fails 64 'requires --insert' vam-slice cube.stl --insert-shape sphere --insert-unit cm -o x.vdb
 
 # Images: 6 x 4 pixels, 3 slices; the middle one half grey
 cat >images.py <<'PY'

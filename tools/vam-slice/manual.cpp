@@ -32,6 +32,11 @@ cli::Manual manual() {
        "it past the image (vam-optimize --helix). A part that all but vanishes, without a voxel wholly inside or "
        "below a tenth of the writable width, is a warning with the unit that the file is probably in, or the voxel "
        "that may help.",
+       "An insert has a size and place of its own: that of its file, in mm or --insert-unit, with its origin where the "
+       "origin of PART's file comes to lie and turned as PART is, so that parts of one assembly stay together as long "
+       "as PART is not scaled. --insert-at, --insert-rotate and --insert-scale replace that. An insert that misses the "
+       "part, or takes up room of it, is a warning; --cut-insert subtracts it, with a clearance. The report has its "
+       "size, its middle and how many voxels touch the part.",
        "Within the writable radius resin is lit from all stage angles, beyond it from some. A part that reaches beyond "
        "is "
        "refused, unless --extent resin is given: vam-optimize then uses the rays there are and constrains all of the "
@@ -44,7 +49,10 @@ cli::Manual manual() {
        {"A cone whose base is level with the lens, where rays do not climb:",
         "vam-slice --shape cone:bottom=8,height=6 --voxel 0.13 --place auto -o cone.vdb"},
        {"A handle to be printed around the shaft of a screwdriver:",
-        "vam-slice --shape handle --insert-shape screwdriver --voxel 0.13 -o handle.vdb"}},
+        "vam-slice --shape handle --insert-shape screwdriver --voxel 0.13 -o handle.vdb"},
+       {"A block around a steel pin of 3 mm, 0.05 mm of clearance, 2 mm beside the axis:",
+        "vam-slice --shape box:x=8,y=6,z=5 --insert-shape cylinder:diameter=3,height=12 --insert-at 2,0,0 --cut-insert "
+        "0.05 --voxel 0.1 -o block.vdb"}},
       {},
       {"vam-optimize", "vam-sdf", "vam-sinogram", "vam-view"}};
   manual.notes = {

@@ -15,9 +15,6 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output);
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.");
-  app.option("--insert", "MESH", options.insert, "Object to print around, in the coordinates of PART.").reads();
-  app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape,
-             "Object to print around, by name; in mm, centred on the axis.");
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
              "Inside test: exact, for closed meshes; by vote, for meshes with holes; or chosen by the mesh.");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
@@ -49,6 +46,22 @@ void declare(cli::App& app, Options& options) {
            "them.");
   app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
   app.default_is("1/M_vp of the printer");
+  app.group("Insert, an object to print around");
+  app.option("--insert", "MESH", options.insert,
+             "A mesh of its own size. Its origin is that of PART's file, and it is turned as PART is.")
+      .reads();
+  app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape, "A shape; centred on the axis.");
+  app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").needs({"--insert"});
+  const std::vector<std::string> either{"--insert", "--insert-shape"};
+  app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor.").needs(either);
+  app.option("--insert-rotate", "X,Y,Z", options.insert_rotate_deg, 3, "Rotate, as --rotate, instead of as PART.")
+      .needs(either);
+  app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
+             "Where the centre of its bounding box is, in mm of the print: x = y = 0 is the axis.")
+      .needs(either);
+  app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
+             "Subtract it from the part, with that distance all around.")
+      .needs(either);
   cli::add_printer(app, options.printer);
   app.group("Report and performance");
   cli::add_report(app, options.report);

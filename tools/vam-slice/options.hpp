@@ -18,6 +18,11 @@ struct Options {
   std::string shape;
   std::string insert;
   std::string insert_shape;
+  std::string insert_unit = "mm";
+  double insert_scale = 1;
+  std::vector<double> insert_rotate_deg;
+  std::vector<double> insert_at_mm;
+  std::optional<double> clearance_mm;  // the insert is cut out of the part
   std::string fill = "auto";
   std::optional<double> voxel_mm;
   std::string extent = "part";

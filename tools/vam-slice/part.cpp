@@ -1,5 +1,6 @@
 #include "vam-slice/part.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,6 +8,7 @@
 #include "io/image/image_file.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
+#include "solid/voxel/size_doubt.hpp"
 
 namespace vam::slice_tool {
 
@@ -42,14 +44,40 @@ solid::Part part_of(const Options& options, const solid::Writable& room) {
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));
 }
 
+namespace {
+
+/// Its origin is where that of the part's file is, or its middle where the user says.
+solid::Placement insert_placement(const Options& options, const solid::Part& part) {
+  const double stretch_z = options.placement.stretch_z;
+  solid::Placement placement;
+  placement.scale = options.insert_scale;
+  placement.stretch_z = stretch_z;
+  placement.centre = options.insert.empty() || !options.insert_at_mm.empty();
+  if (!options.insert.empty()) {
+    placement.scale *= solid::mm_per(options.insert_unit);
+    placement.axes = solid::upright(options.up);
+    placement.rotate_deg = options.placement.rotate_deg;
+    const solid::Point origin = part.map({});
+    placement.at_mm = {origin[0], origin[1], origin[2] / stretch_z};
+  }
+  if (!options.insert_rotate_deg.empty()) {
+    placement.axes = {};
+    std::copy_n(options.insert_rotate_deg.begin(), 3, placement.rotate_deg.begin());
+  }
+  if (!options.insert_at_mm.empty()) std::copy_n(options.insert_at_mm.begin(), 3, placement.at_mm.begin());
+  return placement;
+}
+
+}  // namespace
+
 std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part, const solid::Writable& room) {
   if (!options.insert.empty()) {
-    return solid::mesh_part(io::read_mesh(options.insert), options.insert, part.map, solid::FillMode::automatic);
+    model::TriangleSoup mesh = io::read_mesh(options.insert);
+    const solid::Affine map = solid::place(mesh, insert_placement(options, part), room, options.insert);
+    return solid::mesh_part(std::move(mesh), options.insert, map, solid::FillMode::automatic);
   }
   if (options.insert_shape.empty()) return std::nullopt;
-  solid::Placement upright;
-  upright.stretch_z = options.placement.stretch_z;
-  return solid::shape_part(options.insert_shape, upright, room);
+  return solid::shape_part(options.insert_shape, insert_placement(options, part), room);
 }
 
 }  // namespace vam::slice_tool

@@ -10,7 +10,7 @@ namespace vam::slice_tool {
 
 [[nodiscard]] solid::Part part_of(const Options& options, const solid::Writable& room);
 
-/// In the coordinates of the part.
+/// Of its own size, where the options put it.
 [[nodiscard]] std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part,
                                                    const solid::Writable& room);
 

@@ -23,15 +23,10 @@ constexpr double beyond_surface = 0.5 * std::numbers::sqrt2;
 
 // There is a place for a part of some size.
 void require_room(const Writable& room, double voxel_mm, const std::string& subject) {
-  if (room.radius_mm <= beyond_surface * voxel_mm) {
-    throw Error{Fault::data, subject + ": voxels of " + format_number(voxel_mm) +
-                                 " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
-                                 " mm; take a smaller --voxel"};
-  }
-  if (room.low_mm < 0 && room.high_mm > 0) return;
-  throw Error{Fault::data, subject + ": the part's middle, z = 0, is beside the projector's rows, which cover z = " +
-                               format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) +
-                               " mm; check projector.axis_row and projector.rows"};
+  if (room.radius_mm > beyond_surface * voxel_mm) return;
+  throw Error{Fault::data, subject + ": voxels of " + format_number(voxel_mm) +
+                               " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
+                               " mm; take a smaller --voxel"};
 }
 
 using ExtentUnder = std::function<PlacedExtent(const Affine&)>;
@@ -55,7 +50,9 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
     require_room(room, placement.voxel_mm, subject);
     factor = fitting_factor(under(scaling({1, 1, placement.stretch_z}) * map), room, placement.voxel_mm);
   }
-  return scaling({factor, factor, factor * placement.stretch_z}) * map;
+  map = scaling({factor, factor, factor}) * map;
+  map.shift = map.shift + placement.at_mm;
+  return scaling({1, 1, placement.stretch_z}) * map;
 }
 
 /// Rounded down, so that what is pasted fits.
@@ -112,8 +109,9 @@ Affine mirrored(const std::string& axis) {
 
 double fitting_factor(const PlacedExtent& part, const Writable& room, double voxel_mm) {
   double factor = (room.radius_mm - beyond_surface * voxel_mm) / part.radius_mm;
-  if (part.box.high[2] > 0) factor = std::min(factor, room.high_mm / part.box.high[2]);
-  if (part.box.low[2] < 0) factor = std::min(factor, room.low_mm / part.box.low[2]);
+  const double height = part.box.size()[2];
+  const bool level = std::abs(room.low_mm + room.high_mm) < rounding_mm;  // else the part is lifted by whole voxels
+  if (height > 0) factor = std::min(factor, (room.high_mm - room.low_mm - (level ? 0 : voxel_mm)) / height);
   return factor;
 }
 

@@ -12,7 +12,7 @@
 
 namespace vam::solid {
 
-/// What the user asks for. Order: axes, scale, rotate, fit, centre, stretch.
+/// What the user asks for. Order: axes, scale, rotate, fit, centre, shift, stretch.
 struct Placement {
   Affine axes;                   // which axis of the file points up, and whether one is mirrored
   double scale = 1;              // millimetres per unit of the file, and any factor on top
@@ -21,6 +21,7 @@ struct Placement {
   bool fit_writable = false;     // as large as the writable cylinder allows; needs `centre`
   double voxel_mm = 0;           // fit_writable keeps the centres of all voxels that the surface cuts lit
   bool centre = true;            // middle of the bounding box to the origin
+  Point at_mm{};                 // where the origin goes then
   double stretch_z = 1;          // [OST22 eq S5]: 1 / M_vp undoes the projector's vertical magnification
 };
 
@@ -53,12 +54,13 @@ struct PlacedExtent {
 [[nodiscard]] PlacedExtent extent(const model::TriangleSoup& soup);
 [[nodiscard]] PlacedExtent extent(const Field& field);
 
-/// The factor that makes a placed part fit the cylinder when it is scaled about the origin: its surface, and the
-/// centres of the voxels of that size that its surface cuts. 1 or more: it fits; 0 or less: no factor will do.
+/// The factor that makes a placed part fit the cylinder when it is scaled about the origin and lifted by whole voxels
+/// into the rows: its surface, and the centres of the voxels that its surface cuts. 1 or more: it fits; 0 or less: no
+/// factor will do.
 [[nodiscard]] double fitting_factor(const PlacedExtent& part, const Writable& room, double voxel_mm);
 
 /// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size, or when
-/// voxels are too large or the rows too far from the lens for fit_writable.
+/// voxels are too large for fit_writable.
 [[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,
                            const std::string& subject);
 [[nodiscard]] Affine place(const Field& field, const Placement& placement, const Writable& room,

@@ -1,0 +1,67 @@
+#include "vam-slice/overprint.hpp"
+
+#include <string>
+#include <vector>
+
+#include "base/json.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "solid/voxel/insert_fit.hpp"
+
+namespace vam::slice_tool {
+
+namespace {
+
+std::string mm(const solid::Point& p, double stretch_z) {
+  return "(" + format_number(p[0], 3) + ", " + format_number(p[1], 3) + ", " + format_number(p[2] / stretch_z, 3) + ")";
+}
+
+std::string size_text(const solid::Part& placed, double stretch_z) {
+  const solid::Point size = placed.extent.box.size();
+  return format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2] / stretch_z, 3) +
+         " mm large";
+}
+
+void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Options& options) {
+  const double stretch_z = options.placement.stretch_z;
+  constexpr double rounding_mm3 = 1e-6;
+  if (!fit.meets()) {
+    warn(placed.subject + ": misses the part; it is " + size_text(placed, stretch_z) + ", its middle at " +
+         mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at");
+  } else if (!options.clearance_mm && fit.shared_mm3(stretch_z) > rounding_mm3) {
+    warn(placed.subject + ": takes up " + format_number(fit.shared_mm3(stretch_z), 3) +
+         " mm3 of the part; --cut-insert 0 subtracts it");
+  }
+}
+
+}  // namespace
+
+solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options) {
+  if (!options.clearance_mm) return part;
+  const auto read = [&insert](int k, float* out) { insert.read_slices(k, 1, out); };
+  return solid::without_insert(part, read, *options.clearance_mm, options.placement.stretch_z);
+}
+
+Json insert_figures(const io::SparseVolume& target, const io::SparseVolume& insert, const solid::Part& placed,
+                    const Options& options) {
+  const model::Grid& grid = target.grid();
+  const double stretch_z = options.placement.stretch_z;
+  solid::InsertFit fit(grid, options.clearance_mm.value_or(0));
+  std::vector<float> part(grid.slice_size());
+  std::vector<float> opaque(grid.slice_size());
+  for (int k = 0; k < grid.nz; ++k) {
+    target.read_slices(k, 1, part.data());
+    insert.read_slices(k, 1, opaque.data());
+    fit.add(part.data(), opaque.data());
+  }
+  warn_of(fit, placed, options);
+  Json figures = fit.figures(stretch_z);
+  const solid::Point size = placed.extent.box.size();
+  const solid::Point middle = placed.extent.box.centre();
+  figures["size_mm"] = {size[0], size[1], size[2] / stretch_z};
+  figures["middle_mm"] = {middle[0], middle[1], middle[2] / stretch_z};
+  if (options.clearance_mm) figures["clearance_mm"] = *options.clearance_mm;
+  return figures;
+}
+
+}  // namespace vam::slice_tool

@@ -1,0 +1,18 @@
+// A part and the insert it is printed around.
+#pragma once
+
+#include "base/json_fwd.hpp"
+#include "io/vdb/vdb.hpp"
+#include "solid/voxel/part.hpp"
+#include "vam-slice/options.hpp"
+
+namespace vam::slice_tool {
+
+/// The part, without the insert where --cut-insert says so. The volume must outlive what is returned.
+[[nodiscard]] solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options);
+
+/// For --report. Warns of an insert that misses the part or that takes up room of it.
+[[nodiscard]] Json insert_figures(const io::SparseVolume& target, const io::SparseVolume& insert,
+                                  const solid::Part& placed, const Options& options);
+
+}  // namespace vam::slice_tool
