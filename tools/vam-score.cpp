@@ -52,6 +52,8 @@ score::Score score(const Inputs& in, const score::ScoreOptions& how) {
 void settle_exposure(score::ScoreOptions& how, const Inputs& in, const model::Printer& printer) {
   const double farthest_mm = io::farthest_mm(in.target(), model::coverage_rounding);
   how.circle = model::writable_circle(in.target().grid(), optics::judged_radius_mm(printer, farthest_mm));
+  const auto made_for = in.dose().metadata.find("vam:threshold_dose");
+  if (made_for != in.dose().metadata.end()) how.aimed_at = parse_number(made_for->second);
   if (in.dose().units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
   const auto turns = in.dose().metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan
@@ -84,10 +86,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
   if (!options.reach.empty()) score_tool::write_reach(options.reach, in.target().grid(), printer, app);
-  if (!options.print.empty()) {
-    const double best = result.figure("threshold");
-    write_print(options, in.dose(), options.print_at.value_or(options.how.threshold.value_or(best)));
-  }
+  if (!options.print.empty()) write_print(options, in.dose(), options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score/1", figures);
   io::write_text("-", options.json ? figures.dump(2) + "\n" : result.table());
   const auto failures = model::unmet(conditions, [&](const std::string& name) { return result.figure(name); });

@@ -1,5 +1,7 @@
 // vam-sim-stage: a PI controller with a rotation stage on a pseudo-terminal.
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +20,21 @@
 namespace {
 
 using namespace vam;
+
+struct Protocol {
+  const char* name;
+  decltype(&sim::make_sim_gcs) make;
+};
+constexpr Protocol protocols[] = {{"gcs", sim::make_sim_gcs},
+                                  {"grbl", sim::make_sim_grbl},
+                                  {"zaber", sim::make_sim_zaber},
+                                  {"relay", sim::make_sim_relay}};
+
+std::vector<std::string> protocol_names() {
+  std::vector<std::string> names;
+  for (const Protocol& protocol : protocols) names.emplace_back(protocol.name);
+  return names;
+}
 
 struct Options {
   sim::SimGcsSettings stage;
@@ -79,7 +96,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--at", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
   app.group("Serial line");
   app.choice(
-      "--protocol", options.protocol, {"gcs", "grbl", "zaber", "relay"},
+      "--protocol", options.protocol, protocol_names(),
       "A PI controller, a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man relay of "
       "a lamp.");
   app.option("--latency", "MS", options.latency_ms, {0, 1000}, "Time from question to answer.");
@@ -137,11 +154,9 @@ void run(Options& options) {
   options.stage.jitter_s = 1e-3 * options.jitter_ms;
   options.stage.seed = static_cast<std::uint64_t>(options.seed);
   for (const auto& fault : options.faults) options.stage.faults.push_back(sim::parse_sim_fault(fault));
-  const auto make = options.protocol == "grbl"    ? sim::make_sim_grbl
-                    : options.protocol == "zaber" ? sim::make_sim_zaber
-                    : options.protocol == "relay" ? sim::make_sim_relay
-                                                  : sim::make_sim_gcs;
-  const auto stage = make(options.stage, device::real_clock().now_s(), sim::file_sim_log(options.log));
+  const auto* protocol = std::find_if(std::begin(protocols), std::end(protocols),
+                                      [&](const Protocol& one) { return one.name == options.protocol; });
+  const auto stage = protocol->make(options.stage, device::real_clock().now_s(), sim::file_sim_log(options.log));
   sim::Pty pty;
   const Link link(options.link, pty.path());
   device::print_line(pty.path());

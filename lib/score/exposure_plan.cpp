@@ -14,12 +14,19 @@ double window_middle(const model::DoseMetrics& doses) {
   return doses.min_part > doses.max_void ? 0.5 * (doses.min_part + doses.max_void) : doses.iou_threshold;
 }
 
+double aimed_dose(const model::DoseMetrics& doses, std::optional<double> threshold) {
+  const double quarter = 0.25 * (doses.min_part - doses.max_void);
+  const double middle = window_middle(doses);
+  return threshold && std::abs(*threshold - middle) <= quarter ? *threshold : middle;
+}
+
 ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer,
-                           double turns_of_frames) {
+                           double turns_of_frames, std::optional<double> threshold) {
   constexpr double most_turns = 1e6;
   constexpr double rounding = 1e-9;  // a dose that needs 3.0000000001 turns is given 3
   const double critical = *printer.resin.critical_dose_mj_cm3;
   const double middle = mj_cm3 * window_middle(doses);
+  const double aim = mj_cm3 * aimed_dose(doses, threshold);
   const double quarter = mj_cm3 * std::max(0.0, 0.25 * (doses.min_part - doses.max_void));
   if (!(middle > 0) || !(critical / middle <= most_turns)) {
     throw Error{Fault::data, "exposure: a turn at full intensity gives the middle of the process window " +
@@ -29,7 +36,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
   ExposurePlan plan;
   const double showings = std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding)));
   plan.turns = static_cast<int>(std::lround(showings * turns_of_frames));
-  plan.multiplier = std::min(1.0, critical / (middle * showings));
+  plan.multiplier = std::min(1.0, critical / (aim * showings));
   plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;
   return plan;

@@ -109,7 +109,8 @@ double Score::figure(const std::string& name) const {
     if (!options_.exposure) return none;
     const model::DoseMetrics doses = judged().metrics(false);
     if (!(window_middle(doses) > 0)) return none;
-    const ExposurePlan plan = plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer);
+    const ExposurePlan plan =
+        plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer, 1, options_.aimed_at);
     if (name == "turns") return plan.turns;
     if (name == "seconds") return plan.seconds;
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
@@ -122,6 +123,10 @@ double Score::figure(const std::string& name) const {
     return name == "cured_iou" ? at->iou : at->wrong;
   }
   return model::figure(judged().metrics(!options_.absolute), name);
+}
+
+double Score::print_threshold() const {
+  return options_.threshold ? *options_.threshold : aimed_dose(judged().metrics(false), options_.aimed_at);
 }
 
 Json Score::figures() const {

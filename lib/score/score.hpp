@@ -25,6 +25,7 @@ struct ScoreOptions {
   bool absolute = false;             // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;                // alpha: extremes are also given at the alpha/2 percentiles
   std::optional<double> threshold;   // the resin's critical dose, in the dose's unit
+  std::optional<double> aimed_at;    // the threshold that its light was made for, in the dose's unit
   std::optional<Exposure> exposure;  // known when the dose is in mJ/cm3
 };
 
@@ -44,6 +45,8 @@ class Score {
   /// The figures by name (for --require), in the order of the table.
   [[nodiscard]] static const std::vector<std::string>& names();
   [[nodiscard]] double figure(const std::string& name) const;
+  /// The dose whose isosurface the print is: the critical dose, else score::aimed_dose.
+  [[nodiscard]] double print_threshold() const;
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] Verdict verdict() const;
   /// Aligned lines "figure value meaning", and the verdict in words.

@@ -1,4 +1,4 @@
-// deposit_dose LIGHT.exr DOSE.vdb OUT.vdb [RAYS]: the dose of a projector stack by the deposition oracle, on the voxels
+// deposit_dose LIGHT.exr DOSE.vdb OUT.vdb (RAYS): the dose of a projector stack by the deposition oracle, on the voxels
 // of vam-dose's DOSE; RAYS x RAYS rays a pixel. Prints as JSON how far DOSE is from it: rms, the root mean square
 // difference over the root mean square dose within 0.95 of the radius that all angles light, and mean, relative; and
 // the share of the power that was absorbed. For tests/bench/climbing.py.
@@ -73,7 +73,7 @@ oracle::Deposited deposit_all(const oracle::Deposit& setup, const std::vector<Im
 
 int run(int argc, char** argv) {
   if (argc < 4) {
-    std::cerr << "deposit_dose LIGHT.exr DOSE.vdb OUT.vdb [RAYS]\n";
+    std::cerr << "deposit_dose LIGHT.exr DOSE.vdb OUT.vdb (RAYS)\n";
     return 64;
   }
   io::StackReader in(argv[1]);

@@ -23,7 +23,7 @@ ok "print of light that does not know of the sinking" print_of plain.exr unsunk 
 
 # 0.3 mm of wobble, known: IoU at least 0.999; 1 mm of sinking, known: at most 0.3 voxels of the print's surface.
 holds "a known wobble does no harm" "$(json wobble.json iou) >= 0.999 && $(json wobble.json ver) == 0"
-holds "an unknown one does" "$(json unknown.json iou) < 0.98"
+holds "an unknown one does" "$(json unknown.json iou) < 0.99"
 holds "nor does known sinking" "$(json sink.json iou) >= 0.999 && $(json sink.json ver) == 0"
 holds "unknown sinking does" "$(json unsunk.json iou) < 0.9"
 ok "surface of the print while sinking, against the print without" vam-sdf sink.vdb plain.vdb --isovalue 0.8 \

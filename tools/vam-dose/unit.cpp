@@ -1,5 +1,7 @@
 #include "vam-dose/unit.hpp"
 
+#include <map>
+#include <optional>
 #include <string>
 
 #include "base/error.hpp"
@@ -14,8 +16,14 @@ namespace vam::dose_tool {
 
 namespace {
 
+/// The relative dose at which the projections print, where they state it.
+std::optional<double> threshold_of(const std::map<std::string, std::string>& facts) {
+  const auto stated = facts.find("vam:threshold_dose");
+  return stated == facts.end() ? std::nullopt : parse_number(stated->second);
+}
+
 score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
-                            double turns_of_frames, const Options& options) {
+                            const model::StackInfo& light, const Options& options) {
   if (doses.part == 0 || doses.void_ == 0) {
     throw Error{Fault::data, options.like + ": its target has " + std::to_string(doses.part) + " part voxels and " +
                                  std::to_string(doses.void_) + " void voxels; --exposure-plan requires both"};
@@ -24,7 +32,7 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
     warn("exposure: void receives up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 per turn, part from " +
          format_number(scale * doses.min_part, 4) + "; there is no process window, the plan is for the best threshold");
   }
-  return score::plan_exposure(doses, scale, printer, turns_of_frames);
+  return score::plan_exposure(doses, scale, printer, optics::turns_of(light), threshold_of(light.extra));
 }
 
 }  // namespace
@@ -34,7 +42,7 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
   Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, {}};
-  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, optics::turns_of(light), options);
+  if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
   return unit;
 }
 
@@ -43,6 +51,8 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
   if (unit.absolute) {
     scale(volume, unit.turn * turns);
     volume.units = "mJ/cm3";
+    const auto threshold = threshold_of(volume.metadata);
+    if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }
   if (unit.plan) volume.metadata["vam:full_light_turns"] = format_number(turns, 9);
 }

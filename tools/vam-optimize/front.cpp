@@ -32,7 +32,8 @@ std::string front_csv(const std::vector<optimize::FrontPoint>& front, const mode
     csv << format_number(point.max_intensity) << ",";
     const double full_scale = options.full_scale.value_or(point.peak);
     if (per_radian && model::repeat(info.poses) && full_scale > 0 && score::window_middle(point.metrics) > 0) {
-      const auto plan = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info));
+      const auto plan = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
+                                             options.demands.window.threshold());
       csv << format_number(plan.seconds) << "," << plan.turns;
     } else {
       csv << ",";

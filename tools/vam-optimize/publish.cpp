@@ -42,7 +42,8 @@ std::optional<score::ExposurePlan> exposure(const optimize::VolumeOutcome& outco
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
   if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return std::nullopt;
-  return score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info));
+  return score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
+                              options.demands.window.threshold());
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--isovalue", "DOSE", options.print_at, cli::positive, "Threshold of the print.")
       .needs({"--mesh"})
       .was("--print-at");
-  app.default_is("the critical dose, else the best threshold");
+  app.default_is("the critical dose, else the threshold that the projections were optimised for, or the best one");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   app.flag("--json", options.json, "Print JSON instead of the table.");

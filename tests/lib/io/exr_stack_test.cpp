@@ -120,7 +120,10 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
   info.space = model::Space::camera;
   std::vector<model::ImageInfo> facts(6);
   for (int i = 0; i < 6; ++i) {
-    facts[i] = {1.5, 60.0 * i + 0.01 * i * i, 0.1 * i, true, true};
+    facts[i].z_mm = 1.5;
+    facts[i].angle_deg = 60.0 * i + 0.01 * i * i;
+    facts[i].time_s = 0.1 * i;
+    facts[i].has_angle = facts[i].has_time = true;
   }
   const auto write = [&](const std::string& path, bool known) {
     StackWriter writer = known ? StackWriter(path, info, facts) : StackWriter(path, info);

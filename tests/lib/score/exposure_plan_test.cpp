@@ -105,6 +105,27 @@ TEST_CASE("the middle of the window, or of the best thresholds where there is no
   CHECK(window_middle(doses) == 6.7);
 }
 
+TEST_CASE("the aim is the threshold of the light within the middle half of the window, else its middle") {
+  model::DoseMetrics doses;
+  doses.min_part = 9;
+  doses.max_void = 5;
+  CHECK(aimed_dose(doses, std::nullopt) == 7);
+  CHECK(aimed_dose(doses, 6.1) == 6.1);
+  CHECK(aimed_dose(doses, 7.9) == 7.9);
+  CHECK(aimed_dose(doses, 5.9) == 7);
+  CHECK(aimed_dose(doses, 8.1) == 7);
+  doses.max_void = 10;  // no window
+  doses.iou_threshold = 9.5;
+  CHECK(aimed_dose(doses, 9.6) == 9.5);
+}
+
+TEST_CASE("a print puts the critical dose on the threshold of its light") {
+  model::Printer printer;
+  printer.resin.critical_dose_mj_cm3 = 100;
+  CHECK(plan_exposure(window(160, 240), 1, printer, 1, 190).multiplier == doctest::Approx(100.0 / 190));
+  CHECK(plan_exposure(window(160, 240), 1, printer, 1, 230).multiplier == doctest::Approx(100.0 / 200));
+}
+
 TEST_CASE("at given power the print is shortest where light falls to 1/e over the radius [CAL19]") {
   // On the axis a turn gives mu e^{-mu R}: from 0.7 to 1.3 it varies by 5 %, next to the optimum by 0.5 %; thousands of
   // turns resolve that.
