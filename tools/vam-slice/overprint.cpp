@@ -24,11 +24,10 @@ std::string size_text(const solid::Part& placed, double stretch_z) {
 
 void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Options& options) {
   const double stretch_z = options.placement.stretch_z;
-  constexpr double rounding_mm3 = 1e-6;
   if (!fit.meets()) {
     warn(placed.subject + ": misses the part; it is " + size_text(placed, stretch_z) + ", its middle at " +
          mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at");
-  } else if (!options.clearance_mm && fit.shared_mm3(stretch_z) > rounding_mm3) {
+  } else if (!options.clearance_mm && fit.overlap()) {
     warn(placed.subject + ": takes up " + format_number(fit.shared_mm3(stretch_z), 3) +
          " mm3 of the part; --cut-insert 0 subtracts it");
   }

@@ -46,6 +46,8 @@ class InsertFit {
   /// The insert touches the part: a voxel of it is in, beside or above one of the part.
   [[nodiscard]] bool meets() const { return contact_ > 0; }
   [[nodiscard]] double shared_mm3(double stretch_z) const;
+  /// They share room: more than a thousandth of the insert, to which the coverage of curved shapes is exact.
+  [[nodiscard]] bool overlap() const { return shared_ > 1e-3 * insert_; }
   /// insert: volume_mm3, slices, slices_of_part, contact_voxels, shared_mm3.
   [[nodiscard]] Json figures(double stretch_z) const;
 
