@@ -18,15 +18,10 @@ struct Kernels {
   decltype(&baseline::add_columns) add;
 
   static const Kernels& best() {
-    static const Kernels plain{baseline::gather_rays, baseline::scatter_rays, baseline::copy_columns,
-                               baseline::add_columns};
-#if defined(__x86_64__)
-    static const Kernels wide{avx512::gather_rays, avx512::scatter_rays, avx512::copy_columns, avx512::add_columns};
-    static const Kernels middle{avx2::gather_rays, avx2::scatter_rays, avx2::copy_columns, avx2::add_columns};
-    if (simd_level() == Simd::avx512) return wide;
-    if (simd_level() == Simd::avx2) return middle;
-#endif
-    return plain;
+    const Simd level = simd_level();
+    static const Kernels kernels{VAM_KERNEL(gather_rays, level), VAM_KERNEL(scatter_rays, level),
+                                 VAM_KERNEL(copy_columns, level), VAM_KERNEL(add_columns, level)};
+    return kernels;
   }
 };
 

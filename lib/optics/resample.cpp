@@ -24,21 +24,7 @@ struct Kernels {
   decltype(&baseline::shift_rows) shift;
 };
 
-Kernels kernels() {
-  switch (simd_level()) {
-    case Simd::avx512:
-#if defined(__x86_64__)
-      return {avx512::mix_columns, avx512::shift_rows};
-#endif
-    case Simd::avx2:
-#if defined(__x86_64__)
-      return {avx2::mix_columns, avx2::shift_rows};
-#endif
-    case Simd::baseline:
-      break;
-  }
-  return {baseline::mix_columns, baseline::shift_rows};
-}
+Kernels kernels() { return {VAM_KERNEL(mix_columns, simd_level()), VAM_KERNEL(shift_rows, simd_level())}; }
 
 // Columns [first, last) of up to 16 images as [column][row][16]; missing lanes stay 0.
 void pack(std::span<const Image> images, int first, int last, std::vector<float>& packed) {

@@ -108,15 +108,7 @@ void Ahead::fetch_share() {
   }
 }
 
-const RadonKernels& radon_kernels(Simd level) {
-#if defined(__x86_64__)
-  if (level == Simd::avx512) return avx512::radon_kernels;
-  if (level == Simd::avx2) return avx2::radon_kernels;
-#else
-  static_cast<void>(level);
-#endif
-  return baseline::radon_kernels;
-}
+const RadonKernels& radon_kernels(Simd level) { return VAM_KERNEL(radon_kernels, level); }
 
 float* scratch(std::size_t which, std::size_t size) {
   thread_local std::array<Buffer, 2> buffers;

@@ -57,19 +57,7 @@ Digest Sealer::digest() const { return digest_from(XXH3_128bits_digest(state_->h
 
 // The library itself is compiled for the oldest machines.
 Digest digest_of(const void* bytes, std::size_t size) {
-  HashHalves hash{};
-  switch (simd_level()) {
-#ifdef __x86_64__
-    case Simd::avx512:
-      hash = avx512::hash_bytes(bytes, size);
-      break;
-    case Simd::avx2:
-      hash = avx2::hash_bytes(bytes, size);
-      break;
-#endif
-    default:
-      hash = baseline::hash_bytes(bytes, size);
-  }
+  const HashHalves hash = VAM_KERNEL(hash_bytes, simd_level())(bytes, size);
   return {hash.high, hash.low};
 }
 

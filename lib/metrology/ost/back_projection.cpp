@@ -33,19 +33,8 @@ struct Kernels {
 };
 
 Kernels kernels() {
-  switch (simd_level()) {
-    case Simd::avx512:
-#if defined(__x86_64__)
-      return {avx512::climb_columns, avx512::place_tile, avx512::add_tile};
-#endif
-    case Simd::avx2:
-#if defined(__x86_64__)
-      return {avx2::climb_columns, avx2::place_tile, avx2::add_tile};
-#endif
-    case Simd::baseline:
-      break;
-  }
-  return {baseline::climb_columns, baseline::place_tile, baseline::add_tile};
+  const Simd level = simd_level();
+  return {VAM_KERNEL(climb_columns, level), VAM_KERNEL(place_tile, level), VAM_KERNEL(add_tile, level)};
 }
 
 // Detector values about a stretch of heights as [angle][column][height]; 0 where there are none.
