@@ -1,5 +1,5 @@
-// What the device strings of a printer file may begin with, before the colon. The tables of lib/device/open hold how
-// each is opened; help texts, the comments of the printer file and tests/tools/devices.t follow from these.
+// What device strings may begin with, before the colon. The tables of lib/device/open hold how each is opened, and the
+// compiler compares them with these; help texts, the comments of the printer file and tests/tools/devices.t follow.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,10 @@ inline constexpr std::array stage_schemes{DeviceScheme{"gcs", "PATH"}, DeviceSch
                                           DeviceScheme{"sim", ""}};
 inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP"}, DeviceScheme{"v4l2", "PATH"},
                                            DeviceScheme{"replay", "PLACE"}, DeviceScheme{"sim", ""}};
-
+inline constexpr std::array display_schemes{DeviceScheme{"drm", "CONNECTOR"}, DeviceScheme{"sdl", "SCREEN"},
+                                            DeviceScheme{"null", ""}};
+inline constexpr std::array light_schemes{DeviceScheme{"dlpc350", "SERIAL"}, DeviceScheme{"dlpc900", "SERIAL"},
+                                          DeviceScheme{"sim", ""}};
 inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH"}, DeviceScheme{"sim", ""}};
 
 /// "a:PATH, b:SERIAL or sim:", of a table whose rows have a scheme and a place.

@@ -13,15 +13,13 @@ using namespace vam::device;
 // Says what it was told to say, then nothing in time.
 class Answers final : public UsbLink {
  public:
-  Answers(std::string bytes, int product) : bytes_(std::move(bytes)), product_(product) {}
+  Answers(std::string bytes, std::string usb_id) : bytes_(std::move(bytes)), usb_id_(std::move(usb_id)) {}
   void control_out(int, int, int) override {}
   std::string control_in(int, int, int, int length) override { return take(static_cast<std::size_t>(length)); }
   void write_report(const std::string&) override {}
   std::string read_report() override { return take(64); }
   [[nodiscard]] const std::string& name() const override { return name_; }
-  [[nodiscard]] Json about() const override {
-    return {{"usb_id", product_ == dlpc900_product ? "0451:c900" : "0451:6401"}};
-  }
+  [[nodiscard]] Json about() const override { return {{"usb_id", usb_id_}}; }
 
  private:
   std::string take(std::size_t size) {
@@ -33,7 +31,7 @@ class Answers final : public UsbLink {
   }
   std::string bytes_;
   std::size_t at_ = 0;
-  int product_;
+  std::string usb_id_;
   std::string name_ = "usb";
 };
 
@@ -42,10 +40,11 @@ class Answers final : public UsbLink {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   VirtualClock clock;
   const std::string answers = fuzz::text_of(bytes, size);
-  fuzz::attempt([&] { fuzz::drive(*make_tic_stage(std::make_unique<Answers>(answers, 0), clock, 8.8889, nullptr)); });
-  const int product = size > 0 && bytes[0] % 2 == 1 ? dlpc900_product : dlpc350_product;
+  fuzz::attempt(
+      [&] { fuzz::drive(*make_tic_stage(std::make_unique<Answers>(answers, "1ffb:00b3"), clock, 8.8889, nullptr)); });
+  const std::string usb_id = size > 0 && bytes[0] % 2 == 1 ? "0451:c900" : "0451:6401";
   return fuzz::attempt([&] {
-    const auto light = make_dlp_light(std::make_unique<Answers>(answers, product), {}, clock, nullptr);
+    const auto light = make_dlp_light(std::make_unique<Answers>(answers, usb_id), {}, clock, nullptr);
     fuzz::attempt([&] { (void)light->identify().dump(); });
     fuzz::attempt([&] { light->prepare(); });
     fuzz::attempt([&] { light->on(); });

@@ -5,6 +5,7 @@
 
 #include "device/open/private/backends.hpp"
 #include "device/projector/display_backends.hpp"
+#include "model/device_schemes.hpp"
 
 namespace vam::device {
 
@@ -12,14 +13,16 @@ namespace {
 
 struct DisplayBackend {
   const char* scheme;
-  const char* place;  // for people
   std::unique_ptr<Display> (*open)(const Address& address, const DisplayMode& wanted, Clock& clock, Guardian* guardian);
 };
 
 constexpr DisplayBackend backends[] = {
-    {"drm", "CONNECTOR", open_drm_display}, {"sdl", "SCREEN", open_sdl_display}, {"null", "", open_null_display}};
+    {"drm", open_drm_display}, {"sdl", open_sdl_display}, {"null", open_null_display}};
+static_assert(model::has_schemes(backends, model::display_schemes));
 
 }  // namespace
+
+std::string display_devices() { return model::forms_of(model::display_schemes); }
 
 bool names_display(const std::string& output) {
   return std::any_of(std::begin(backends), std::end(backends), [&](const DisplayBackend& backend) {

@@ -11,6 +11,9 @@ namespace vam::device {
 [[nodiscard]] std::unique_ptr<Display> open_display(const std::string& device, const DisplayMode& wanted, Clock& clock,
                                                     Guardian* guardian);
 
+/// The displays that open_display knows, for --help: "drm:CONNECTOR, sdl:SCREEN or null:".
+[[nodiscard]] std::string display_devices();
+
 /// Does this output name a display?
 [[nodiscard]] bool names_display(const std::string& output);
 

@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "device/open/private/backends.hpp"
 #include "device/os/clock.hpp"
+#include "device/port/usb_kinds.hpp"
 #include "model/device_schemes.hpp"
 #include "sim/controllers/dlp.hpp"
 
@@ -20,8 +21,7 @@ std::unique_ptr<LightEngine> open_sim(const Address& address, const LightSetting
 
 std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSettings& settings, Guardian* guardian) {
   address.allow({"current_percent", "max_current_percent", "leds"});
-  const int product = address.scheme == "dlpc900" ? dlpc900_product : dlpc350_product;
-  auto link = open_usb({0x0451, {product}, address.place}, 0);
+  auto link = open_usb(usb_id(address.scheme, address.place), 0);
   auto lock = std::make_unique<DeviceLock>(link->name());
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto light = make_dlp_light(std::move(link), settings, real_clock(), guardian);
@@ -31,12 +31,11 @@ std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSetting
 
 struct LightBackend {
   const char* scheme;
-  const char* place;  // for people
   std::unique_ptr<LightEngine> (*open)(const Address& address, const LightSettings& settings, Guardian* guardian);
 };
 
-constexpr LightBackend backends[] = {
-    {"dlpc350", "SERIAL", open_dlp}, {"dlpc900", "SERIAL", open_dlp}, {"sim", "", open_sim}};
+constexpr LightBackend backends[] = {{"dlpc350", open_dlp}, {"dlpc900", open_dlp}, {"sim", open_sim}};
+static_assert(model::has_schemes(backends, model::light_schemes));
 
 // As an intensity they would be upside down on a LightCrafter 4500.
 void refuse_steps(const Address& address) {
@@ -50,7 +49,7 @@ void refuse_steps(const Address& address) {
 
 }  // namespace
 
-std::string light_devices() { return model::forms_of(backends); }
+std::string light_devices() { return model::forms_of(model::light_schemes); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
   const Address address = parse_address(device, schemes_of(backends));

@@ -4,6 +4,7 @@
 #include "device/open/private/backends.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/serial_port.hpp"
+#include "device/port/usb_kinds.hpp"
 #include "device/stage/gcs_stage.hpp"
 #include "device/stage/grbl_stage.hpp"
 #include "device/stage/tic_stage.hpp"
@@ -64,7 +65,7 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
     throw Error{Fault::usage,
                 "device '" + address.text + "': needs ?steps_per_deg=N, the microsteps per degree of the stage"};
   }
-  auto link = open_usb(tic_id(address.place), -1);
+  auto link = open_usb(usb_id("tic", address.place), -1);
   auto lock = lock_device(link->name(), guardian);
   auto stage = make_tic_stage(std::move(link), clock, steps_per_deg, guardian);
   stage->hold(std::move(lock));

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <string_view>
 
 #include "base/json.hpp"
+#include "device/port/private/usb_text.hpp"
 #include "device/port/serial_port.hpp"
+#include "device/port/usb_kinds.hpp"
 
 namespace vam::device {
 
@@ -42,17 +43,6 @@ Found serial_stage(const Json& entry) {
   return found;
 }
 
-struct UsbKind {
-  int vendor;
-  int product;  // -1: any
-  const char* kind;
-  const char* scheme;
-  const char* options;
-};
-constexpr std::array usb_kinds{UsbKind{0x1ffb, -1, "stage", "tic", "?steps_per_deg=N"},
-                               UsbKind{0x0451, 0x6401, "light", "dlpc350", ""},
-                               UsbKind{0x0451, 0xc900, "light", "dlpc900", ""}};
-
 // USB3 Vision: an interface of class 0xEF, subclass 5 (USB3 Vision Specification, table 4-1).
 bool is_vision(libusb_device* device) {
   libusb_config_descriptor* config = nullptr;
@@ -68,47 +58,28 @@ bool is_vision(libusb_device* device) {
   return vision;
 }
 
-std::string hex4(int value) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "%04x", static_cast<unsigned>(value));
-  return text.data();
-}
-
 std::string usb_obstacle(int status, int vendor) {
   if (status == LIBUSB_ERROR_NO_DEVICE) return "is being unplugged";
-  return "not permitted to this user; write SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + hex4(vendor) +
+  return "not permitted to this user; write SUBSYSTEM==\"usb\", ATTR{idVendor}==\"" + ids_text(vendor, 0).substr(0, 4) +
          "\", TAG+=\"uaccess\" to /etc/udev/rules.d/70-vam.rules and plug it in again";
-}
-
-std::string string_of(libusb_device_handle* handle, std::uint8_t index) {
-  std::array<unsigned char, 256> text{};
-  if (index == 0 || libusb_get_string_descriptor_ascii(handle, index, text.data(), text.size()) <= 0) return "";
-  return reinterpret_cast<const char*>(text.data());
-}
-
-const UsbKind* kind_of(const libusb_device_descriptor& about) {
-  const auto* found = std::find_if(usb_kinds.begin(), usb_kinds.end(), [&](const UsbKind& kind) {
-    return kind.vendor == about.idVendor && (kind.product < 0 || kind.product == about.idProduct);
-  });
-  return found != usb_kinds.end() ? found : nullptr;
 }
 
 void look_at(libusb_device* device, std::vector<Found>& found) {
   libusb_device_descriptor about{};
   if (libusb_get_device_descriptor(device, &about) != 0) return;
-  const UsbKind* kind = kind_of(about);
+  const UsbKind* kind = usb_kind(about.idVendor, about.idProduct);
   if (kind == nullptr && !is_vision(device)) return;
-  const std::string ids = hex4(about.idVendor) + ":" + hex4(about.idProduct);
+  const std::string ids = ids_text(about.idVendor, about.idProduct);
   libusb_device_handle* handle = nullptr;
   const int status = libusb_open(device, &handle);
   if (kind == nullptr) {  // one that can be opened is listed with the cameras
     if (status != 0) found.push_back({"camera", "aravis:", "USB3 Vision " + ids, usb_obstacle(status, about.idVendor)});
   } else if (status != 0) {
-    found.push_back({kind->kind, kind->scheme + std::string(":") + kind->options, "USB " + ids,
+    found.push_back({kind->kind, std::string(kind->scheme) + ":" + kind->options, "USB " + ids,
                      usb_obstacle(status, about.idVendor)});
   } else {
     const std::string serial = string_of(handle, about.iSerialNumber);
-    found.push_back({kind->kind, kind->scheme + (":" + serial) + kind->options,
+    found.push_back({kind->kind, std::string(kind->scheme) + ":" + serial + kind->options,
                      string_of(handle, about.iManufacturer) + " " + string_of(handle, about.iProduct),
                      lock_obstacle("usb:" + ids + ":" + serial)});
   }

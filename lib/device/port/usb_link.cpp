@@ -10,6 +10,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
+#include "device/port/private/usb_text.hpp"
+#include "device/port/usb_kinds.hpp"
 
 namespace vam::device {
 
@@ -30,24 +32,12 @@ struct HandleCloser {
 using Context = std::unique_ptr<libusb_context, ContextCloser>;
 using Handle = std::unique_ptr<libusb_device_handle, HandleCloser>;
 
-std::string ids_text(int vendor, int product) {
-  std::array<char, 16> text{};
-  std::snprintf(text.data(), text.size(), "%04x:%04x", static_cast<unsigned>(vendor), static_cast<unsigned>(product));
-  return text.data();
-}
-
 // Binary-coded decimal: 0x0106 is "1.06". Makers put the firmware's version there.
 std::string release_text(int bcd) {
   std::array<char, 16> text{};
   std::snprintf(text.data(), text.size(), "%x.%02x", static_cast<unsigned>(bcd >> 8),
                 static_cast<unsigned>(bcd & 0xFF));
   return text.data();
-}
-
-std::string string_of(libusb_device_handle* handle, unsigned char index) {
-  std::array<unsigned char, 256> text{};
-  if (index == 0 || libusb_get_string_descriptor_ascii(handle, index, text.data(), text.size()) <= 0) return "";
-  return reinterpret_cast<const char*>(text.data());
 }
 
 class LibusbLink final : public UsbLink {

@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/identity.hpp"
+#include "device/port/usb_kinds.hpp"
 #include "device/projector/light_engine.hpp"
 #include "device/projector/private/dlp_link.hpp"
 #include "device/safety/guardian_actions.hpp"
@@ -164,7 +165,10 @@ class DlpLight final : public LightEngine {
     throw Error{Fault::busy, link_.name() + ": " + problem + " within " + format_number(patience_s) + " s; " + remedy};
   }
 
-  [[nodiscard]] bool dlpc900() const { return link_.about()["usb_id"] == "0451:c900"; }
+  [[nodiscard]] bool dlpc900() const {
+    const UsbKind& kind = usb_kind("dlpc900");
+    return link_.about()["usb_id"] == ids_text(kind.vendor, kind.products.front());
+  }
 
   // Of red, green and blue. The drivers of a LightCrafter 4500 invert what its DLPC350 puts out, whose polarity may be
   // inverted in turn.

@@ -14,9 +14,6 @@
 
 namespace vam::device {
 
-inline constexpr int dlpc350_product = 0x6401;  // USB product ids
-inline constexpr int dlpc900_product = 0xc900;
-
 struct LightSettings {
   std::optional<double> current_percent;  // of full current, 0..100; absent: as it is
   double max_current_percent = 40;        // a larger current is refused
@@ -46,7 +43,7 @@ class LightEngine {
   std::unique_ptr<DeviceLock> lock_;
 };
 
-/// Which of the two controllers it is the link's usb_id tells.
+/// Which of the two controllers it is follows from the link's usb_id.
 [[nodiscard]] std::unique_ptr<LightEngine> make_dlp_light(std::unique_ptr<UsbLink> link, const LightSettings& settings,
                                                           Clock& clock, Guardian* guardian);
 

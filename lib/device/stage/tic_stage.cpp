@@ -216,8 +216,6 @@ class TicStage final : public Stage {
 
 }  // namespace
 
-UsbId tic_id(const std::string& serial) { return {0x1FFB, {0x00B3, 0x00B5, 0x00BD, 0x00C3, 0x00C9, 0x00CB}, serial}; }
-
 std::unique_ptr<Stage> make_tic_stage(std::unique_ptr<UsbLink> link, Clock& clock, double steps_per_deg,
                                       Guardian* guardian) {
   return std::make_unique<TicStage>(std::move(link), clock, steps_per_deg, guardian);

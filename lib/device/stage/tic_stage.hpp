@@ -8,8 +8,6 @@
 
 namespace vam::device {
 
-[[nodiscard]] UsbId tic_id(const std::string& serial);
-
 /// steps_per_deg: microsteps of the motor a degree of the stage, gears included; negative turns the other way. The Tic
 /// stops by itself when it hears nothing for its command time-out (1 s unless set otherwise).
 [[nodiscard]] std::unique_ptr<Stage> make_tic_stage(std::unique_ptr<UsbLink> link, Clock& clock, double steps_per_deg,
