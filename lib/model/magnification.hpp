@@ -10,7 +10,7 @@ namespace vam::model {
 /// air [OST22 eq S1, OST22 eq S2, OST22 eq S3, OST22 eq S4]. The resin's index is that at the wavelength in question.
 [[nodiscard]] double shortening_mm(const Printer& printer, double index_resin);
 
-/// Vertical magnification of the projected image, M_vp = 1 - shortening / D [OST22 eq S5]; 1 when rays stay level.
+/// Vertical magnification of the projected image, M_vp = 1 - shortening / D_p [OST22 eq S5]; 1 when rays stay level.
 [[nodiscard]] double vertical_magnification(const Printer& printer);
 
 /// M_vi = 1 / (1 - shortening / D_cam) [OST22 eq S6]: how much taller the camera sees what is at the axis;

@@ -125,24 +125,29 @@ ChiefRay chief_ray(const View& view, double x_p_mm) {
   return ray;
 }
 
-std::optional<double> column_of(const View& view, double x_v_mm) {
-  if (!(std::abs(x_v_mm) < reach_mm(view))) return std::nullopt;
-  const double b = x_v_mm * view.shells.back().index / view.bath_index;
-  if (!view.lens_mm) return b;
-  if (view.bath_index == 1.0) {  // b = x_p cos(atan(x_p / D)) solved for x_p
-    const double sine = b / *view.lens_mm;
-    return b / std::sqrt((1.0 - sine) * (1.0 + sine));
+double column_of_impact(const View& view, double impact_mm) {
+  if (!view.lens_mm) return impact_mm;
+  if (view.bath_index == 1.0) {  // b = x_p cos(atan(x_p / D_p)) solved for x_p
+    const double sine = impact_mm / *view.lens_mm;
+    return impact_mm / std::sqrt((1.0 - sine) * (1.0 + sine));
   }
   // b is monotone and nearly linear in x_p: Newton settles in a handful of steps.
-  double x_p = b;
+  double x_p = impact_mm;
   for (int step = 0; step < 50; ++step) {
     const Approach ray = approach(view, x_p);
-    const double move = (b - ray.impact_mm) / ray.impact_rate;
+    const double move = (impact_mm - ray.impact_mm) / ray.impact_rate;
     x_p += move;
     if (std::abs(move) <= 1e-14 * view.shells.front().radius_mm) break;
   }
   return x_p;
 }
+
+std::optional<double> column_of(const View& view, double x_v_mm) {
+  if (!(std::abs(x_v_mm) < reach_mm(view))) return std::nullopt;
+  return column_of_impact(view, x_v_mm * view.shells.back().index / view.bath_index);
+}
+
+double grazing_impact_mm(const View& view) { return largest_invariant(view) / view.bath_index; }
 
 double reach_mm(const View& view) { return largest_invariant(view) / view.shells.back().index; }
 

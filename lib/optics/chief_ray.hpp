@@ -18,7 +18,7 @@ struct Shell {
 
 /// What one instrument sees of the vial. Columns are measured from the axis in the plane y = 0, light runs along +y.
 struct View {
-  std::optional<double> lens_mm;  // D, lens (pupil) to axis for columns [RAY21 eq 1, RAY21 eq 2]; empty = telecentric
+  std::optional<double> lens_mm;  // D_p, lens (pupil) to axis for columns [RAY21 eq 1, RAY21 eq 2]; empty = telecentric
   double bath_index = 1;          // n_0, what the outermost shell stands in
   double window_mm = 0;           // L, flat window from air to bath at y = -L; without effect when n_0 = 1
   std::vector<Shell> shells;      // outermost first; the last is the resin
@@ -48,6 +48,12 @@ struct ChiefRay {
 /// Empty beyond reach_mm.
 [[nodiscard]] std::optional<double> column_of(const View& view, double x_v_mm);
 
+/// The column whose ray passes the axis at that distance before it meets the vial: the inverse of impact_mm.
+[[nodiscard]] double column_of_impact(const View& view, double impact_mm);
+
+/// The largest distance of a ray that meets the resin.
+[[nodiscard]] double grazing_impact_mm(const View& view);
+
 /// Largest |x_v| of any ray in the resin; inside this radius every point is lit from all sides.
 [[nodiscard]] double reach_mm(const View& view);
 
@@ -55,7 +61,7 @@ struct ChiefRay {
 [[nodiscard]] double resin_radius_mm(const View& view);
 
 /// Distance from the axis to the ray of column x_p_mm before it meets the vial. The column R_e that is tangent to a
-/// vial of radius R gives R: in air R = R_e / sqrt(1 + (R_e / D)^2); [RAY21 eq 9] has the sign of the square wrong.
+/// vial of radius R gives R: in air R = R_e / sqrt(1 + (R_e / D_p)^2); [RAY21 eq 9] has the sign of the square wrong.
 [[nodiscard]] double impact_mm(const View& view, double x_p_mm);
 
 }  // namespace vam::optics

@@ -73,6 +73,17 @@ SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacem
   return ray;
 }
 
+View plan_view(const View& view, double z_p_mm) {
+  if (!view.rows_lens_mm) return view;
+  const double sine = z_p_mm / std::hypot(*view.rows_lens_mm, z_p_mm);
+  const double s2 = square(sine);
+  const auto level = [s2](double index) { return std::sqrt((square(index) - s2) / (1 - s2)); };
+  View plan = view;
+  if (plan.bath_index != 1.0) plan.bath_index = level(plan.bath_index);
+  for (auto& shell : plan.shells) shell.index = level(shell.index);
+  return plan;
+}
+
 RayAt ray_through(const View& view, double x_mm, double y_mm, double z_mm, double x_p_guess_mm, double z_p_guess_mm,
                   const Displacement& vial) {
   constexpr double h = 1e-4;  // mm: central differences to 1e-9

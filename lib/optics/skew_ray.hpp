@@ -2,6 +2,8 @@
 // Source: Bouguer's invariant for skew rays. Through interfaces whose normals are horizontal n sin(elevation) = s is
 // conserved, so that a ray's plan view is that of a level ray with every index n replaced by sqrt(n^2 - s^2)
 // [physics §2, §11].
+//
+// At z_p = 0 it is the ray of optics::chief_ray, which also has derivatives in closed form; tests compare the two.
 #pragma once
 
 #include "optics/chief_ray.hpp"
@@ -31,9 +33,13 @@ struct Displacement {
 };
 
 /// The ray of the image-plane point (x_p_mm, z_p_mm) in the plane of the rotation axis, z_p measured from the lens's
-/// axis. A view that is telecentric along a direction has rays that do not diverge in it. The ray is told in the vial's
-/// frame, whose axis is the vial's.
+/// axis. A view that is telecentric along a direction has rays that do not diverge in it. The ray is given in the
+/// vial's frame, whose axis is the vial's.
 [[nodiscard]] SkewRay skew_ray(const View& view, double x_p_mm, double z_p_mm, const Displacement& vial = {});
+
+/// The view in which level rays have the plan of those that pass the plane of the axis at z_p: its indices are others
+/// [physics §2]. In units of the cosine of the elevation in air, so that air stays 1.
+[[nodiscard]] View plan_view(const View& view, double z_p_mm);
 
 /// The ray through a point of the lab, found by Newton's method, and how dense rays are there.
 struct RayAt {

@@ -53,17 +53,6 @@ double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
   return ray.hits ? ray.climb / ray.height_mm : 0.0;
 }
 
-optics::View plan_view(const optics::View& view, double z_p_mm) {
-  if (!view.rows_lens_mm) return view;
-  const double sine = z_p_mm / std::hypot(*view.rows_lens_mm, z_p_mm);
-  const double s2 = sine * sine;
-  const auto level = [s2](double index) { return std::sqrt((index * index - s2) / (1 - s2)); };
-  optics::View plan = view;
-  if (plan.bath_index != 1.0) plan.bath_index = level(plan.bath_index);
-  for (auto& shell : plan.shells) shell.index = level(shell.index);
-  return plan;
-}
-
 LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm)
     : columns_(columns), heights_(static_cast<int>(heights_mm.size())) {
   for (const double height : heights_mm) {

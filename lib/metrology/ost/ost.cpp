@@ -18,6 +18,7 @@
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
+#include "optics/skew_ray.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 
@@ -80,6 +81,7 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
+  [[nodiscard]] int half_width(double voxel_mm) const;
   void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
   void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
   void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
@@ -104,22 +106,26 @@ OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_m
   s.azimuth_rad = printer.camera.azimuth_deg * rad_per_deg;
   s.direction = printer.stage.direction;
   const double voxel_mm = options.voxel_mm > 0 ? options.voxel_mm : pixel_mm;
-  const double seen_mm =
-      std::min(s.eye.camera.x_mm(columns - 1), -s.eye.camera.x_mm(0));  // the nearer edge of the frame
-  const auto edge = optics::chief_ray(s.eye.view, std::max(0.0, seen_mm));
-  const double through_vial = options.refraction ? (edge.hits ? edge.x_v_mm : optics::reach_mm(s.eye.view)) : seen_mm;
-  const double radius_mm = options.radius_mm > 0 ? std::min(options.radius_mm, through_vial) : through_vial;
-  const int half = static_cast<int>(std::floor(radius_mm / voxel_mm));
-  if (half < 2) {
-    throw Error{Fault::data, "views: the camera sees only " + format_number(radius_mm, 3) +
-                                 " mm beside the axis (column " + format_number(axis.column, 5) + " of " +
-                                 std::to_string(columns) + "); check camera.pixel_mm and the axis"};
-  }
+  const int half = s.half_width(voxel_mm);
   s.detector = optics::centred_detector(2 * half + 1, voxel_mm);
   const double row_mm = pixel_mm / model::camera_magnification(printer);
   const int slices = std::max(1, static_cast<int>(std::floor(rows * row_mm / voxel_mm)));
   const double middle_mm = (s.eye.axis_row - 0.5 * (rows - 1)) * row_mm;
   s.grid = model::centred_grid(2 * half + 1, 2 * half + 1, slices, voxel_mm, middle_mm - 0.5 * (slices - 1) * voxel_mm);
+}
+
+/// Voxels on either side of the axis: as far as the camera sees, or as is requested.
+int OstReconstructor::State::half_width(double voxel_mm) const {
+  const int columns = eye.camera.columns;
+  const double seen_mm = std::min(eye.camera.x_mm(columns - 1), -eye.camera.x_mm(0));  // the nearer edge of the frame
+  const auto edge = optics::chief_ray(eye.view, std::max(0.0, seen_mm));
+  const double through_vial = options.refraction ? (edge.hits ? edge.x_v_mm : optics::reach_mm(eye.view)) : seen_mm;
+  const double radius_mm = options.radius_mm > 0 ? std::min(options.radius_mm, through_vial) : through_vial;
+  const int half = static_cast<int>(std::floor(radius_mm / voxel_mm));
+  if (half >= 2) return half;
+  throw Error{Fault::data, "views: the camera sees only " + format_number(radius_mm, 3) +
+                               " mm beside the axis (column " + format_number(axis.column, 5) + " of " +
+                               std::to_string(columns) + "); check camera.pixel_mm and the axis"};
 }
 
 OstReconstructor::~OstReconstructor() = default;
@@ -148,7 +154,7 @@ std::vector<Image> OstReconstructor::State::virtual_sinograms(std::span<const Im
       .fresnel = true, .jacobian = false, .angle_offset_rad = azimuth_rad, .direction = direction};
   for (std::size_t first = 0; first < sinograms.size(); first += lanes) {
     const std::size_t count = std::min<std::size_t>(lanes, sinograms.size() - first);
-    const optics::View plan = plan_view(eye.view, heights_mm[first + count / 2]);
+    const optics::View plan = optics::plan_view(eye.view, heights_mm[first + count / 2]);
     optics::resample(
         optics::plan_to_virtual(plan, eye.camera, detector, {angles, 0, 2 * std::numbers::pi / angles}, how),
         sinograms.subspan(first, count), std::span(out).subspan(first, count));

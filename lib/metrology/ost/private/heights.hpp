@@ -41,10 +41,6 @@ class RowOfHeight {
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
 [[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);
 
-/// The same bench for rays that pass the axis plane at z_p: in plan they are level rays with other indices
-/// [physics §2].
-[[nodiscard]] optics::View plan_view(const optics::View& view, double z_p_mm);
-
 /// The rows of a camera image that see these heights, lowest first.
 class LevelRows {
  public:

@@ -1,0 +1,160 @@
+#include "metrology/calibrate/private/edge_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/stats/curve_fit.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+// Parameters: centre, R_e, blur; then the light: background, and the camera's share at the low and at the high edge.
+enum : std::size_t {
+  centre,
+  edge,
+  blur,
+  ground,
+  low_share,
+  high_share = low_share + edge_powers,
+  count = high_share + edge_powers
+};
+constexpr std::size_t lights = count - ground;
+static_assert(least_readings == 2 * count);
+
+class BandModel {
+ public:
+  BandModel(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes, const Steepest& first)
+      : shapes_(shapes), width_px_(scan.width_px) {
+    const double middle = 0.5 * (first.rise + first.fall);
+    const double radius = 0.5 * (first.fall - first.rise);
+    for (std::size_t i = 0; i < signal.size(); ++i) {
+      const double q = std::abs(scan.column[i] - middle) / radius;
+      if (q < 1 - edge_window || q > 1 + edge_window) continue;
+      column_.push_back(scan.column[i]);
+      signal_.push_back(signal[i]);
+    }
+  }
+
+  // Row-major, a row for each reading: what each parameter of the light would give if it were 1.
+  [[nodiscard]] std::vector<double> light(const std::vector<double>& p) const {
+    std::vector<double> rows(signal_.size() * lights);
+    for (std::size_t i = 0; i < signal_.size(); ++i) {
+      double* row = rows.data() + i * lights;
+      const bool high = column_[i] > p[centre];
+      const EdgeTerms terms =
+          blurred(high ? shapes_.high : shapes_.low, std::abs(column_[i] - p[centre]), p[edge], p[blur]);
+      row[0] = 1;
+      std::copy(terms.begin(), terms.end(), row + (high ? high_share : low_share) - ground);
+    }
+    return rows;
+  }
+  [[nodiscard]] std::vector<double> residuals(const std::vector<double>& rows, const double* parts) const {
+    std::vector<double> out = signal_;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      for (std::size_t k = 0; k < lights; ++k) out[i] -= parts[k] * rows[i * lights + k];
+    }
+    return out;
+  }
+  // Of the light's parameters those that bring it nearest to the readings; with an even share only the first of each
+  // edge's terms.
+  [[nodiscard]] std::vector<double> best_parts(std::vector<double> rows, bool even) const {
+    for (std::size_t i = 0; even && i < signal_.size(); ++i) {
+      for (const std::size_t share : {low_share, high_share}) {
+        for (std::size_t k = 1; k < edge_powers; ++k) rows[i * lights + share - ground + k] = 0;
+      }
+    }
+    return stats::linear_fit(rows, lights, signal_);
+  }
+
+ private:
+  // Mean over the line's width and a Gaussian, in R_e's units.
+  [[nodiscard]] EdgeTerms blurred(const EdgeShape& shape, double x_px, double edge_px, double blur_px) const {
+    constexpr int half_nodes = 6;
+    constexpr double reach = 3;
+    const double sigma = std::max(std::abs(blur_px), 1e-3);
+    EdgeTerms sum{};
+    double weights = 0;
+    for (int n = -half_nodes; n <= half_nodes; ++n) {
+      const double z = reach * n / half_nodes;
+      const double weight = std::exp(-0.5 * z * z);
+      const double x = x_px + sigma * z;
+      const EdgeTerms beyond = shape.integral((x + 0.5 * width_px_) / edge_px);
+      const EdgeTerms before = shape.integral((x - 0.5 * width_px_) / edge_px);
+      weights += weight;
+      for (std::size_t k = 0; k < edge_powers; ++k) sum[k] += weight * (beyond[k] - before[k]);
+    }
+    for (double& term : sum) term *= edge_px / width_px_ / weights;
+    return sum;
+  }
+
+  const EdgeShapes& shapes_;
+  double width_px_;
+  std::vector<double> column_;
+  std::vector<double> signal_;
+};
+
+}  // namespace
+
+Steepest steepest(const std::vector<double>& column, const std::vector<double>& signal) {
+  const std::size_t n = signal.size();
+  std::vector<double> smooth(n);
+  double noise = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i;
+    const std::size_t b = std::min(i + 1, n - 1);
+    smooth[i] = (signal[a] + signal[i] + signal[b]) / 3;
+  }
+  const auto [low, high] = std::minmax_element(smooth.begin(), smooth.end());
+  // The half height, seen from either end: the slope may be steeper inside where noise helps it.
+  const double half = 0.5 * (*low + *high);
+  Steepest edges;
+  std::size_t first = 0;
+  while (first < n && smooth[first] < half) ++first;
+  std::size_t last = n;
+  while (last > first && smooth[last - 1] < half) --last;
+  for (std::size_t i = 1; i < n; ++i) noise += std::abs(signal[i] - signal[i - 1]);
+  noise /= static_cast<double>(n - 1);
+  edges.clear = first > 0 && last < n && last > first + 3 && *high - *low > 3 * noise;
+  if (edges.clear) {
+    edges.rise = 0.5 * (column[first - 1] + column[first]);
+    edges.fall = 0.5 * (column[last - 1] + column[last]);
+  }
+  return edges;
+}
+
+// First the edges alone, with the light that suits them best, of an even share: from far away, a wide blur and a bent
+// share may take an edge's place. Then all together, for the sigmas.
+BandEdges fit_band(const SweepScan& scan, const std::vector<double>& signal, const EdgeShapes& shapes,
+                   const Steepest& first) {
+  using Values = std::vector<double>;
+  const std::string subject = "sweep: vial edges";
+  const BandModel model(scan, signal, shapes, first);
+  const auto lit_best = [&](bool even) {
+    return [&model, even](const Values& edges) {
+      const Values rows = model.light(edges);
+      return model.residuals(rows, model.best_parts(rows, even).data());
+    };
+  };
+  Values at, rows;  // of the edges computed last: most of the parameters leave them where they are
+  const auto residuals = [&](const Values& p) {
+    const Values edges(p.begin(), p.begin() + ground);
+    if (edges != at) rows = model.light(edges);
+    at = edges;
+    return model.residuals(rows, p.data() + ground);
+  };
+  Values start{0.5 * (first.rise + first.fall), 0.5 * (first.fall - first.rise) + 1, 1.5};
+  Values step(start.size(), 0.01);
+  start = stats::fit_curve(lit_best(true), start, step, subject).value;
+  start = stats::fit_curve(lit_best(false), start, step, subject).value;
+  const Values parts = model.best_parts(model.light(start), false);
+  start.insert(start.end(), parts.begin(), parts.end());
+  const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
+  step.resize(count, 1e-3 * (*high - *low));
+  const auto fit = stats::fit_curve(residuals, start, step, subject);
+  BandEdges out{fit.measured(centre), fit.measured(edge), fit.measured(blur)};
+  out.blur.value = std::abs(out.blur.value);
+  return out;
+}
+
+}  // namespace vam::metrology
