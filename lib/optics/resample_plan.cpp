@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/constants.hpp"
+#include "base/cubic.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "optics/resample.hpp"
@@ -12,13 +13,8 @@ namespace vam::optics {
 
 namespace {
 
-// Tent, or the cubic convolution kernel of [KEYS81] with a = -1/2 (Catmull-Rom: exact for quadratics).
 double kernel(Interpolation interpolation, double x) {
-  x = std::abs(x);
-  if (interpolation == Interpolation::linear) return std::max(0.0, 1.0 - x);
-  if (x < 1) return (1.5 * x - 2.5) * x * x + 1.0;
-  if (x < 2) return ((-0.5 * x + 2.5) * x - 4.0) * x + 2.0;
-  return 0;
+  return interpolation == Interpolation::linear ? std::max(0.0, 1.0 - std::abs(x)) : cubic_kernel(x);
 }
 
 void check_turn(const Turn& turn) {

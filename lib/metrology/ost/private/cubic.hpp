@@ -1,20 +1,13 @@
-// Pixels between pixels: Keys' cubic convolution with a = -1/2 [KEYS81].
+// An image between its pixels, by cubic convolution [KEYS81].
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "base/cubic.hpp"
 #include "base/image.hpp"
 
 namespace vam::metrology {
-
-/// Weights of the pixels -1, 0, 1, 2 about the fraction f.
-inline std::array<float, 4> cubic_weights(float f) {
-  const float g = 1 - f;
-  return {-0.5F * f * g * g, 1 - 2.5F * f * f + 1.5F * f * f * f, 1 - 2.5F * g * g + 1.5F * g * g * g,
-          -0.5F * g * f * f};
-}
 
 /// At row y of column x; beyond the image its last row.
 inline float cubic_down(const Image& image, int x, double y) {
