@@ -11,6 +11,7 @@
 #include "optimize/methods/private/step_length.hpp"
 #include "optimize/methods/private/surface_points.hpp"
 #include "optimize/methods/private/two_metric.hpp"
+#include "optimize/methods/tolerant.hpp"
 
 namespace vam::optimize {
 
@@ -225,7 +226,8 @@ MethodEntry apg_method() {
           60,
           true,
           {"--max-intensity", "--robust", "--free-surface"},
-          make<Apg>};
+          make<Apg>,
+          make_tolerant};
 }
 
 }  // namespace vam::optimize

@@ -17,16 +17,13 @@ class Bclp final : public Descent {
 
  protected:
   [[nodiscard]] float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
-    const float over = std::abs(excess(problem, s, i, dose));
-    return over > 0 ? problem.weight_at(s, i) * std::pow(over, static_cast<float>(options_.power)) : 0.0F;
+    return power_loss(problem.weight_at(s, i), excess(problem, s, i, dose), options_.power);
   }
   [[nodiscard]] float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
-    const auto p = static_cast<float>(options_.power);
     const float over = excess(problem, s, i, dose);
-    if (over == 0) return 0.0F;
+    if (over == 0) return 0;
     const CureCurve& curve = problem.demands.curve;
-    const float steepness = curve.is_step() ? 1.0F : curve.slope(dose);  // dM/dD
-    return problem.weight_at(s, i) * std::copysign(p * std::pow(std::abs(over), p - 1) * steepness, over);
+    return power_slope(problem.weight_at(s, i), over, options_.power, curve.is_step() ? 1.0F : curve.slope(dose));
   }
 
  private:

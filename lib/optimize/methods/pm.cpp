@@ -1,6 +1,4 @@
 // Penalty minimisation [PM21].
-#include <cmath>
-
 #include "optimize/methods/private/descent.hpp"
 #include "optimize/methods/private/loss.hpp"
 
@@ -16,13 +14,10 @@ class Pm final : public Descent {
 
  protected:
   [[nodiscard]] float loss(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
-    const float d = std::abs(miss(problem, s, i, dose));
-    return d > 0 ? problem.weight_at(s, i) * std::pow(d, static_cast<float>(options_.power)) : 0.0F;
+    return power_loss(problem.weight_at(s, i), miss(problem, s, i, dose), options_.power);
   }
   [[nodiscard]] float slope(const Problem& problem, std::size_t s, std::size_t i, float dose) const override {
-    const auto p = static_cast<float>(options_.power);
-    const float d = miss(problem, s, i, dose);
-    return d == 0 ? 0.0F : problem.weight_at(s, i) * std::copysign(p * std::pow(std::abs(d), p - 1), d);
+    return power_slope(problem.weight_at(s, i), miss(problem, s, i, dose), options_.power);
   }
 
  private:

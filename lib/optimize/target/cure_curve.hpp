@@ -21,7 +21,7 @@ class CureCurve {
   [[nodiscard]] static CureCurve linear();
   /// 0 up to low, 1 from high on. In between it is unknown, so it has no slope to follow; taken as straight.
   [[nodiscard]] static CureCurve step(double low, double high);
-  /// M(D) = 1 / (1 + e^{(T - D)/gamma}): T the dose of response 1/2, gamma the softness, above 0.
+  /// M(D) = 1 / (1 + e^{(d_t - D)/gamma}): d_t the dose of response 1/2, gamma the softness, above 0.
   [[nodiscard]] static CureCurve logistic(double threshold, double softness);
   /// Straight between points (dose, response), level beyond the first and the last. Throws Fault::data unless there are
   /// two points, doses rise, and responses do not fall.

@@ -73,7 +73,7 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
 
 /// A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its
 /// largest coverage is at least a half it is printed, scaled so that this is 1, with the voxels of at least half of it
-/// for part; otherwise it stays dark. Where slices are stacked and the dose at the surface is asked for, the slice
+/// for part; otherwise it stays dark. Where slices are stacked and the dose at the surface is prescribed, the slice
 /// beside one with such voxels is left as it is: its surface says where the part ends.
 void settle(Problem& problem);
 

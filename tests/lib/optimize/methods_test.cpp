@@ -215,6 +215,13 @@ TEST_CASE("offset projections keep the shape of the filtered ones") {
   CHECK(m.cv < parts::run({vam::oracle::wheel(64)}, 64, 90, "fbp", {}, 0)[0].cv);
 }
 
+TEST_CASE("the methods that read --robust are those that face other printers") {
+  for (const MethodEntry& entry : method_table()) {
+    CAPTURE(entry.name);
+    CHECK(reads(entry, "--robust") == (entry.make_tolerant != nullptr));
+  }
+}
+
 TEST_CASE("contradictory thresholds and unknown methods are refused") {
   Demands demands;
   demands.window = {0.9, 0.7};

@@ -1,6 +1,7 @@
 // The one-sided loss: every voxel's dose should stay within bounds; inside them there is no penalty [physics §6].
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "optimize/target/problem.hpp"
@@ -32,6 +33,19 @@ inline float slope(const Problem& problem, const DoseWindow& window, std::size_t
 inline float loss(const Problem& problem, const DoseWindow& window, std::size_t s, std::size_t i, float dose) {
   const float miss = bounds(problem, window, s, i).miss(dose);
   return 0.5F * problem.weight_at(s, i) * miss * miss;
+}
+
+/// The loss w |excess|^p of a voxel, excess what its dose (or response) is beyond its bounds, signed [PM21; BCLP24].
+inline float power_loss(float weight, float excess, double power) {
+  const float over = std::abs(excess);
+  return over > 0 ? weight * std::pow(over, static_cast<float>(power)) : 0.0F;
+}
+
+/// Its derivative by the dose; steepness is that of the excess.
+inline float power_slope(float weight, float excess, double power, float steepness = 1) {
+  if (excess == 0) return 0;
+  const auto p = static_cast<float>(power);
+  return weight * std::copysign(p * std::pow(std::abs(excess), p - 1) * steepness, excess);
 }
 
 }  // namespace vam::optimize

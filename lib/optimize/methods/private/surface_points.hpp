@@ -1,4 +1,4 @@
-// Points of the design's surface, whose dose is asked to be the threshold [physics §6].
+// Points of the design's surface, whose dose is to be the threshold [physics §6].
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct SurfacePoint {
 };
 
 /// The points of a problem, each along the axis that is nearest to the surface's normal there; between two slices only
-/// where they are stacked. None where the surface is not asked for, or a voxel beside it is outside or has weight 0.
+/// where they are stacked. None where the surface is free, or a voxel beside it is outside or has weight 0.
 class SurfacePoints {
  public:
   SurfacePoints() = default;
