@@ -22,7 +22,7 @@ TableNode::Even even_fit(double at_0, double at_middle, double at_1) {
 FoundRay ray_at(const LevelRays& light, double x_mm, double y_mm, double z_mm, const FoundRay& level,
                 const optics::Displacement& vial) {
   const optics::RayAt found =
-      optics::ray_through(light.setup.view, x_mm, y_mm, z_mm, level.x_p_mm, z_mm * level.row, vial);
+      optics::ray_through(light.scope.view, x_mm, y_mm, z_mm, level.x_p_mm, z_mm * level.row, vial);
   const optics::SkewRay& ray = found.ray;
   if (!ray.hits) return {false, level.x_p_mm, level.row, 0, level.spacing, level.delta_rad};
   const double u = y_mm * std::cos(ray.delta_rad) - x_mm * std::sin(ray.delta_rad);
@@ -42,7 +42,7 @@ TableNode node_of(const FoundRay& level, const FoundRay& middle, const FoundRay&
 
 TableNode node_over_heights(const LevelRays& light, double x_mm, double y_mm, const FoundRay& level,
                             const optics::Displacement& vial) {
-  const double height_mm = light.setup.height_mm;
+  const double height_mm = light.scope.height_mm;
   return node_of(level, ray_at(light, x_mm, y_mm, height_mm * middle_height, level, vial),
                  ray_at(light, x_mm, y_mm, height_mm, level, vial));
 }

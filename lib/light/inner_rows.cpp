@@ -28,7 +28,7 @@ void RayTable::fill_inner_row(const LevelRays& light, int row) {
   const double r = row * inner.pitch_mm;
   double b = 0;
   for (int index = 0; index < directions; ++index) {
-    const double alpha = setup_.sense * index * (2 * std::numbers::pi) / directions;
+    const double alpha = scope_.sense * index * (2 * std::numbers::pi) / directions;
     const LevelRays::Point point = level_ray(light, r, alpha, b);
     const double zoom = climbs_ ? light.low_zoom(point.x_p_mm, point.u_mm) : 1;
     const FoundRay level{true,

@@ -83,7 +83,7 @@ void RayTable::fill_outer_row(const LevelRays& light, int row) {
   const auto add = [&](int sheet, const LevelRays::Point& point) {
     const double zoom = climbs_ ? light.low_zoom(point.x_p_mm, point.u_mm) : 1.0;
     const double strength = point.strength * zoom * step * directions / turn_rad;
-    share_out(light, point, zoom, strength, setup_.sense * point.alpha * directions / turn_rad, sheets[sheet]);
+    share_out(light, point, zoom, strength, scope_.sense * point.alpha * directions / turn_rad, sheets[sheet]);
   };
   each_ray(light, r, -std::numbers::pi + open, step, samples, 0, add);  // light enters at u < 0
   each_ray(light, r, open, step, samples, 1, add);

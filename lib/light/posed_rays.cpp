@@ -39,7 +39,7 @@ void require_small(double largest_mm, double resin_mm) {
 
 }  // namespace
 
-PosedRays::PosedRays(const VialSetup& setup, const RayTable::Setup& rays, const RayTable& table) : sense_(rays.sense) {
+PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const RayTable& table) : sense_(rays.sense) {
   const double largest_mm = model::farthest_mm(setup.poses, model::Moves::vial);
   require_small(largest_mm, table.edge_mm);
   if (largest_mm > 0) shift_ = VialShift(rays, table, largest_mm);

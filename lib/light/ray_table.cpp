@@ -16,23 +16,23 @@ float value(const TableNode::Even& even, float z2) { return even[0] + z2 * (even
 
 }  // namespace
 
-RayTable::RayTable(const Setup& setup)
-    : phases((least_directions + setup.angles - 1) / setup.angles),
-      directions(setup.angles * phases),
-      reach_mm(optics::reach_mm(setup.view)),
-      edge_mm(optics::resin_radius_mm(setup.view)),
-      setup_(setup),
-      climbs_(setup.view.rows_lens_mm.has_value()) {
-  setup_.height_mm = std::max(setup.height_mm, 1e-3);
-  const LevelRays light{setup_, edge_mm, reach_mm};
+RayTable::RayTable(const Scope& scope)
+    : phases((least_directions + scope.angles - 1) / scope.angles),
+      directions(scope.angles * phases),
+      reach_mm(optics::reach_mm(scope.view)),
+      edge_mm(optics::resin_radius_mm(scope.view)),
+      scope_(scope),
+      climbs_(scope.view.rows_lens_mm.has_value()) {
+  scope_.height_mm = std::max(scope.height_mm, 1e-3);
+  const LevelRays light{scope_, edge_mm, reach_mm};
   const double inside =
-      std::min(reach_mm * (climbs_ ? 0.9995 : LevelRays::rim), std::max(setup.r_max_mm, setup.pitch_mm));
-  inner.rows = std::max(2, static_cast<int>(std::ceil(inside / setup.pitch_mm)) + 1);
+      std::min(reach_mm * (climbs_ ? 0.9995 : LevelRays::rim), std::max(scope.r_max_mm, scope.pitch_mm));
+  inner.rows = std::max(2, static_cast<int>(std::ceil(inside / scope.pitch_mm)) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
-  const double beyond = std::min(edge_mm, setup.r_max_mm) - reach_mm;
+  const double beyond = std::min(edge_mm, scope.r_max_mm) - reach_mm;
   if (beyond > 0) {
     outer.sheets = most_sheets;
-    outer.rows = static_cast<int>(std::ceil(2 * beyond / setup.pitch_mm));  // nearest row: half the pitch
+    outer.rows = static_cast<int>(std::ceil(2 * beyond / scope.pitch_mm));  // nearest row: half the pitch
     outer.pitch_mm = beyond / outer.rows;
     outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
     outer.first_row = inner.rows;
@@ -43,7 +43,7 @@ RayTable::RayTable(const Setup& setup)
 }
 
 HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {
-  return {static_cast<float>((z_mm / setup_.height_mm) * (z_mm / setup_.height_mm)),
+  return {static_cast<float>((z_mm / scope_.height_mm) * (z_mm / scope_.height_mm)),
           static_cast<float>(scale.columns_per_mm),
           static_cast<float>(scale.column_origin),
           static_cast<float>(scale.rows_per_mm * z_mm),
@@ -65,7 +65,7 @@ void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) co
 }
 
 double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {
-  const auto square = [&](double z) { return static_cast<float>((z / setup_.height_mm) * (z / setup_.height_mm)); };
+  const auto square = [&](double z) { return static_cast<float>((z / scope_.height_mm) * (z / scope_.height_mm)); };
   constexpr double counts = 0.95;  // of the reach: at the rim rays drift without bounds, and carry next to nothing
   const int row =
       std::min(inner.rows - 1, static_cast<int>(std::ceil(std::min(r_mm, counts * reach_mm) / inner.pitch_mm)));

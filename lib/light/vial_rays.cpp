@@ -27,14 +27,6 @@ double farthest_mm(const VialSetup& setup) {
   return std::min(setup.radius_mm, std::hypot(x, y));
 }
 
-auto best_kernel() {
-#if defined(__x86_64__)
-  if (simd_level() == Simd::avx512) return &avx512::find_taps;
-  if (simd_level() == Simd::avx2) return &avx2::find_taps;
-#endif
-  return &baseline::find_taps;
-}
-
 }  // namespace
 
 /// Slabs are looked up whole. Slices that no row reaches in any pose need no rays.
@@ -49,9 +41,9 @@ double VialRays::top_mm() const {
   return std::min(top, lower * rows_mm + 4 * lanes * setup_.grid.voxel_mm);
 }
 
-RayTable::Setup VialRays::table_setup() const {
+RayTable::Scope VialRays::table_scope() const {
   constexpr double least_height_mm = 1e-3;
-  RayTable::Setup table;
+  RayTable::Scope table;
   table.view = setup_.view;
   table.angles = static_cast<int>(std::lround(turn_rad / std::abs(setup_.turn.step_rad)));
   table.sense = sense();
@@ -62,9 +54,9 @@ RayTable::Setup VialRays::table_setup() const {
   return table;
 }
 
-VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_setup()) {
+VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(table_scope()) {
   tomo::require_translucent(setup_.absorption_per_mm, optics::resin_radius_mm(setup_.view));
-  if (posed()) posed_ = PosedRays(setup_, table_setup(), table_);
+  if (posed()) posed_ = PosedRays(setup_, table_scope(), table_);
   note_columns();
   note_rows();
   RayNodes level;
@@ -257,7 +249,7 @@ void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
 
 void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count, const Standing& part, int slices,
                          RayTaps& taps) const {
-  static const auto kernel = best_kernel();
+  static const auto kernel = VAM_KERNEL(find_taps, simd_level());
   const RayFrame frame{part.shift,
                        part.step,
                        part.directions,

@@ -31,29 +31,29 @@ FoundRay begin_at(const RayTable& table, double r_mm, double turn) {
 
 }  // namespace
 
-VialShift::VialShift(const RayTable::Setup& setup, const RayTable& table, double largest_mm) : largest_mm_(largest_mm) {
+VialShift::VialShift(const RayTable::Scope& scope, const RayTable& table, double largest_mm) : largest_mm_(largest_mm) {
   const double inside = table.inner.pitch_mm * (table.inner.rows - 1);
   rows_ = std::max(2, static_cast<int>(std::ceil(inside / table.reach_mm * rows_per_reach)) + 1);
   pitch_mm_ = inside / (rows_ - 1);
   points_.resize(static_cast<std::size_t>(rows_) * (directions + 1));
   parallel_for(rows_, [&](int row) {
     Point* to = points_.data() + static_cast<std::ptrdiff_t>(row) * (directions + 1);
-    for (int i = 0; i < directions; ++i) to[i] = fit(setup, table, row, i);
+    for (int i = 0; i < directions; ++i) to[i] = fit(scope, table, row, i);
     to[directions] = to[0];
   });
 }
 
 /// The vial in its place and at five places around it, 72 degrees apart: as many as a polynomial of second degree has
 /// coefficients, which are the harmonics 0, 1 and 2 of the circle.
-VialShift::Point VialShift::fit(const RayTable::Setup& setup, const RayTable& table, int row, int direction) const {
+VialShift::Point VialShift::fit(const RayTable::Scope& scope, const RayTable& table, int row, int direction) const {
   constexpr int places = 5;
-  const LevelRays light{setup, table.edge_mm, table.reach_mm};
+  const LevelRays light{scope, table.edge_mm, table.reach_mm};
   const double r = row * pitch_mm_;
   const double turn = static_cast<double>(direction) / directions;
-  const double x = r * std::cos(setup.sense * turn * turn_rad);
-  const double y = r * std::sin(setup.sense * turn * turn_rad);
+  const double x = r * std::cos(scope.sense * turn * turn_rad);
+  const double y = r * std::sin(scope.sense * turn * turn_rad);
   const FoundRay begin = begin_at(table, r, turn);
-  const double low_mm = 0.01 * setup.height_mm;
+  const double low_mm = 0.01 * scope.height_mm;
   bool lit = true;
   const auto values = [&](const optics::Displacement& vial) {
     const FoundRay level = ray_at(light, x, y, low_mm, begin, vial);

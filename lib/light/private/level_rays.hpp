@@ -21,7 +21,7 @@ struct LevelRays {
     double u_mm = 0;
   };
 
-  const RayTable::Setup& setup;
+  const RayTable::Scope& scope;
   double edge_mm;
   double reach_mm;
 

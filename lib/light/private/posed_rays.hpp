@@ -14,7 +14,7 @@ class PosedRays {
  public:
   PosedRays() = default;
   /// Throws Fault::data when the vial is displaced by more than the polynomials hold for.
-  PosedRays(const VialSetup& setup, const RayTable::Setup& rays, const RayTable& table);
+  PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const RayTable& table);
 
   [[nodiscard]] double lift_mm(int frame) const { return frames_[frame].lift_mm; }
 

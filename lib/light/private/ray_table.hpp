@@ -77,7 +77,8 @@ class RayTable {
     int first_row = 0;  // of the table
   };
 
-  struct Setup {
+  /// What it is a table of.
+  struct Scope {
     optics::View view;
     int angles = 0;  // stage angles of one turn
     int sense = 1;   // +1 when alpha grows with the index
@@ -86,7 +87,7 @@ class RayTable {
     double pitch_mm = 0;   // of the rows
     double height_mm = 0;  // largest |z| above or below the lens's axis that is needed
   };
-  explicit RayTable(const Setup& setup);
+  explicit RayTable(const Scope& scope);
 
   [[nodiscard]] HeightScale scale_at(double z_mm, const RayScale& scale) const;
   /// The nodes at that height: element row_begin(zone, row, sheet) + i is direction alpha = sense * i * 2 pi /
@@ -118,7 +119,7 @@ class RayTable {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }
 
-  Setup setup_;
+  Scope scope_;
   bool climbs_ = false;
   std::vector<TableNode> nodes_;  // [zone, row, sheet][direction]
 };

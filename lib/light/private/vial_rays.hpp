@@ -85,7 +85,7 @@ class VialRays {
   [[nodiscard]] int sense() const { return (setup_.turn.step_rad < 0 ? 1 : -1) * setup_.direction; }
   [[nodiscard]] double height_mm(double slice) const { return setup_.z_scale * setup_.grid.z_mm(slice); }
   [[nodiscard]] double top_mm() const;
-  [[nodiscard]] RayTable::Setup table_setup() const;
+  [[nodiscard]] RayTable::Scope table_scope() const;
   [[nodiscard]] RayScale scale() const;
   void require_moderate_rays(RayNodes& nodes) const;
   void note_columns();

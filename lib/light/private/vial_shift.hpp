@@ -18,7 +18,7 @@ class VialShift {
   static constexpr int floats = 14;  // of a TableNode
 
   VialShift() = default;
-  VialShift(const RayTable::Setup& setup, const RayTable& table, double largest_mm);
+  VialShift(const RayTable::Scope& scope, const RayTable& table, double largest_mm);
 
   [[nodiscard]] bool empty() const { return points_.empty(); }
   [[nodiscard]] Powers powers(const optics::Displacement& vial) const;
@@ -27,7 +27,7 @@ class VialShift {
 
  private:
   using Point = std::array<std::array<float, floats>, std::tuple_size_v<Powers>>;
-  [[nodiscard]] Point fit(const RayTable::Setup& setup, const RayTable& table, int row, int direction) const;
+  [[nodiscard]] Point fit(const RayTable::Scope& scope, const RayTable& table, int row, int direction) const;
 
   double largest_mm_ = 0;
   double pitch_mm_ = 0;
