@@ -198,6 +198,11 @@ App& App::writes(const std::vector<std::string>& endings) {
   return *this;
 }
 
+App& App::form() {
+  state_->current_group().options.back().form = true;
+  return *this;
+}
+
 App& App::needs(const std::vector<std::string>& any_of) {
   state_->current_group().options.back().needs.push_back(any_of);
   return *this;

@@ -92,6 +92,9 @@ class App {
   /// The operand or option declared last names a file that the tool reads; - is standard input. At most one input is
   /// standard input, and no output is an input. `unless`: options that stand for the operand.
   App& reads(const std::vector<std::string>& unless = {});
+  /// The option declared last makes a form of the tool, which the synopsis shows beside the plain one: with the
+  /// operands that it does not stand for (reads).
+  App& form();
   /// The option declared last is refused where none of these is given. Called again: nor where none of those is.
   App& needs(const std::vector<std::string>& any_of);
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and

@@ -26,6 +26,7 @@ struct Option {
   std::vector<Former> former = {};                   // not shown
   std::function<std::string()> value = {};           // in force
   bool required = false;                             // in its form of the tool
+  bool form = false;                                 // the synopsis shows the tool with it
   bool in_job = true;                                // App::job() lists it
   bool reads = false;                                // names a file that is read
   bool writes = false;                               // names a file that is written
@@ -57,8 +58,7 @@ struct Declaration {
 /// Of the option that every tool has.
 inline constexpr const char* memory_help =
     "Take at most so much memory; what needs more is refused. Range: more than 0, at most 1e6. Default: what the "
-    "machine has "
-    "free.";
+    "machine has free.";
 
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);
@@ -70,6 +70,10 @@ inline constexpr const char* memory_help =
 [[nodiscard]] bool has_plain_form(const Declaration& tool);
 
 [[nodiscard]] std::vector<Option> required_options(const Declaration& form);
+
+/// The forms of the tool, or command, in its synopsis: as declared, and one for each option with form(): there it is
+/// required, and the operands that it stands for are left out.
+[[nodiscard]] std::vector<Declaration> forms_of(const Declaration& tool);
 
 /// What help and manual say of the option: its help, choices, range, default. One sentence or more each.
 [[nodiscard]] std::vector<std::string> details(const Option& option);

@@ -14,7 +14,9 @@ constexpr int indent = 6;
 // "--flips FILE" for each option that must be given, "SLICES" for each operand, in brackets where it may be left out.
 std::string operands(const Declaration& form) {
   std::string text;
-  for (const auto& option : required_options(form)) text += " " + long_flag(option) + " " + option.value_name;
+  for (const auto& option : required_options(form)) {
+    text += " " + long_flag(option) + (option.value_name.empty() ? "" : " " + option.value_name);
+  }
   for (const auto& positional : form.positionals) {
     const bool optional = !positional.default_text.empty();
     text += optional ? " [" + positional.value_name + "]" : " " + positional.value_name;
@@ -24,11 +26,14 @@ std::string operands(const Declaration& form) {
 
 std::string usage(const Declaration& tool) {
   const std::string name = tool.manual.name;
-  const std::string options = tool.groups.empty() ? "" : " [OPTIONS]";
-  if (tool.subcommands.empty()) return "Usage: " + name + options + operands(tool) + "\n";
-  const std::string with_command = name + " COMMAND [OPTIONS]; " + name + " COMMAND --help\n";
-  if (!has_plain_form(tool)) return "Usage: " + with_command;
-  return "Usage: " + name + " [OPTIONS]" + operands(tool) + "\n       " + with_command;
+  std::vector<std::string> lines;
+  if (has_plain_form(tool)) {
+    for (const auto& form : forms_of(tool)) {
+      lines.push_back(name + (form.groups.empty() ? "" : " [OPTIONS]") + operands(form));
+    }
+  }
+  if (!tool.subcommands.empty()) lines.push_back(name + " COMMAND [OPTIONS]; " + name + " COMMAND --help");
+  return "Usage: " + join(lines, "\n       ") + "\n";
 }
 
 }  // namespace
@@ -44,6 +49,23 @@ std::vector<Option> required_options(const Declaration& form) {
                  [](const Option& option) { return option.required; });
   }
   return found;
+}
+
+std::vector<Declaration> forms_of(const Declaration& tool) {
+  std::vector<Declaration> forms{tool};
+  for (std::size_t g = 0; g < tool.groups.size(); ++g) {
+    for (std::size_t i = 0; i < tool.groups[g].options.size(); ++i) {
+      if (!tool.groups[g].options[i].form) continue;
+      Declaration form = tool;
+      form.groups[g].options[i].required = true;
+      const std::string flag = long_flag(form.groups[g].options[i]);
+      std::erase_if(form.positionals, [&](const Positional& positional) {
+        return std::find(positional.unless.begin(), positional.unless.end(), flag) != positional.unless.end();
+      });
+      forms.push_back(form);
+    }
+  }
+  return forms;
 }
 
 std::vector<std::string> details(const Option& option) {

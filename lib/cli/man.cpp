@@ -109,17 +109,19 @@ std::string positional_list(const Declaration& tool) {
 
 std::string synopsis(const Declaration& tool) {
   std::string out;
-  const auto line = [&](const Declaration& form, const std::string& command) {
-    out += ".Nm\n";
-    if (!command.empty()) out += ".Cm " + command + "\n";
-    if (!form.groups.empty()) out += ".Op Ar OPTIONS\n";
-    for (const auto& option : required_options(form)) out += "." + flag_words(option) + "\n";
-    for (const auto& positional : form.positionals) {
-      out += (positional.default_text.empty() ? ".Ar " : ".Op Ar ") + argument(positional.value_name) + "\n";
+  const auto lines = [&](const Declaration& declared, const std::string& command) {
+    for (const auto& form : forms_of(declared)) {
+      out += ".Nm\n";
+      if (!command.empty()) out += ".Cm " + command + "\n";
+      if (!form.groups.empty()) out += ".Op Ar OPTIONS\n";
+      for (const auto& option : required_options(form)) out += "." + flag_words(option) + "\n";
+      for (const auto& positional : form.positionals) {
+        out += (positional.default_text.empty() ? ".Ar " : ".Op Ar ") + argument(positional.value_name) + "\n";
+      }
     }
   };
-  if (has_plain_form(tool)) line(tool, "");
-  for (const auto& nested : tool.subcommands) line(nested, nested.manual.name);
+  if (has_plain_form(tool)) lines(tool, "");
+  for (const auto& nested : tool.subcommands) lines(nested, nested.manual.name);
   return out;
 }
 
@@ -229,35 +231,44 @@ std::string examples(const Manual& manual) {
   return out;
 }
 
+std::string head(const Manual& manual) {
+  std::string upper = manual.name;
+  for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+  return ".\\\" Printed by " + manual.name + " --man; do not edit.\n.Dd " + VAM_DATE + "\n.Dt " + upper +
+         " 1\n.Os\n.Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
+}
+
+std::string every_tool() {
+  return ".Ss Every tool\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
+         ".It Fl h , Fl -help\nPrint a summary of the options.\n"
+         ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
+         ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";
+}
+
+std::string paragraphs(const std::vector<std::string>& texts) {
+  std::string out;
+  for (const auto& text : texts) {
+    if (!out.empty()) out += ".Pp\n";
+    out += paragraph(text);
+  }
+  return out;
+}
+
+std::string see_also(std::vector<std::string> others) {
+  std::sort(others.begin(), others.end());
+  std::string out = others.empty() ? "" : ".Sh SEE ALSO\n";
+  for (const auto& name : others) out += ".Xr " + name + " 1" + (&name == &others.back() ? "\n" : " ,\n");
+  return out;
+}
+
 }  // namespace
 
 std::string manual_page(const Declaration& tool) {
   const Manual& manual = tool.manual;
-  std::string upper = manual.name;
-  for (char& c : upper) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
-  std::string out = ".\\\" Printed by " + manual.name + " --man; do not edit.\n";
-  out += std::string(".Dd ") + VAM_DATE + "\n.Dt " + upper + " 1\n.Os\n";
-  out += ".Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
-  out += ".Sh SYNOPSIS\n" + synopsis(tool);
-  out += ".Sh DESCRIPTION\n";
-  for (const auto& text : manual.description) {
-    if (&text != &manual.description.front()) out += ".Pp\n";
-    out += paragraph(text);
-  }
-  out += positional_list(tool);
-  out += option_list(tool);
-  out += commands(tool);
-  out += ".Ss Every tool\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
-         ".It Fl h , Fl -help\nPrint a summary of the options.\n"
-         ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
-         ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";
-  for (const auto& note : manual.notes) {
-    if (&note == &manual.notes.front())
-      out += ".Sh IMPLEMENTATION NOTES\n";
-    else
-      out += ".Pp\n";
-    out += paragraph(note);
-  }
+  std::string out = head(manual) + ".Sh SYNOPSIS\n" + synopsis(tool);
+  out += ".Sh DESCRIPTION\n" + paragraphs(manual.description);
+  out += positional_list(tool) + option_list(tool) + commands(tool) + every_tool();
+  if (!manual.notes.empty()) out += ".Sh IMPLEMENTATION NOTES\n" + paragraphs(manual.notes);
   out += environment(tool);
   if (find_option(tool, "--printer") != nullptr || find_option(tool, "--output") != nullptr ||
       !tool.positionals.empty()) {
@@ -266,15 +277,7 @@ std::string manual_page(const Declaration& tool) {
   out += ".Sh EXIT STATUS\n.Bl -tag -width Ds\n";
   for (const auto& status : exit_statuses(tool))
     out += ".It " + std::to_string(status.code) + "\n" + status.meaning + "\n";
-  out += ".El\n";
-  out += examples(manual);
-  std::vector<std::string> others = manual.see_also;
-  std::sort(others.begin(), others.end());
-  if (!others.empty()) {
-    out += ".Sh SEE ALSO\n";
-    for (const auto& name : others) out += ".Xr " + name + " 1" + (&name == &others.back() ? "\n" : " ,\n");
-  }
-  return out;
+  return out + ".El\n" + examples(manual) + see_also(manual.see_also);
 }
 
 }  // namespace vam::cli

@@ -1,67 +1,15 @@
 #include "cli/app.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <fstream>
-#include <functional>
 #include <optional>
 
 #include "base/error.hpp"
 #include "cli/declaration.hpp"
+#include "lib/cli/demo.hpp"
 
 using namespace vam;
 using namespace vam::cli;
-
-namespace {
-
-int run_app(App& app, std::vector<std::string> words) {
-  words.insert(words.begin(), "vam-demo");
-  std::vector<char*> argv;
-  for (auto& word : words) argv.push_back(word.data());
-  return app.run(static_cast<int>(argv.size()), argv.data(), [] {});
-}
-
-struct Tool {
-  double voxel_mm = 0.065;
-  int angles = 360;
-  std::string input = "-";
-  std::string window = "hann";
-  std::vector<double> rotate{0, 0, 0};
-  std::vector<std::string> sets;
-  bool half = false;
-  App app{Manual{"vam-demo", "shows options", {"First. Second."}, {{"Do it.", "vam-demo --half"}}, {}, {"vam-slice"}}};
-  Tool() {
-    app.positional("INPUT", input, "What to read.");
-    app.option("--voxel", "MM", voxel_mm, positive, "Voxel edge.");
-    app.option("--angles", "N", angles, Range{1, 10000}, "Stage angles.");
-    app.option("--rotate", "X,Y,Z", rotate, 3, "Angles in degrees.");
-    app.option("--set", "K=V", sets, "Override.");
-    app.choice("--window", window, {"hann", "cosine"}, "Window.").was("--taper");
-    app.flag("--half", half, "Half.");
-  }
-  int run(const std::vector<std::string>& words) { return run_app(app, words); }
-};
-
-// What is written to the stream while the work runs.
-std::string written_to(std::FILE* stream, const std::function<void()>& work) {
-  std::fflush(stream);
-  std::FILE* file = std::tmpfile();
-  const int saved = dup(fileno(stream));
-  dup2(fileno(file), fileno(stream));
-  work();
-  std::fflush(stream);
-  dup2(saved, fileno(stream));
-  close(saved);
-  std::string text(static_cast<std::size_t>(std::ftell(file)), ' ');
-  std::rewind(file);
-  CHECK(std::fread(text.data(), 1, text.size(), file) == text.size());
-  std::fclose(file);
-  return text;
-}
-
-}  // namespace
 
 TEST_CASE("options reach their variables") {
   Tool tool;
@@ -303,6 +251,25 @@ TEST_CASE("an option that needs another is refused without it") {
   }
 }
 
+TEST_CASE("an option that stands for an operand is a form of its own in the synopsis") {
+  const auto printed = [](const std::string& word) {
+    std::string part = "-", shape;
+    bool live = false;
+    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    app.positional("PART", part, "What to read.").reads({"--shape"});
+    app.option("--shape", "NAME", shape, "Instead of PART.").form();
+    app.flag("--live", live, "As it arrives.").form();
+    return written_to(stdout, [&] { CHECK(run_app(app, {word}) == 0); });
+  };
+  CHECK(
+      printed("--help").starts_with("Usage: vam-demo [OPTIONS] [PART]\n"
+                                    "       vam-demo [OPTIONS] --shape NAME\n"
+                                    "       vam-demo [OPTIONS] --live [PART]\n"));
+  CHECK(printed("--man").find(".Sh SYNOPSIS\n.Nm\n.Op Ar OPTIONS\n.Op Ar \\&PART\n"
+                              ".Nm\n.Op Ar OPTIONS\n.Fl -shape Ar \\&NAME\n"
+                              ".Nm\n.Op Ar OPTIONS\n.Fl -live\n.Op Ar \\&PART\n.Sh") != std::string::npos);
+}
+
 TEST_CASE("what a form cannot do without is shown as such and refused where missing") {
   const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
     std::string frames, log, chosen;
@@ -318,74 +285,6 @@ TEST_CASE("what a form cannot do without is shown as such and refused where miss
   CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; --help explains it\n");
   CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; --help explains it\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
-}
-
-TEST_CASE("inputs: one standard input, none of them an output, their contents part of the job") {
-  const std::string file = "/tmp/vam-cli-input." + std::to_string(getpid());
-  std::ofstream(file) << "first";
-  const auto said = [](const std::vector<std::string>& words, std::string* job = nullptr) {
-    std::string part = "-", weights, shape, out;
-    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
-    app.positional("PART", part, "What to read.").reads({"--shape"});
-    app.option("--weights", "FILE", weights, "Weights.").reads();
-    app.option("--shape", "NAME", shape, "Instead of PART.");
-    app.option("-o,--output", "FILE", out, "Output.").not_in_job().writes();
-    const std::string text = written_to(stderr, [&] { run_app(app, words); });
-    if (job != nullptr) *job = app.job();
-    return text;
-  };
-  CHECK(said({"--weights", "-"}) ==
-        "vam-demo: 2 inputs are standard input, which can be read once; name files for the others\n");
-  CHECK(said({"--weights", "-", "--shape", "cube"}).empty());
-  CHECK(said({file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
-  CHECK(said({"--weights", file, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
-  const std::string link = file + ".link";
-  for (const auto make : {&::link, &::symlink}) {
-    CHECK(make(file.c_str(), link.c_str()) == 0);
-    CHECK(said({file, "-o", link}) == "vam-demo: " + link + ": is also the input; write to another file\n");
-    CHECK(said({link, "-o", file}) == "vam-demo: " + file + ": is also the input; write to another file\n");
-    unlink(link.c_str());
-  }
-  CHECK(said({"/dev/null", "-o", "/dev/null"}).empty());
-  CHECK(said({file, "-o", file + ".absent"}).empty());
-  std::string before, same, after;
-  CHECK(said({"--weights", file}, &before).empty());
-  CHECK(said({"--weights", file}, &same).empty());
-  std::ofstream(file) << "second";
-  CHECK(said({"--weights", file}, &after).empty());
-  CHECK(before == same);
-  CHECK(before != after);
-  unlink(file.c_str());
-}
-
-TEST_CASE("an output's name does not say another format") {
-  for (const auto& [path, status] :
-       std::vector<std::pair<std::string, int>>{{"a.png", 0}, {"-", 0}, {"/dev/null", 0}, {"a.jpg", 64}, {"png", 64}}) {
-    Tool tool;
-    std::string file;
-    tool.app.option("--plot", "FILE.png", file, "Plot.").writes({".png", ".tif"});
-    const std::string text = written_to(stderr, [&] { CHECK(tool.run({"--plot", path}) == status); });
-    CHECK(text == (status == 0 ? "" : "vam-demo: --plot: '" + path + "' must end in .png or .tif\n"));
-  }
-}
-
-TEST_CASE("two outputs do not share a file or standard output; devices may be shared") {
-  const auto run = [](const std::vector<std::string>& words, std::string& text) {
-    Tool tool;
-    std::string trace;
-    std::string report;
-    tool.app.option("--trace", "FILE", trace, "Trace.").writes().option("--report", "FILE", report, "Report.").writes();
-    int status = 0;
-    text = written_to(stderr, [&] { status = tool.run(words); });
-    return status;
-  };
-  std::string text;
-  CHECK(run({"--trace", "missing-a", "--report", "missing-b"}, text) == 0);
-  CHECK(run({"--trace", "/dev/null", "--report", "/dev/null"}, text) == 0);
-  CHECK(run({"--trace", "missing-a", "--report", "./missing-a"}, text) == 64);
-  CHECK(text == "vam-demo: --report: would write to ./missing-a, as --trace does; name another file\n");
-  CHECK(run({"--trace", "-", "--report", "-"}, text) == 64);
-  CHECK(text == "vam-demo: --report: would write to standard output, as --trace does; name a file for one of them\n");
 }
 
 TEST_CASE("a former spelling is not shown") {
