@@ -14,42 +14,52 @@
 
 namespace fuzz {
 
-/// The bytes as a file that has a path but no name.
-class File {
+/// Bytes at a path that ends with this object.
+class Source {
  public:
-  explicit File(const std::string& bytes) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
-    if (descriptor_ < 0 || ::write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
+  ~Source() { close(descriptor_); }
+  Source(const Source&) = delete;
+  Source& operator=(const Source&) = delete;
+  const std::string path;
+
+ protected:
+  explicit Source(int descriptor) : path("/proc/self/fd/" + std::to_string(descriptor)), descriptor_(descriptor) {}
+  static void fill(int descriptor, const std::string& bytes) {
+    if (descriptor < 0 || ::write(descriptor, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()))
       abort();
-    path = "/proc/self/fd/" + std::to_string(descriptor_);
   }
-  ~File() { close(descriptor_); }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  std::string path;
 
  private:
   int descriptor_;
 };
 
-/// The bytes as a pipe that has been written to the end.
-class Pipe {
+/// The bytes as a file that has a path but no name.
+class File : public Source {
  public:
-  static constexpr std::size_t room = std::size_t{1} << 20;
-  explicit Pipe(const std::string& bytes) {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0 || fcntl(ends[1], F_SETPIPE_SZ, room) < 0) abort();
-    if (::write(ends[1], bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) abort();
-    close(ends[1]);
-    descriptor_ = ends[0];
-    path = "/proc/self/fd/" + std::to_string(descriptor_);
-  }
-  ~Pipe() { close(descriptor_); }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  std::string path;
+  explicit File(const std::string& bytes) : Source(made(bytes)) {}
 
  private:
-  int descriptor_;
+  static int made(const std::string& bytes) {
+    const int descriptor = memfd_create("fuzz", MFD_CLOEXEC);
+    fill(descriptor, bytes);
+    return descriptor;
+  }
+};
+
+/// The bytes as a pipe that has been written to the end.
+class Pipe : public Source {
+ public:
+  static constexpr std::size_t room = std::size_t{1} << 20;
+  explicit Pipe(const std::string& bytes) : Source(made(bytes)) {}
+
+ private:
+  static int made(const std::string& bytes) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0 || fcntl(ends[1], F_SETPIPE_SZ, room) < 0) abort();
+    fill(ends[1], bytes);
+    close(ends[1]);
+    return ends[0];
+  }
 };
 
 /// work() may succeed, or throw an Error that is the input's.

@@ -40,10 +40,7 @@ constexpr Signature signatures[] = {
     {0, "# vtk DataFile"sv, "a VTK file"},
     {0, "\x1f\x8b"sv, "compressed by gzip"},
     {0, "BZh"sv, "compressed by bzip2"},
-    {0,
-     "\xfd"
-     "7zXZ"sv,
-     "compressed by xz"},
+    {0, "\3757zXZ"sv, "compressed by xz"},
     {0, "\x28\xb5\x2f\xfd"sv, "compressed by zstd"},
     {0, "7z\xbc\xaf"sv, "a 7z archive"},
     {0, "Rar!"sv, "a RAR archive"},
@@ -54,10 +51,7 @@ constexpr Signature signatures[] = {
     {0, "%PDF"sv, "a PDF document"},
     {0, "\xff\xfe"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
     {0, "\xfe\xff"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
-    {0,
-     "\x7f"
-     "ELF"sv,
-     "a program"},
+    {0, "\177ELF"sv, "a program"},
 };
 
 }  // namespace

@@ -10,9 +10,6 @@
 using namespace vam;
 using namespace vam::io;
 using namespace vam::stacks;
-using scratch::slurp;
-using scratch::spill;
-using scratch::status;
 
 TEST_CASE("sizes are checked before memory is taken") {
   const scratch::Folder folder;

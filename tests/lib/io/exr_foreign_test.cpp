@@ -15,8 +15,6 @@
 using namespace vam;
 using namespace vam::io;
 using namespace vam::stacks;
-using scratch::spill;
-using scratch::status;
 
 namespace {
 

@@ -15,9 +15,6 @@
 using namespace vam;
 using namespace vam::io;
 using namespace vam::stacks;
-using scratch::slurp;
-using scratch::spill;
-using scratch::status;
 
 TEST_CASE("facts and pixels survive a file, for every compression and both widths") {
   const scratch::Folder folder;

@@ -16,6 +16,10 @@
 
 namespace vam::stacks {
 
+using scratch::slurp;
+using scratch::spill;
+using scratch::status;
+
 inline model::StackInfo sinogram(int width, int height, int count) {
   model::StackInfo info;
   info.width = width;

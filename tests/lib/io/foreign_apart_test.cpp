@@ -11,9 +11,6 @@
 using namespace vam;
 using namespace vam::io;
 using namespace vam::stacks;
-using scratch::slurp;
-using scratch::spill;
-using scratch::status;
 
 namespace {
 
@@ -39,7 +36,7 @@ std::string without_seals(std::string bytes) {
   return bytes;
 }
 
-// The numbers of all images, and what is said about them.
+// The numbers of all images, and what is reported about them.
 std::vector<float> values_of(const std::string& path, model::StackInfo& info, std::vector<double>& angles) {
   StackReader reader(path);
   info = reader.info();
