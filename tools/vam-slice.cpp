@@ -53,6 +53,31 @@ void warn_of_size(const cli::App& app, const Options& options, const solid::Part
   if (!doubt.empty()) warn(doubt);
 }
 
+void write(const cli::App& app, const Options& options, const model::Printer& printer,
+           std::vector<io::SparseVolume>& volumes) {
+  for (io::SparseVolume& volume : volumes) {
+    volume.history.push_back(app.history());
+    volume.metadata["vam:printer"] = io::printer_settings(printer);
+    volume.metadata["vam:stretch_z"] = format_number(options.placement.stretch_z, 9);
+  }
+  io::write_volumes(options.output, volumes);
+}
+
+/// Around the part, or the resin that may be lit, and the insert, which must fit into the vial.
+model::Grid grid_of(const Options& options, const model::Printer& printer, const solid::Part& part,
+                    const std::optional<solid::Part>& insert, const solid::Writable& room) {
+  double radius_mm = options.extent == "part" ? 0 : room.radius_mm;
+  if (insert) {
+    solid::require_within(insert->extent, model::resin_radius_mm(printer.vial), insert->subject);
+    radius_mm = std::max(radius_mm, insert->extent.radius_mm);
+  }
+  model::Grid grid = solid::grid_around(part.extent, options.voxel_mm.value(), radius_mm, part.lattice, part.subject);
+  // 16 slices at a time, those of the volume beside them.
+  require_memory(2.0 * sizeof(float) * lanes * static_cast<double>(grid.slice_size()),
+                 part.subject + ": " + model::size_text(grid), "use a larger --voxel");
+  return grid;
+}
+
 void run(const cli::App& app, Options& options) {
   check(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
@@ -68,17 +93,7 @@ void run(const cli::App& app, Options& options) {
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);
   solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, size_option(options));
-  double radius_mm = options.extent == "part" ? 0 : room.radius_mm;
-  if (insert) {
-    solid::require_within(insert->extent, model::resin_radius_mm(printer.vial), insert->subject);
-    radius_mm = std::max(radius_mm, insert->extent.radius_mm);
-  }
-  const model::Grid grid =
-      solid::grid_around(part.extent, options.voxel_mm.value(), radius_mm, part.lattice, part.subject);
-
-  // 16 slices at a time, those of the volume beside them.
-  require_memory(2.0 * sizeof(float) * lanes * static_cast<double>(grid.slice_size()),
-                 part.subject + ": " + model::size_text(grid), "use a larger --voxel");
+  const model::Grid grid = grid_of(options, printer, part, insert, room);
   solid::FillSummary content;
   std::optional<io::SparseVolume> opaque;
   solid::Part printed = part;
@@ -96,12 +111,7 @@ void run(const cli::App& app, Options& options) {
     report["insert"] = slice_tool::insert_figures(volumes.front(), *opaque, *insert, options);
     volumes.push_back(std::move(*opaque));
   }
-  for (io::SparseVolume& volume : volumes) {
-    volume.history.push_back(app.history());
-    volume.metadata["vam:printer"] = io::printer_settings(printer);
-    volume.metadata["vam:stretch_z"] = format_number(options.placement.stretch_z, 9);
-  }
-  io::write_volumes(options.output, volumes);
+  write(app, options, printer, volumes);
   io::write_report(options.report, "vam-slice/1", report);
 }
 

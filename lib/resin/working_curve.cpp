@@ -109,6 +109,26 @@ void flag_outliers(std::span<const CuredSample> samples, const Line& line, doubl
   }
 }
 
+/// h_a, E_c and D_gel of the line, with their bounds at `t` of Student's [physics §14.4].
+void set_values(const Line& line, double count, double t, WorkingCurve& curve) {
+  const Interval crossing = fieller(line, count, t);
+  const double slope_error = std::sqrt(line.variance / line.spread);
+  const double offset = -line.mean_y / line.slope;  // log10 E_c - mean_x
+  curve.absorbance_height_um = line.slope;
+  curve.absorbance_height_range_um = {line.slope - t * slope_error, line.slope + t * slope_error};
+  curve.penetration_depth_um = line.slope / ln10;
+  curve.critical_exposure_mj_cm2 = std::pow(10, line.mean_x + offset);
+  curve.critical_exposure_range_mj_cm2 = {std::pow(10, line.mean_x + crossing.low),
+                                          std::pow(10, line.mean_x + crossing.high)};
+  curve.gel_dose_mj_cm3 = ln10 * curve.critical_exposure_mj_cm2 / (line.slope * 1e-4);  // um to cm
+  // ln D_gel = const + ln(10) (-mean_y / slope) - ln(slope); mean_y and slope are independent.
+  const double by_mean = -ln10 / line.slope;
+  const double by_slope = -ln10 * offset / line.slope - 1 / line.slope;
+  const double log_error = std::sqrt(line.variance * (by_mean * by_mean / count + by_slope * by_slope / line.spread));
+  curve.gel_dose_range_mj_cm3 = {curve.gel_dose_mj_cm3 * std::exp(-t * log_error),
+                                 curve.gel_dose_mj_cm3 * std::exp(t * log_error)};
+}
+
 }  // namespace
 
 WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double confidence) {
@@ -135,23 +155,7 @@ WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double conf
     throw Error{Fault::data, "working curve: the thickness falls as the exposure rises (" +
                                  format_number(line.slope, 3) + " um per decade); check the order of the columns"};
   }
-  const Interval crossing = fieller(line, count, t);
-
-  const double slope_error = std::sqrt(line.variance / line.spread);
-  const double offset = -line.mean_y / line.slope;  // log10 E_c - mean_x
-  curve.absorbance_height_um = line.slope;
-  curve.absorbance_height_range_um = {line.slope - t * slope_error, line.slope + t * slope_error};
-  curve.penetration_depth_um = line.slope / ln10;
-  curve.critical_exposure_mj_cm2 = std::pow(10, line.mean_x + offset);
-  curve.critical_exposure_range_mj_cm2 = {std::pow(10, line.mean_x + crossing.low),
-                                          std::pow(10, line.mean_x + crossing.high)};
-  curve.gel_dose_mj_cm3 = ln10 * curve.critical_exposure_mj_cm2 / (line.slope * 1e-4);  // um to cm
-  // ln D_gel = const + ln(10) (-mean_y / slope) - ln(slope); mean_y and slope are independent.
-  const double by_mean = -ln10 / line.slope;
-  const double by_slope = -ln10 * offset / line.slope - 1 / line.slope;
-  const double log_error = std::sqrt(line.variance * (by_mean * by_mean / count + by_slope * by_slope / line.spread));
-  curve.gel_dose_range_mj_cm3 = {curve.gel_dose_mj_cm3 * std::exp(-t * log_error),
-                                 curve.gel_dose_mj_cm3 * std::exp(t * log_error)};
+  set_values(line, count, t, curve);
   curve.residual_sd_um = std::sqrt(line.variance);
   curve.r_squared = total_squares > 0 ? 1 - residual_squares / total_squares : 1;
   judge_repeats(groups, residual_squares, curve);

@@ -145,13 +145,11 @@ Measured CurveFit::measured(std::size_t i) const {
   return combined(weight);
 }
 
-CurveFit fit_curve(const Residuals& residuals, Vector start, const Vector& step, const std::string& subject) {
+namespace {
+
+/// The parameters at which the sum of squares no longer falls, from `start` with its residuals [MAR63].
+void descend(const Residuals& residuals, const Vector& step, Vector& start, Vector& residual) {
   const std::size_t n = start.size();
-  Vector residual = residuals(start);
-  if (residual.size() <= n) {
-    throw Error{Fault::data, subject + ": " + std::to_string(residual.size()) + " readings cannot give " +
-                                 std::to_string(n) + " numbers; measure more"};
-  }
   const Vector ones(residual.size(), 1.0);
   double damping = 1e-3;
   for (int round = 0; round < 100; ++round) {
@@ -174,6 +172,19 @@ CurveFit fit_curve(const Residuals& residuals, Vector start, const Vector& step,
       if (damping > 1e8) break;
     }
   }
+}
+
+}  // namespace
+
+CurveFit fit_curve(const Residuals& residuals, Vector start, const Vector& step, const std::string& subject) {
+  const std::size_t n = start.size();
+  Vector residual = residuals(start);
+  if (residual.size() <= n) {
+    throw Error{Fault::data, subject + ": " + std::to_string(residual.size()) + " readings cannot give " +
+                                 std::to_string(n) + " numbers; measure more"};
+  }
+  descend(residuals, step, start, residual);
+  const Vector ones(residual.size(), 1.0);
   const Vector j = jacobian(residuals, start, step, residual.size());
   const Cholesky normal(normal_matrix(j, n, ones), n);
   if (!normal.good()) throw Error{Fault::data, subject + ": the readings do not determine the curve; measure more"};

@@ -29,7 +29,7 @@ using Residuals = std::function<std::vector<double>(const std::vector<double>& p
 /// heteroscedasticity-consistent HC3 [MW85; physics §14.1], which needs no knowledge of the noise and errs on the wide
 /// side for few readings, widened by Student's t for the degrees of freedom, so that 2 sigma hold 95 %. Throws
 /// Fault::data, beginning with `subject`, when there are not more residuals than parameters, or the parameters cannot
-/// be told apart.
+/// be distinguished.
 [[nodiscard]] CurveFit fit_curve(const Residuals& residuals, std::vector<double> start, const std::vector<double>& step,
                                  const std::string& subject);
 

@@ -72,23 +72,36 @@ stats::Measured line_width_px(const Image& image, const std::string& subject) {
   return {mean, std::hypot(error, interpolation_px), groups};
 }
 
+namespace {
+
+/// Columns of the resin's middle, in the light's direction or against it, and where along the light each looks.
+struct MiddleColumns {
+  std::vector<int> column;
+  std::vector<double> plane_mm;
+};
+
+MiddleColumns middle_columns(const SideView& view, int width, const model::Printer& printer) {
+  const optics::View rays = optics::camera_view(printer);
+  const double along = std::sin(printer.camera.azimuth_deg * rad_per_deg) > 0 ? 1 : -1;
+  const double radius_mm = optics::resin_radius_mm(rays);
+  MiddleColumns middle;
+  for (int c = 0; c < width; ++c) {
+    const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
+    if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
+    middle.column.push_back(c);
+    middle.plane_mm.push_back(along * ray.x_v_mm * std::cos(ray.delta_rad));
+  }
+  return middle;
+}
+
+}  // namespace
+
 BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer, int planes) {
-  const double azimuth = printer.camera.azimuth_deg * rad_per_deg;
-  if (std::abs(std::cos(azimuth)) > std::sin(10 * rad_per_deg)) {
+  if (std::abs(std::cos(printer.camera.azimuth_deg * rad_per_deg)) > std::sin(10 * rad_per_deg)) {
     throw Error{Fault::data, "beam: the camera looks at " + format_number(printer.camera.azimuth_deg) +
                                  " degrees to the beam; planes are resolved at 90 only (camera.azimuth_deg)"};
   }
-  const optics::View rays = optics::camera_view(printer);
-  const double along = std::sin(azimuth) > 0 ? 1 : -1;
-  const double radius_mm = optics::resin_radius_mm(rays);
-  std::vector<int> inside;  // columns of the resin's middle, the light's direction from left to right or back
-  std::vector<double> plane_mm;
-  for (int c = 0; c < image.width; ++c) {
-    const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
-    if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
-    inside.push_back(c);
-    plane_mm.push_back(along * ray.x_v_mm * std::cos(ray.delta_rad));
-  }
+  const auto [inside, plane_mm] = middle_columns(view, image.width, printer);
   const int count = std::min(planes, static_cast<int>(inside.size()) / least_columns);
   if (count < 4) {
     throw Error{Fault::data, "beam: the resin's middle is " + std::to_string(inside.size()) +

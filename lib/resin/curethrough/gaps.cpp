@@ -46,6 +46,42 @@ double speed_limit_mm_h(const Process& process) {
   return limits.settled(limits.phi_max);
 }
 
+namespace {
+
+/// The gaps of a column; returns 2 where one fuses, 1 where one is tight. `least`: lowest dose by the length of a gap.
+float judge_column(const PartColumns& part, std::size_t column, const std::vector<double>& least, double clear,
+                   GapReport& report) {
+  float verdict = 0;
+  int end = part.next_slice(column, part.next_slice(column, 0, true), false);
+  for (int begin = part.next_slice(column, end, true); begin < part.slices();
+       begin = part.next_slice(column, end, true)) {
+    const double dose = least[begin - end];
+    const bool tight = dose > clear || dose >= 1;
+    report.infeasible_gaps += dose >= 1;
+    report.tight_gaps += tight;
+    report.worst_dose = std::max(report.worst_dose, dose);
+    report.narrowest = report.narrowest == 0 ? begin - end : std::min(report.narrowest, begin - end);
+    verdict = std::max(verdict, dose >= 1 ? 2.0F : (tight ? 1.0F : 0.0F));
+    end = part.next_slice(column, begin, false);
+  }
+  report.infeasible_columns += verdict == 2;
+  report.tight_columns += verdict > 0;
+  return verdict;
+}
+
+void add(const GapReport& row, GapReport& report) {
+  report.infeasible_columns += row.infeasible_columns;
+  report.infeasible_gaps += row.infeasible_gaps;
+  report.tight_columns += row.tight_columns;
+  report.tight_gaps += row.tight_gaps;
+  report.worst_dose = std::max(report.worst_dose, row.worst_dose);
+  if (row.narrowest > 0) {
+    report.narrowest = report.narrowest == 0 ? row.narrowest : std::min(report.narrowest, row.narrowest);
+  }
+}
+
+}  // namespace
+
 GapReport judge_gaps(const PartColumns& part, const CureLimits& limits, double clear) {
   const int slices = part.slices();
   std::vector<double> least(static_cast<std::size_t>(slices) + 1, 1.0);  // by the length of the gap
@@ -57,36 +93,11 @@ GapReport judge_gaps(const PartColumns& part, const CureLimits& limits, double c
   report.mask = Image(part.width(), part.height());
   std::vector<GapReport> rows(static_cast<std::size_t>(part.height()));
   parallel_for(part.height(), [&](int y) {
-    GapReport& row = rows[y];
     for (int x = 0; x < part.width(); ++x) {
-      const std::size_t column = report.mask.index(x, y);
-      float verdict = 0;
-      int end = part.next_slice(column, part.next_slice(column, 0, true), false);
-      for (int begin = part.next_slice(column, end, true); begin < slices; begin = part.next_slice(column, end, true)) {
-        const double dose = least[begin - end];
-        const bool tight = dose > clear || dose >= 1;
-        row.infeasible_gaps += dose >= 1;
-        row.tight_gaps += tight;
-        row.worst_dose = std::max(row.worst_dose, dose);
-        row.narrowest = row.narrowest == 0 ? begin - end : std::min(row.narrowest, begin - end);
-        verdict = std::max(verdict, dose >= 1 ? 2.0F : (tight ? 1.0F : 0.0F));
-        end = part.next_slice(column, begin, false);
-      }
-      report.mask(x, y) = verdict;
-      row.infeasible_columns += verdict == 2;
-      row.tight_columns += verdict > 0;
+      report.mask(x, y) = judge_column(part, report.mask.index(x, y), least, clear, rows[y]);
     }
   });
-  for (const GapReport& row : rows) {
-    report.infeasible_columns += row.infeasible_columns;
-    report.infeasible_gaps += row.infeasible_gaps;
-    report.tight_columns += row.tight_columns;
-    report.tight_gaps += row.tight_gaps;
-    report.worst_dose = std::max(report.worst_dose, row.worst_dose);
-    if (row.narrowest > 0) {
-      report.narrowest = report.narrowest == 0 ? row.narrowest : std::min(report.narrowest, row.narrowest);
-    }
-  }
+  for (const GapReport& row : rows) add(row, report);
   return report;
 }
 
