@@ -27,10 +27,9 @@ cli::Manual manual() {
        "greatest column. beam: either a bare sensor is moved along the beam, "
        "one frame per plane, or, with --side, the camera beside the vial sees one lit row in fluorescent resin, where "
        "each image column is another plane. latency relies on the times of the frames. lag, which therefore comes "
-       "first, determines the latency of the camera, the delay of its time stamps, "
-       "from a bead that turns with the stage at known angles, in both directions, captured with --latency 0 and the "
-       "exposure in use. Its record is the --latency of vam-capture from "
-       "then on.",
+       "first, determines the delay of the camera's time stamps "
+       "from a bead that turns with the stage at known angles, in both directions, captured with --lag 0 and the "
+       "exposure in use. Its record is the --lag of vam-capture from then on.",
        "A frame of which more than 0.01 % of the pixels (and more than 3) are at full level is refused as "
        "over-exposed, with that fraction. vam-calibrate-all(1) then shortens the exposure and repeats the scan.",
        "resin determines the gelation threshold I_p in the scattering volume of a printed standard cylinder (vam-ost): "
@@ -44,7 +43,7 @@ cli::Manual manual() {
        "is recorded but not put in force (status 1). Without a folder the record is written to standard output."},
       {{"The rotation axis in frames of a bead (here a printed piece) over one turn:",
         "vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' "
-        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis turn.exr --bands 3"},
+        "--binning 4 --speed 90 --every 10 -o turn.exr && vam-calibrate axis turn.exr --heights 3"},
        {"The records in force:", "vam-calibrate check --set calibration.folder=cal"}},
       {},
       {"vam-calibrate-all", "vam-capture", "vam-project", "vam-ost"},
@@ -77,7 +76,7 @@ void add_resin(cli::App& resin, ResinOptions& o) {
   resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
   resin.option("--profile", "FILE.png", o.profile, "Profilometer height map of the standard, to measure its diameter.")
       .reads();
-  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel of the height map.");
+  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height map.");
 }
 
 void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
@@ -85,7 +84,7 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   add_input(edges, o, Flips::optional);
   edges.option("--pitch", "PX", o.pitch_px, {1, 1000}, "Step of the sweep.");
   edges.option("--width", "PX", o.width_px, {1, 1000}, "Width of the swept line.");
-  edges.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  edges.option("--heights", "N", o.heights, {1, 100}, "Number of heights measured separately.").was("--bands");
   edges.flag("--accept", o.accept, "Accept a vial that moved or changed since the previous record.");
   auto& ramp = app.subcommand("response", "intensity by grey level, from a ramp of uniform levels", o.command);
   add_input(ramp, o, Flips::optional);
@@ -102,23 +101,21 @@ void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {
   add_dark(line, o);
   line.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.");
   line.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes; required without --side.")
-      .default_is("none")
       .was("--step");
   line.option("--pixel", "MM", o.pixel_mm, cli::non_negative,
-              "Pixel of the bare sensor, required without --side; with it at the axis.")
+              "Pixel pitch of the bare sensor, required without --side; with it that of the frames at the axis.")
       .default_is("that of the stack, with --side");
   auto& turn = app.subcommand("axis", "rotation axis and wobble in the camera's frames over a turn", o.command);
   add_input(turn, o, Flips::none);
   turn.option("--angle-step", "DEG", o.step_deg, cli::any, "Angular step of frames without recorded angles.")
-      .default_is("none")
       .was("--step");
-  turn.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  turn.option("--heights", "N", o.heights, {1, 100}, "Number of heights measured separately.").was("--bands");
   auto& late = app.subcommand("lag", "delay of the camera's time stamps, from a bead that turns both ways", o.command);
   add_input(late, o, Flips::none);
   late.positional("REVERSE", o.reverse, "The frames of a turn the other way (vam-stage spin --direction -1).",
                   "--reverse")
       .reads();
-  late.option("--bands", "N", o.bands, {1, 100}, "Number of heights measured separately.");
+  late.option("--heights", "N", o.heights, {1, 100}, "Number of heights measured separately.").was("--bands");
   add_input(app.subcommand("latency", "delay from a flip to its light, from a blinking screen", o.command), o,
             Flips::required);
   auto& check = app.subcommand("check", "print the records in force as JSON; status 65 if one is not valid", o.command);

@@ -49,7 +49,7 @@ cli::Manual manual() {
        "gamma and white balance are switched off, and gamma is set to 1, as grey levels are to be proportional to "
        "light; what is in force is in log, report and manifest (gain, gamma, black_level, automatic_off).",
        "Time. The time of a frame is the middle of its exposure: the camera's own time stamp, mapped to the machine's "
-       "clock by the shortest delay observed in the last 10 s, minus half the exposure, minus --latency, the shortest "
+       "clock by the shortest delay observed in the last 10 s, minus half the exposure, minus --lag, the shortest "
        "delay from the end of an exposure to its time stamp.",
        "A camera that stops responding is queried once more: status 75 if it answers, 69 if it is disconnected, within "
        "the "
@@ -100,9 +100,10 @@ void declare(cli::App& app, Options& o) {
   app.option("--speed", "DEG/S", o.speed_deg_s, cli::positive,
              "Without --follow: angle = speed x time since the start.");
   app.option("--angle", "DEG", o.angle_deg, {0, 1e6}, "Without --follow: the stage stands at this angle.");
-  app.option("--latency", "MS", o.latency_ms, {-10000, 10000},
+  app.option("--lag", "MS", o.lag_ms, {-10000, 10000},
              "Delay from the end of an exposure to the camera's time stamp, as received.")
-      .default_is("camera.latency_ms");
+      .default_is("camera.lag_ms")
+      .was("--latency");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "End with status 75 when more frames are dropped or incomplete.");
   app.default_is("no limit");
@@ -110,7 +111,8 @@ void declare(cli::App& app, Options& o) {
   app.flag("--live", o.live, "Send every frame at once as a stack of its own.");
   app.option("--latest", "FILE", o.latest, "Also keep the newest frame here, as PNG, refreshed once a second at most.")
       .writes();
-  app.option("--pixel", "MM", o.pixel_mm, cli::positive, "Pixel pitch at the axis, after binning.")
+  app.option("--pixel", "MM", o.pixel_mm, cli::positive,
+             "Pixel pitch of the stack at the axis, after the camera's binning.")
       .default_is("camera.pixel_mm times the binning");
   cli::add_printer(app, o.printer);
   cli::add_stack_output(app, o.stack.half, o.stack.compression);

@@ -113,8 +113,8 @@ int main(int argc, char** argv) {
   app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or any others.")
       .reads();
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
-  app.flag(
-      "--seal", options.seal,
-      "Seal printer files instead: a seal line is appended, against which the tools verify the file from then on.");
+  app.flag("--seal", options.seal,
+           "Seal printer files instead: a seal line is appended, against which the tools verify the file from then on.")
+      .form();
   return app.run(argc, argv, [&] { run(options); });
 }

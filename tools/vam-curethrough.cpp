@@ -24,7 +24,8 @@ cli::Manual manual() {
        "and is printed first; the light enters through the window, from the side of the last slice. \"Above\" a "
        "feature means towards the platform, the direction in which light propagates.",
        "Dose: Omega(n) = Phi_n (1 - q) + q Omega(n + 1), with q = 10^(-slice height / absorbance height), Omega in "
-       "critical doses and Phi in units of the critical intensity speed x critical dose. With --exposure-mode layered "
+       "units of the full-cure dose D_f and Phi in units of the full-cure intensity speed x D_f. With --exposure-mode "
+       "layered "
        "the "
        "platform rests for each layer: Omega(n) = q (Phi_n + Omega(n + 1)) at the far side of layer n.",
        "correct: inside features the dose is at least 1 and at most --omega-max, 1 at both edges, below 1 outside. It "
@@ -38,7 +39,7 @@ cli::Manual manual() {
        "error of a feature is the undercured height inside it plus the cured height of the gap above it.",
        "working-curve: absorbance height h_a and gelation dose from cured thickness against exposure. response: the "
        "table for projector.response from photodiode readings. sweep: height errors of a ladder as a function of the "
-       "assumed critical dose and omega-max."},
+       "assumed full-cure dose and omega-max."},
       {{"The ladder of the paper and the result of ordinary slices:",
         std::string(ladder) +
             " && vam-curethrough model ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section ordinary.png"},
@@ -48,7 +49,7 @@ cli::Manual manual() {
         "vam-curethrough model slices.exr --target ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section "
         "corrected.png --report corrected.json"},
        {"Comparison of three resins for this part:",
-        "printf 'name,absorbance_height_um,critical_dose_mj_cm3\\nclear,2000,576\\ndyed,800,576\\ndark,300,576\\n' > "
+        "printf 'name,absorbance_height_um,full_cure_dose_mj_cm3\\nclear,2000,576\\ndyed,800,576\\ndark,300,576\\n' > "
         "resins.csv && vam-curethrough correct ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --catalogue "
         "resins.csv"},
        {"Absorbance height and gelation dose from measured thicknesses:",
@@ -75,9 +76,11 @@ cli::Manual manual() {
        "Accuracy: the recursion agrees with the integral of Beer's law over time to 1e-6, and the correction with the "
        "optimum of a linear program. Voxels are inside or outside the part by --threshold. Flow, diffusion and "
        "inhibition are neglected.",
-       "Critical dose: D_c is the dose to which features are exposed, and the paper found five times the gelation dose "
-       "D_gel of working-curve to be best. In the other tools resin.critical_dose_mj_cm3 is the gelation threshold "
-       "itself. Where both use one printer file, keep the gelation threshold in it and give --critical-dose here.",
+       "Full-cure dose: D_f, the D_c of the paper, is the dose to which features are exposed; the paper found five "
+       "times "
+       "the gelation dose D_gel of working-curve to be best. resin.critical_dose_mj_cm3 is the gelation threshold in "
+       "the other tools, and the default of D_f here. Where both use one printer file, keep the gelation threshold in "
+       "it and give --full-cure-dose here.",
        "With --exposure-mode layered, the depth cured beyond a feature's top edge by the minimum intensity alone is "
        "not "
        "corrected: "

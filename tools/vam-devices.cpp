@@ -25,7 +25,7 @@ cli::Manual manual() {
       "vam-devices",
       "list stages, cameras, displays and light engines",
       {"Lists the devices that this machine sees, each with the device string for the printer file and for --device, "
-       "--screen and --light, and with what is known of it. A line below a device states why it cannot be used, and "
+       "--display and --light, and with what is known of it. A line below a device states why it cannot be used, and "
        "the remedy: no permission (the group to join or the udev rule to write), another program that has it "
        "(its process), a graphics card controlled by a desktop session. If no device of a kind is found, what to "
        "check is listed.",
@@ -36,7 +36,7 @@ cli::Manual manual() {
        "reset when their port is opened, and other instruments on such ports receive a question that they do not "
        "know."},
       {{"List the connected devices:", "vam-devices"},
-       {"A simulated stage on a pseudo-terminal, asked for its identity:",
+       {"A simulated stage on a pseudo-terminal, queried for its identity:",
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --ask"}},
       {"Duration. About a second, which is the time that cameras on the network have for their answer; with --ask up "

@@ -73,7 +73,6 @@ void declare(cli::App& app, Options& o) {
   app.group("Camera");
   app.option("--angle-step", "DEG", o.step_deg, cli::any,
              "Angular step of frames without recorded angles, not 0. Negative: opposite direction.")
-      .default_is("none")
       .was("--step");
   app.option("--dark", "FILE", o.dark,
              "Image or stack without a print (in the dark, or of the vial before printing); its mean is subtracted.")
@@ -83,7 +82,7 @@ void declare(cli::App& app, Options& o) {
       .reads();
   app.option("--binning", "N", o.binning, {1, 16}, "Average N x N pixels of the views, in addition to camera.binning.");
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
-             "Pixel pitch at the axis before binning. Default: the stack's, else camera.pixel_mm.");
+             "Pixel pitch of the views at the axis, before --binning. Default: the stack's, else camera.pixel_mm.");
   app.option("--axis", "PX", o.axis_column, cli::any,
              "Column of the axis before binning. Default: camera.axis_column, else found in the views.");
   app.option(
@@ -112,12 +111,11 @@ void declare(cli::App& app, Options& o) {
       .needs({"--isovalue", "--resin"});
   app.option("--projections", "FILE.png", o.projections, "Sum projections of volume, print and target.")
       .writes({".png"});
-  app.option("--target", "FILE.vdb", o.reference,
-             "Volume with the part to compare with, in the same frame of reference.")
+  app.option("--target", "FILE.vdb", o.target, "Volume with the part to compare with, in the same coordinate system.")
       .was("--reference")
       .reads();
   app.group("Live");
-  app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.");
+  app.flag("--live", o.live, "Reconstruct as frames arrive; -o is a folder.").form();
   app.option("--every", "DEG", o.every_deg, cli::positive, "Rotation between volumes.").needs({"--live"});
   app.option(
          "--until", "CONDITIONS", o.until,

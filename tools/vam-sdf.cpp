@@ -14,12 +14,12 @@ cli::Manual manual() {
   return {
       "vam-sdf",
       "measure the deviation of a print from its design",
-      {"Reads the print (a mesh, or a volume whose isosurface at --isovalue is taken) and the reference (a mesh, or a "
-       "target volume), aligns them, and measures signed distances: positive where the print is outside the reference, "
+      {"Reads the print (a mesh, or a volume whose isosurface at --isovalue is taken) and the design (a mesh, or a "
+       "target volume), aligns them, and measures signed distances: positive where the print is outside the design, "
        "the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points distributed evenly "
-       "over the area, in both directions: from the print to the reference, and from the reference to the print, the "
+       "over the area, in both directions: from the print to the design, and from the design to the print, the "
        "only one that reveals missing pieces.",
-       "A volume is read in its own frame of reference; the stretch in z applied by vam-slice is removed, so that a "
+       "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
        "simulated dose can be compared with the original mesh.",
        "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
        "tried, "
@@ -40,7 +40,7 @@ cli::Manual manual() {
         "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
         "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
         "--pixel 0.1 -o outline.png --plot section.png"}},
-      {"Signs are determined by the generalised winding number, so that a reference with holes is valid. Distances to "
+      {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
        "the triangles are exact; extreme percentiles depend on --samples.",
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and table "
        "S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
@@ -49,20 +49,19 @@ cli::Manual manual() {
 
 void declare(cli::App& app, Options& options) {
   app.positional("PRINT", options.print, "Mesh (" + io::mesh_format_names() + ") or volume (.vdb).").reads();
-  app.positional("REFERENCE", options.reference, "Mesh or volume of the design.").reads();
+  app.positional("DESIGN", options.design, "Mesh or volume of the design.").reads();
   app.option("-o,--output", "FILE.ply", options.output,
              "Write the aligned print with distances and colours at its vertices.")
       .writes({".ply"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
   app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.").reads();
-  app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
-             "Isovalue of a reference volume's surface.");
-  app.was("--reference-level");
+  app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
+  app.was("--reference-isovalue").was("--reference-level");
   app.option("--pieces", "MM3", options.pieces_mm3, cli::non_negative,
              "Smallest body of a print volume that belongs to the print. Default: 1 % of the largest body's volume.");
   app.group("Alignment");
-  app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the reference.");
+  app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the design.");
   app.flag("--fit-scale", options.scale, "Fit a uniform scale too.").was("--scale");
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Number of points on each surface.");
@@ -82,14 +81,13 @@ void declare_height(cli::App& app, HeightOptions& options) {
                  "Profilometer's heights (PNG, TIFF or EXR), or a mesh or volume, viewed from above.")
       .reads();
   app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.").reads();
-  app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel size of the image.");
+  app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel pitch of the image.");
   app.option(
       "--full", "MM", options.full_mm, cli::positive,
       "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.");
   app.option("--lowest", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).");
-  app.option("--reference-isovalue", "VALUE", options.reference_isovalue, cli::any,
-             "Isovalue of a design volume's surface.");
-  app.was("--reference-level");
+  app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
+  app.was("--reference-isovalue").was("--reference-level");
   app.choice("--align", options.align, {"none", "icp", "full"},
              "Alignment of the design with the print: centred, refined from there, or from any orientation.");
   app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.")

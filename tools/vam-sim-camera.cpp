@@ -27,6 +27,7 @@ struct Options {
   std::string part;
   std::string frames;
   optics::PatternPlan pattern;
+  std::optional<int> pitch_px, width_px;  // its lines
   double lag_ms = 0;
   std::string lose, cut;
   std::optional<int> vanish, shrink;
@@ -74,8 +75,8 @@ void declare(cli::App& app, Options& o) {
              "Frames shown by vam-project: an EXR frame stack, video or folder of images.")
       .was("--frames");
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
-  app.option("--pitch", "PX", o.pattern.pitch_px, {1, 100000}, "Pitch of the pattern.");
-  app.option("--width", "PX", o.pattern.width_px, {1, 100000}, "Width of the pattern's lines.");
+  app.option("--pitch", "PX", o.pitch_px, {1, 100000}, "Pitch of the pattern.").default_is("16; 4 for sweep");
+  app.option("--width", "PX", o.width_px, {1, 100000}, "Width of the pattern's lines.").default_is("1; 4 for sweep");
   app.option("--grey", "FRACTION", o.pattern.level, {0, 1}, "Grey level of the pattern, as a fraction of full grey.")
       .was("--level");
   app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the pattern ramp.");
@@ -171,6 +172,7 @@ std::vector<GreyImage> images(const Options& o, const model::Projector& projecto
 
 void run(Options& o) {
   if (tool::print_printer(o.printer)) return;
+  optics::set_lines(o.pattern, o.pitch_px, o.width_px);
   if (o.with_parent) device::end_with_parent();
   auto& camera = o.camera;
   camera.bench.printer = tool::load_printer(o.printer);

@@ -38,7 +38,7 @@ std::vector<std::string> protocol_names() {
 
 struct Options {
   sim::SimGcsSettings stage;
-  double latency_ms = 0.5;
+  double reply_delay_ms = 0.5;
   double jitter_ms = 0;
   int seed = 1;
   std::optional<int> baud;
@@ -99,7 +99,7 @@ void declare(cli::App& app, Options& options) {
       "--protocol", options.protocol, protocol_names(),
       "A PI controller, a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man relay of "
       "a lamp.");
-  app.option("--latency", "MS", options.latency_ms, {0, 1000}, "Time from question to answer.");
+  app.option("--reply-delay", "MS", options.reply_delay_ms, {0, 1000}, "Time from query to reply.").was("--latency");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
              "Additional random time, before and after the angle is sampled.");
   app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept this rate only.");
@@ -150,7 +150,7 @@ class Link {
 void run(Options& options) {
   if (options.shim) return device::print_line(shim_path());
   if (options.with_parent) device::end_with_parent();
-  options.stage.latency_s = 1e-3 * options.latency_ms;
+  options.stage.latency_s = 1e-3 * options.reply_delay_ms;
   options.stage.jitter_s = 1e-3 * options.jitter_ms;
   options.stage.seed = static_cast<std::uint64_t>(options.seed);
   for (const auto& fault : options.faults) options.stage.faults.push_back(sim::parse_sim_fault(fault));

@@ -32,7 +32,7 @@ struct Options {
   bool abrupt = false;
   bool only_plan = false;
   double timeout_s = 120;
-  std::optional<double> seconds;
+  std::optional<double> duration_s;
   double rate_hz = 100;
   double move_speed_deg_s = 10;
   std::optional<double> speed_deg_s;
@@ -136,7 +136,9 @@ void add_commands(cli::App& app, Options& options, std::string& chosen) {
   auto& follow = app.subcommand("follow", "print one JSON line per sample without motion", chosen);
   add_common(follow, options);
   follow.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
-  follow.option("--seconds", "S", options.seconds, cli::positive, "Duration.").default_is("until a signal");
+  follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.")
+      .default_is("until a signal")
+      .was("--seconds");
 }
 
 // Unset options come from the printer file; calibration records have nothing to say about the stage.
@@ -183,7 +185,7 @@ void drive(const std::string& command, Options& options) {
        [&] { move(*stage, clock, options.angle_deg, options.relative, options.move_speed_deg_s, options.timeout_s); }},
       {"spin", [&] { spin(*stage, clock, options.plan, print); }},
       {"stop", [&] { halt(*stage, clock, options.abrupt ? device::Stop::abrupt : device::Stop::smooth); }},
-      {"follow", [&] { follow(*stage, clock, options.plan.period_s, options.seconds, print); }}};
+      {"follow", [&] { follow(*stage, clock, options.plan.period_s, options.duration_s, print); }}};
   actions.at(command)();
   log("end", {{"command", command}});
 }

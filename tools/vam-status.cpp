@@ -43,12 +43,12 @@ cli::Manual manual() {
        "--page writes a page for a browser, which refreshes itself: these figures, the newest image of the camera, the "
        "vial from above with the dose so far and the current projection, the projected image, and the ages of the "
        "calibration records. It is one file with its images within and is opened as it is (file:///...), without a "
-       "server; a page that is no longer written says so.",
+       "server; a page that is no longer written shows this.",
        "vam-print shows the line by itself on a terminal, and writes page.html into the run folder with --page."},
       {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\nvam-print "
         "projector.exr "
-        "--screen null: --uncalibrated --missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run dry-run\n"
+        "--display null: --uncalibrated --missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run"},
        {"The same as a page:", "vam-status dry-run --page page.html"}},
       {"The dose is that of the middle slice, by horizontal rays, without blur; vam-dose --shown computes it in full.",
@@ -60,7 +60,7 @@ cli::Manual manual() {
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
   app.flag("--follow", o.follow, "Repeat until the print has ended.");
-  app.option("--every", "S", o.period_s, {0.2, 3600}, "Time between two lines or pages.");
+  app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or pages.").was("--every");
   app.option("--page", "FILE", o.page, "Write a page (HTML).").writes();
   app.option("--sinogram", "FILE", o.sinogram, "The sinogram of the print, for the images of projections and dose.")
       .default_is("RUN/sinogram.exr, a link that vam-print makes");
@@ -68,7 +68,7 @@ void declare(cli::App& app, Options& o) {
   cli::add_threads(app);
 }
 
-// A print goes on without its images: what is wrong with them is said once.
+// A print goes on without its images: a problem with them is reported once.
 std::optional<status_tool::LightView> light_of(const Options& o, const status_tool::RunFolder& run) {
   const std::string file = o.sinogram.empty() ? run.file("sinogram.exr") : o.sinogram;
   try {

@@ -45,8 +45,8 @@ int threads_to_have(int wanted) {
 
 // oneTBB ends the process when it is refused a thread; so it is not to ask for one that it will not get.
 void ask_for_no_more_than_there_are() {
-  static std::once_flag asked;
-  std::call_once(asked, [] {
+  static std::once_flag read;
+  std::call_once(read, [] {
     const int wanted = threads() - 1;
     const int had = threads_to_have(wanted);
     if (had == wanted) return;

@@ -69,7 +69,7 @@ struct PrinterCamera {
   double fps = 10;
   std::optional<double> gain;         // as the camera counts it; absent: as it has it
   std::optional<double> black_level;  // the same
-  double latency_ms = 0;              // from the end of an exposure to its time stamp, as it arrives
+  double lag_ms = 0;                  // from the end of an exposure to its time stamp, as it arrives
   double index_resin = 1.53;          // at the camera's wavelength
   double absorption_per_mm = 0;       // of the resin there, natural logarithm of intensity lost per mm
   std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent

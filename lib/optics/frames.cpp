@@ -197,13 +197,13 @@ double turns_of(const model::StackInfo& info) {
   return info.poses.empty() ? 1 : info.height * std::abs(info.angle_step_deg) / 360;
 }
 
-double turns_to_show(const model::StackInfo& info, std::optional<double> asked, double usual) {
-  if (info.poses.empty()) return asked.value_or(usual);
+double turns_to_show(const model::StackInfo& info, std::optional<double> requested, double usual) {
+  if (info.poses.empty()) return requested.value_or(usual);
   const double own = turns_of(info);
-  const double turns = asked.value_or(own);
+  const double turns = requested.value_or(own);
   if (model::repeat(info.poses) || std::abs(turns / own - 1) < 1e-6) return turns;
   throw Error{Fault::usage,
-              "--turns: " + format_number(turns) + " asked for, but the poses of the stack do not return " +
+              "--turns: " + format_number(turns) + " requested, but the poses of the stack do not return " +
                   "to the first one: it is shown once, which takes " + format_number(own) + "; omit the option"};
 }
 

@@ -88,9 +88,9 @@ class FrameComposer {
 /// Turns that a sinogram stack covers: 1 unless it has poses.
 [[nodiscard]] double turns_of(const model::StackInfo& info);
 
-/// Turns for which the stack is shown: `asked`, or else its own where it has poses, or else `usual`. Throws
+/// Turns for which the stack is shown: `requested`, or else its own where it has poses, or else `usual`. Throws
 /// Fault::usage for any other number than its own where the poses do not return to the first one.
-[[nodiscard]] double turns_to_show(const model::StackInfo& info, std::optional<double> asked, double usual);
+[[nodiscard]] double turns_to_show(const model::StackInfo& info, std::optional<double> requested, double usual);
 
 /// Flips columns (left-right), rows (up-down) or both, for a projector that is mounted that way: "normal",
 /// "flip-columns", "flip-rows" or "rotate-180".

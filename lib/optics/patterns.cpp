@@ -28,7 +28,7 @@ bool on_grid(int pixel, double origin, const PatternPlan& plan) {
   return on_line(pixel, origin + k * plan.pitch_px, plan.width_px);
 }
 
-// Alternating sectors, 2 * spokes of them: the finest visible circle tells the blur.
+// Alternating sectors, 2 * spokes of them: the finest visible circle indicates the blur.
 bool on_spoke(int x, int y, const GreyImage& image) {
   const double angle = std::atan2(y - 0.5 * (image.height - 1), x - 0.5 * (image.width - 1));
   return static_cast<int>(std::floor((angle / std::numbers::pi + 1) * spokes)) % 2 == 0;
@@ -48,6 +48,12 @@ void draw(GreyImage& image, std::uint16_t level, const Lit& lit) {
 const std::vector<std::string>& pattern_names() {
   static const std::vector<std::string> names{"star", "axis", "grid", "grey", "ramp", "sweep", "row"};
   return names;
+}
+
+void set_lines(PatternPlan& plan, std::optional<int> pitch_px, std::optional<int> width_px) {
+  const bool sweep = plan.name == "sweep";
+  plan.pitch_px = pitch_px.value_or(sweep ? sweep_line_px : PatternPlan{}.pitch_px);
+  plan.width_px = width_px.value_or(sweep ? sweep_line_px : PatternPlan{}.width_px);
 }
 
 int pattern_frames(const PatternPlan& plan, const model::Projector& projector) {

@@ -1,6 +1,7 @@
 // Images to adjust and measure a projector with, in its own grey levels: no response table stands between.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,11 @@ struct PatternPlan {
   int width_px = 1;   // of lines
   int steps = 17;     // ramp
 };
+inline constexpr int sweep_line_px = 4;  // pitch and width of a sweep where none is given
 [[nodiscard]] const std::vector<std::string>& pattern_names();
+
+/// The plan with these, or else the pattern's own, pitch and width.
+void set_lines(PatternPlan& plan, std::optional<int> pitch_px, std::optional<int> width_px);
 
 /// How many frames the pattern has: 1 but for ramp and sweep. Throws Fault::usage for a name that is none.
 [[nodiscard]] int pattern_frames(const PatternPlan& plan, const model::Projector& projector);

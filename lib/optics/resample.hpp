@@ -27,7 +27,7 @@ struct Detector {
   return {columns, pixel_mm, 0.5 * (columns - 1)};
 }
 
-/// Rows of a sinogram: row a is at stage angle start_rad + a * step_rad. One turn where nothing else is said.
+/// Rows of a sinogram: row a is at stage angle start_rad + a * step_rad. One turn by default.
 struct Turn {
   int rows = 0;
   double start_rad = 0;

@@ -20,7 +20,8 @@ void add_exposure(Json& figures, const std::string& of, double dose, const model
   const double turns = std::ceil(*printer.resin.critical_dose_mj_cm3 / dose);
   const bool possible = dose > 0 && std::isfinite(turns);
   figures["turns_to_critical_" + of] = possible ? Json(turns) : Json(nullptr);
-  figures["seconds_to_critical_" + of] = possible ? Json(model::seconds_of(printer.stage, turns)) : Json(nullptr);
+  figures["duration_to_critical_" + of + "_s"] =
+      possible ? Json(model::seconds_of(printer.stage, turns)) : Json(nullptr);
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
 
 void add_to(Json& figures, const ExposurePlan& plan) {
   figures["turns"] = plan.turns;
-  figures["seconds"] = plan.seconds;
+  figures["duration_s"] = plan.seconds;
   figures["multiplier"] = plan.multiplier;
   figures["peak_intensity_mw_cm2"] = plan.peak_intensity_mw_cm2;
 }

@@ -42,7 +42,7 @@ const std::vector<Figure>& figure_list() {
       {"cured_iou", "at the critical dose: |print and part| / |print or part|"},
       {"cured_wrong", "at the critical dose: fraction of wrong voxels"},
       {"turns", "whole turns that put the critical dose in the middle half of the process window"},
-      {"seconds", "duration of these turns"},
+      {"duration_s", "duration of these turns"},
       {"multiplier", "fraction of full intensity during these turns"},
       {"peak_intensity_mw_cm2", "intensity of the brightest pixel during these turns, mW/cm2"},
       {"efficiency", "mean / maximum of the projections"}};
@@ -105,14 +105,14 @@ double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
-  if (name == "turns" || name == "seconds" || name == "multiplier" || name == "peak_intensity_mw_cm2") {
+  if (name == "turns" || name == "duration_s" || name == "multiplier" || name == "peak_intensity_mw_cm2") {
     if (!options_.exposure) return none;
     const model::DoseMetrics doses = judged().metrics(false);
     if (!(window_middle(doses) > 0)) return none;
     const ExposurePlan plan =
         plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer, 1, options_.aimed_at);
     if (name == "turns") return plan.turns;
-    if (name == "seconds") return plan.seconds;
+    if (name == "duration_s") return plan.seconds;
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
   }
   if (name.starts_with("cured_")) {
@@ -150,8 +150,8 @@ Json Score::figures() const {
 }
 
 Verdict Score::verdict() const {
-  const double seconds = figure("seconds");
-  return {whole_.metrics(), with_cut_.metrics(), std::isfinite(seconds) ? std::optional(seconds) : std::nullopt};
+  const double duration_s = figure("duration_s");
+  return {whole_.metrics(), with_cut_.metrics(), std::isfinite(duration_s) ? std::optional(duration_s) : std::nullopt};
 }
 
 std::string Score::table() const {

@@ -1,5 +1,5 @@
-// What a dose is worth, in one line for people: will it print, with what margin, how long, and of how many voxels that
-// is said.
+// What a dose is worth, in one line for people: will it print, with what margin, how long, and from how many voxels
+// these are computed.
 #pragma once
 
 #include <cstdint>

@@ -69,7 +69,7 @@ static void note(double t_s, const char *format, ...) {
   close(log);
 }
 
-// The N of a fault of this kind, 0 when another one or none is asked for.
+// The N of a fault of this kind, 0 when another one or none is requested.
 static unsigned fault(const char *kind) {
   const char *wish = getenv("FAKE_DRM_FAULT");
   const size_t length = strlen(kind);

@@ -1,5 +1,5 @@
 # Every fault of the disk x every tool that writes: each output is the old file or the new one, whole; the new ones if
-# and only if the status is 0; nothing else is left but after SIGKILL, and the failure is said in a line. A tenth of the
+# and only if the status is 0; nothing else is left but after SIGKILL, and the failure is reported in one line. A tenth of the
 # table by default; VAM_TRIALS=100 (ctest --preset long) is the whole of it.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer writes, too: no call can be counted'; exit 77; }
@@ -26,7 +26,7 @@ out.exr|vam-resample sinogram.exr --compression zip --half -o out.exr
 out.exr out.json out.csv|vam-optimize part.vdb --method osmo --iterations 2 --angles 24 -o out.exr --report out.json --trace out.csv
 out.vdb|vam-dose sinogram.exr --like part.vdb -o out.vdb
 out.ply out.json|vam-score dose.vdb --target part.vdb --mesh out.ply --report out.json
-out.ply out.csv out.json|vam-sdf box.off part.vdb --reference-isovalue 0.5 --samples 2000 -o out.ply --histogram out.csv --report out.json
+out.ply out.csv out.json|vam-sdf box.off part.vdb --design-isovalue 0.5 --samples 2000 -o out.ply --histogram out.csv --report out.json
 out.png|vam-view part.vdb -o out.png
 out.nrrd|vam-view part.vdb --export out.nrrd
 out.exr|vam-project small.exr --printer small.toml -o out.exr

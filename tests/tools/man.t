@@ -32,6 +32,10 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   is "$tool: the examples use no former spelling" "$(grep ' is now ' .log/example)" ""
 done
 
+# "Default: none" is the value none; an option that has no default states none.
+undue=$(awk '/^Default: none/ && last !~ /^One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { last = $0 }' "$VAM_SOURCE"/man/*.1)
+is 'no page says "Default: none" of an option without a value none' "$undue" ""
+
 # Their other examples name real devices.
 examples "$VAM_SOURCE/man/vam-print.1" | sed '/drm:/,$d' >print.sh
 ok 'vam-print: the dry run of its page' sh -e print.sh

@@ -27,8 +27,8 @@ holds "an unknown one does" "$(json unknown.json iou) < 0.99"
 holds "nor does known sinking" "$(json sink.json iou) >= 0.999 && $(json sink.json ver) == 0"
 holds "unknown sinking does" "$(json unsunk.json iou) < 0.9"
 ok "surface of the print while sinking, against the print without" vam-sdf sink.vdb plain.vdb --isovalue 0.8 \
-  --reference-isovalue 0.8 --align none --report surface.json
-holds "within 0.3 voxels RMS" "$(json surface.json print_to_reference.rms_mm) <= 0.3 * 0.25"
+  --design-isovalue 0.8 --align none --report surface.json
+holds "within 0.3 voxels RMS" "$(json surface.json print_to_design.rms_mm) <= 0.3 * 0.25"
 
 # What the stack holds, and its frames
 is "one line a frame and the header" "$($exr attr sink.exr vam:poses | grep -c ,)" 61

@@ -10,7 +10,7 @@ launch() {  # launch RUN OPTIONS...: that print, on a table with these options
   run=$1; shift
   stage_up --acceleration 9000 --max-speed 360 "$@"
   rm -rf leds "$run"
-  (exec env --default-signal=INT LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" \
+  (exec env --default-signal=INT LD_PRELOAD="$shim" vam-print frames.exr --display sdl:0 --light "sim:?log=$PWD/leds" \
     --uncalibrated --missed 0.9 --run-up 0.05 --turns 20 --run "$run" 2>errors) &
   printing=$!
 }

@@ -37,11 +37,11 @@ sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
 within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not
 near() { holds "$1 ($2)" "($2) - ($3) <= $4 && ($3) - ($2) <= $4"; }  # near NAME GOT WANT WITHIN
 
-fails 64 'no --screen' vam-calibrate-all
-fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
+fails 64 'no --display' vam-calibrate-all
+fails 64 'not one of lag, latency' vam-calibrate-all --display null: --scans edge
 vam-calibrate --scans edge 2>moved.err
 is 'the former name still works, with a warning' "$? $(head -n 1 moved.err)" '64 vam-calibrate: warning: vam-calibrate --scans is now vam-calibrate-all --scans'
-fails 64 'names no scan' vam-calibrate-all --screen null: --scans ' '
+fails 64 'names no scan' vam-calibrate-all --display null: --scans ' '
 
 # A bench out of adjustment. The projector's log tells the camera's simulator which pattern is on.
 screen_up 208 96
@@ -49,7 +49,7 @@ bench() {  # bench OPTIONS...
   camera_up --angles truth --flips keep/flips --log seen --columns 200 --rows 60 --noise 0.002 --glow "${glow:-5}" --gamma 1.8 \
     --axis-column 2.5 --tilt 0.4 --centre 3.2 --set calibration.folder= "$@"
 }
-calibrate() { vam-calibrate-all --screen sdl:0 --light sim: --keep keep --log events --home --pitch ${pitch:-2} --sweep-exposure 19000 --scans "$@"; }
+calibrate() { vam-calibrate-all --display sdl:0 --light sim: --keep keep --log events --home --pitch ${pitch:-2} --sweep-exposure 19000 --scans "$@"; }
 
 bench --part 'cylinder:x=2,diameter=8,height=20' --lit 0.001 --beam 0.5 --focus 1.5 --divergence 1.5
 quiet 'five scans in one go' calibrate 'edges axis beam latency response'
@@ -84,9 +84,9 @@ bench --lag 40 --part 'cylinder:x=2,diameter=8,height=20' --lit 0
 quiet 'the lag and the latency' calibrate 'latency lag'
 # The simulated camera stamps 4 ms after the exposure, and its frames take 1 to 3 ms to a machine that is busy, different
 # in every capture: so much is not known.
-near 'lag: that of the camera' "$(value lag camera_latency)" 45.5 2
+near 'lag: that of the camera' "$(value lag camera_lag)" 45.5 2
 near 'latency: that of the projector alone' "$(value latency latency)" 0 2.5
-holds 'the printer file has it from the record' "$(vam-project --print-printer | sed -n 's/^latency_ms = \([0-9.]*\).*/\1/p' | tail -n 1) == $(value lag camera_latency)"
+holds 'the printer file has it from the record' "$(vam-project --print-printer | sed -n 's/^lag_ms = \([0-9.]*\).*/\1/p' | tail -n 1) == $(value lag camera_lag)"
 camera_down
 rm cal/current-lag.json  # of that camera, which is another to the clock from here on
 
@@ -122,7 +122,7 @@ column=$(awk '/^\[/ { here = $0 == "[projector]" } here && $1 == "axis_column" {
 near 'the axis in force is that of the bench' "$column" 106.7 0.1
 python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
   "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=$column projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
-quiet 'a dry run by the records' vam-print part.exr --screen null: --need 'latency response axis' --run-up 0.1 --missed 0.9 \
+quiet 'a dry run by the records' vam-print part.exr --display null: --need 'latency response axis' --run-up 0.1 --missed 0.9 \
   --views 90 --run run
 camera_down
 is 'whose summary names them' "$(json run/summary.json calibration.response.sha256)" "$(sha256sum <cal/current-response.json | cut -d' ' -f1)"
@@ -133,7 +133,7 @@ is 'and the stage' "$(json run/devices.json stage.serial)" "$(json cal/current-a
 
 # But not with devices that they were not made with.
 bench --serial another
-vam-print part.exr --screen null: --need 'latency response axis' --views 90 --run foreign 2>foreign.err
+vam-print part.exr --display null: --need 'latency response axis' --views 90 --run foreign 2>foreign.err
 is 'a foreign camera is refused' "$? $(grep -c 'was made with the camera VAM1, this is another; run vam-calibrate' foreign.err)" '65 1'
 is 'before anything moves, and nothing is left' "$(ls -d foreign 2>/dev/null)" ''
 camera_down

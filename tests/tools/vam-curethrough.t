@@ -82,11 +82,15 @@ same "any number of threads gives the same bytes" same.exr all/same.exr
 quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame --set projector.pixel_mm=0.05 -o full.exr
 
 # ---- a catalogue
-printf 'name,absorbance_height_um,critical_dose_mj_cm3\nclear,2000,576\ndark,300,576\n' >resins.csv
+printf 'name,absorbance_height_um,full_cure_dose_mj_cm3\nclear,2000,576\ndark,300,576\n' >resins.csv
 ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --print-speeds 1000,8000 --report catalogue.json
 holds "the darker resin keeps narrower gaps open" \
   "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
 is "nothing prints beyond the speed limit" "$(json catalogue.json catalogue.1.prints)" false
+sed 's/full_cure/critical/' resins.csv >former.csv
+ok "the former column" vam-curethrough correct ladder.vdb $light --catalogue former.csv --print-speeds 1000,8000 --report former.json
+grep -q 'former.csv:1: column critical_dose_mj_cm3 is now full_cure_dose_mj_cm3' .log/*; report $? "is read with a warning"
+is "to the same figures" "$(json former.json catalogue.2.narrowest_gap_um)" "$(json catalogue.json catalogue.2.narrowest_gap_um)"
 
 # ---- working curve, response, sweep
 printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n50,1175\n130,2004\n130,1996\n' >curve.csv

@@ -40,7 +40,7 @@ ok "absolute dose" vam-dose flat.exr $flat --size 0.065 -o flat.vdb --report fla
 window=$(vam-resample --explain --set projector.telecentric=true --set bath.index=1.53 | awk -F, 'NR == 500 { print $4 }')
 holds "closed form on the axis" "($(json flat.json dose_per_turn_max_mj_cm3) / (36.2488 * $window) - 1)^2 < 1e-6"
 is "turns" "$(json flat.json turns_to_critical_max)" 3.0
-is "seconds" "$(json flat.json seconds_to_critical_max)" 108.0
+is "seconds" "$(json flat.json duration_to_critical_max_s)" 108.0
 ok "half the intensity at full scale 1" vam-dose flat.exr $flat --size 0.065 --full-scale 1 -o half.vdb --report half.json
 holds "gives half the dose" "($(json half.json dose_per_turn_max_mj_cm3) / $(json flat.json dose_per_turn_max_mj_cm3) - 0.5)^2 < 1e-10"
 
@@ -55,7 +55,7 @@ holds "full intensity, and the critical dose in the middle half of the window" "
 holds "part cures, void does not" "$(json planned.json cured_wrong) == 0"
 is "whole turns, the same from either dose" "$(json turn-score.json turns) $(json planned.json turns)" "$(json plan.json turns).0 $(json plan.json turns).0"
 holds "fewer turns do not suffice" "$(json plan.json multiplier) <= 1 && $(json plan.json multiplier) * $(json plan.json turns) > $(json plan.json turns) - 1"
-holds "duration of the print" "$(json plan.json seconds) == 36 * $(json plan.json turns)"
+holds "duration of the print" "$(json plan.json duration_s) == 36 * $(json plan.json turns)"
 holds "the brightest pixel" "($(json plan.json peak_intensity_mw_cm2) / (3.8 * $(json plan.json multiplier)) - 1)^2 < 1e-12"
 holds "light efficiency, from either tool" "($(json plan.json efficiency) / $(json turn-score.json efficiency) - 1)^2 < 1e-8"
 fails 64 'requires --like' vam-dose frames.exr $resin --exposure-plan -o x.vdb

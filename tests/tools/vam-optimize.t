@@ -24,10 +24,10 @@ holds "no voxel is wrong" "$(value auto.json ver) == 0"
 resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
 quiet "unlimited" vam-optimize --angles 180 $resin --free-surface --max-intensity 0 --report spikes.json part.vdb -o spikes.exr
 quiet "limited by default" vam-optimize --angles 180 $resin --free-surface --report limited.json part.vdb -o limited.exr
-holds "a limit prints at least three times as fast" "3 * $(value limited.json seconds) <= $(value spikes.json seconds)"
+holds "a limit prints at least three times as fast" "3 * $(value limited.json duration_s) <= $(value spikes.json duration_s)"
 holds "at nearly the same process window" "$(value limited.json pw) > $(value spikes.json pw) - 0.02"
 quiet "in so many turns" vam-optimize --angles 180 $resin --turns 3 --report turns.json part.vdb -o turns.exr
-is "it takes the turns that were asked for" "$(value turns.json turns)" 3
+is "it takes the turns that were requested" "$(value turns.json turns)" 3
 vam-dose turns.exr --like part.vdb $resin --exposure-plan -o dose.vdb --report plan.json
 is "vam-dose plans the same" "$(value plan.json turns)" 3
 quiet "the shortest" vam-optimize --angles 180 $resin --shortest --report shortest.json part.vdb -o shortest.exr
@@ -140,7 +140,7 @@ fails 65 'not a checkpoint' vam-optimize --checkpoint other.vdb part.vdb -o out.
 # The front of duration against window.
 vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
 quiet "a front" vam-optimize --angles 60 $resin --tradeoff front.csv coarse.vdb -o front.exr
-is "its columns" "$(head -n 1 front.csv)" max_intensity,seconds,turns,pw,ver,iou,peak
+is "its columns" "$(head -n 1 front.csv)" max_intensity,duration_s,turns,pw,ver,iou,peak
 holds "it has eight limits" "$(wc -l <front.csv) >= 9"
 is "a brighter peak takes more time" "$(sed 1d front.csv | cut -d, -f2 | sort -g | cksum)" \
   "$(sed 1d front.csv | cut -d, -f2 | cksum)"
@@ -188,10 +188,10 @@ vam-dose asked.exr --like torus.vdb -o dose.vdb 2>/dev/null
 vam-score dose.vdb --target torus.vdb --isovalue 0.8 --mesh asked.ply >table
 vam-slice --shape torus --voxel 0.09 -o fine.vdb && vam-score fine.vdb --grid target --isovalue 0.5 --mesh design.ply >table
 vam-sdf asked.ply design.ply --align none --samples 20000 --report asked-sdf.json >table
-sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["print_to_reference"][sys.argv[1]])' "$1"; }
+sdf() { python3 -c 'import json, sys; print(json.load(open("asked-sdf.json"))["print_to_design"][sys.argv[1]])' "$1"; }
 holds "the print is as large as the design" "$(sdf mean_mm) >= -0.026 && $(sdf mean_mm) <= 0.026 && $(sdf rms_mm) <= 0.065"
 fails 64 '--free-surface: method cal does not use it' vam-optimize --method cal --free-surface part.vdb -o out.exr
-quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --tolerance-mm 0.15 --report band.json part.vdb -o band.exr
+quiet "a band around the surface" vam-optimize --angles 90 --iterations 10 --surface-margin 0.15 --report band.json part.vdb -o band.exr
 quiet "surface voxels constrained, too" vam-optimize --angles 90 --iterations 10 --surface --report surface.json part.vdb -o surface.exr
 holds "more constraints, a narrower window" "$(value band.json pw) > $(value surface.json pw)"
 quiet "weights of a file" vam-optimize --angles 90 --iterations 5 --weights part.vdb part.vdb -o weights.exr

@@ -6,7 +6,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-dry() { vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 "$@"; }
+dry() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 "$@"; }
 print() { dry --uncalibrated "$@"; }
 
 # A sinogram for another printer.
@@ -33,9 +33,9 @@ vam-project part.exr --plan -o null: $resin --set projector.rows=96 --turns 20 >
 wanted=$(awk "BEGIN { print $(json optimized.json turns) * $(json optimized.json multiplier) }")
 got=$(sed -n 's/.*that takes \([0-9.]*\) turns/\1/p' dose.txt)
 holds 'turns to the critical dose are those of vam-optimize' "($got - $wanted) ^ 2 < (1e-2 * $wanted) ^ 2"
-plan --screen drm:X --set vial.radius_mm=6 --set stage.device=grbl:/nowhere --views 90 --set 'camera.device=v4l2:/nowhere' >plan.txt 2>errors
+plan --display drm:X --set vial.radius_mm=6 --set stage.device=grbl:/nowhere --views 90 --set 'camera.device=v4l2:/nowhere' >plan.txt 2>errors
 is 'a plan goes on after what is not in order' "$? $(grep -c 'not in order' plan.txt) $(grep -c . errors)" '65 4 4'
-ok 'which is said in a line each' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot open" errors'
+ok 'each reported in one line' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot open" errors'
 plan --set 'stage.device=sim:?travel_deg=360' >plan.txt 2>errors
 is 'travel beyond the limits' "$? $(grep -c 'require travel from .* but the controller allows -360 to 360' errors)" '65 1'
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
@@ -43,7 +43,7 @@ is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
 # A folder of records that was copied with its links followed.
 vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 --speed 90 --every 10 \
   -o turn.exr
-vam-calibrate axis turn.exr --bands 3 --set calibration.folder=cal --set stage.device= >/dev/null
+vam-calibrate axis turn.exr --heights 3 --set calibration.folder=cal --set stage.device= >/dev/null
 cp -rL cal copied
 ok 'a copied folder of records' vam-calibrate check --need axis --set calibration.folder=copied
 is 'names its files' "$(vam-calibrate check --set calibration.folder=copied | json /dev/stdin axis.record)" copied/current-axis.json
@@ -58,7 +58,7 @@ f'
 mkdir "$odd"
 printf 'grey,intensity\n0,0\n255,1\n' >"$odd/r.csv"
 sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
-(cd "$odd" && vam-print ../frames.exr --screen null: --light sim: --uncalibrated --missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
+(cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
 is 'a path with & # quotes and a newline' "$? $(cat errors)" '0 '
 ok 'whose settings can be read from elsewhere' vam-project frames.exr -o again.exr --printer "$odd/r & #1/printer.toml"
 
@@ -74,7 +74,7 @@ is 'and an outcome of its own' "$(json unmet/summary.json outcome)" 'printed in 
 holds 'the summary has them, too' "$(json unmet/summary.json reached.figures.iou) < 0.99"
 
 # A tool that is stopped does not hold up the end.
-(exec vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stopped) 2>errors &
+(exec vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stopped) 2>errors &
 printing=$!
 await grep -qs '"frame":[0-9]' stopped/flips.jsonl
 stuck=$(pgrep -P $printing -x tee); kill -STOP "$stuck"
@@ -88,7 +88,7 @@ holds 'and how far it came' "$(json stopped/summary.json reached.lit_flips) > 0 
 
 # A print that was killed is resumed, and the two give what a whole one gives; vam-dose tells what each gave.
 print --turns 2 --run whole
-(exec vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
+(exec vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
 printing=$!
 lit() { [ "$(cat killed/flips.jsonl 2>/dev/null | grep -c '"frame":[0-9]')" -gt 300 ]; }  # a turn has 240
 await lit; kill -KILL $printing; wait $printing 2>/dev/null
@@ -118,7 +118,7 @@ fails 66 'nowhere: is not the folder of a print that began' print --resume nowhe
 fails 64 '.--turns: conflicts with --resume' print --resume killed --turns 3 --run none
 python3 "$VAM_SOURCE/tests/tools/exr.py" make other.exr space=projector width=64 height=36 count=2
 fails 65 'other.exr: is not the sinogram of whole, whose SHA-256 begins' vam-dose other.exr --printer whole/printer.toml --shown whole -o none.vdb
-fails 65 'other.exr: is not the sinogram of killed' vam-print other.exr --screen null: --resume killed --run none
+fails 65 'other.exr: is not the sinogram of killed' vam-print other.exr --display null: --resume killed --run none
 fails 65 'none: no light was shown|no light was shown' sh -c ': >empty; vam-dose frames.exr --shown empty -o x.vdb; status=$?; rm -f empty; exit $status'
 fails 66 'nowhere' vam-dose frames.exr --shown nowhere -o x.vdb
 fails 64 'omit --exposure-plan' vam-dose frames.exr --shown whole --exposure-plan --like part.vdb --set resin.absorption_per_mm=0.1 --set resin.critical_dose_mj_cm3=5 -o x.vdb

@@ -20,7 +20,7 @@ spoilt unplugged 69 'unplugged' unplug@POS?:250
 launch refused --fault error@VEL
 aborted 76 'stage failed' 'refused with error 17'
 begin busy
-env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --uncalibrated --run second 2>second-errors
+env LD_PRELOAD="$shim" vam-print frames.exr --display sdl:0 --uncalibrated --run second 2>second-errors
 is 'a second print is refused' "$? $(grep -c 'in use by process' second-errors)" '75 1'
 kill -TERM $printing
 aborted 143 aborted ''

@@ -34,22 +34,22 @@ TOML
 
 # Without devices: what is refused before anything moves.
 fails 64 'no sinogram' vam-print
-fails 64 'no --screen' vam-print frames.exr
+fails 64 'no --display' vam-print frames.exr
 fails 64 'unknown option' vam-print frames.exr --scren null:
-fails 66 'cannot open' vam-print frames.exr --screen null:
-fails 64 'not one of lag, latency' vam-calibrate-all --screen null: --scans edge
+fails 66 'cannot open' vam-print frames.exr --display null:
+fails 64 'not one of lag, latency' vam-calibrate-all --display null: --scans edge
 ok 'help' vam-print --help
 ok 'help' vam-calibrate-all --help
 for script in vam-print vam-calibrate-all; do
   is "$script: its version is that of the tools" "$($script --version)" "$(vam-project --version | sed "s/^vam-project/$script/")"
   is "$script: its manual page" "$($script --man)" "$(cat "$VAM_SOURCE/man/$script.1")"
   fails 64 '^[^ ]*: --home: takes no value' $script --home=1
-  fails 64 '^[^ ]*: --screen: needs a value' $script --screen
+  fails 64 '^[^ ]*: --display: needs a value' $script --display
 done
-fails 64 "'HDMI-A-1' is not one of drm:" vam-print frames.exr --screen HDMI-A-1
-fails 64 "'HDMI-A-1' is not one of drm:" vam-calibrate-all --screen HDMI-A-1
-fails 66 'cannot open' vam-print frames.exr --screen=null: --set=stage.turns=1
-fails 64 'not one of lag, latency' vam-calibrate-all --screen=null: --scans=edge
+fails 64 "'HDMI-A-1' is not one of drm:" vam-print frames.exr --display HDMI-A-1
+fails 64 "'HDMI-A-1' is not one of drm:" vam-calibrate-all --display HDMI-A-1
+fails 66 'cannot open' vam-print frames.exr --display=null: --set=stage.turns=1
+fails 64 'not one of lag, latency' vam-calibrate-all --display=null: --scans=edge
 
 # Mesh to frames.
 cat >box.stl <<'STL'
@@ -70,15 +70,15 @@ vam-slice box.stl --voxel 0.26 $plain | vam-sinogram --angles 180 --filter ram-l
   vam-resample $plain -o frames.exr
 is 'frames of a mesh' $? 0
 vam-project frames.exr --speed 25 --fps 250 $plain -o frames.mkv  # the 3600 of a turn
-is 'a print needs its calibration' "$(vam-print frames.exr --screen null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
+is 'a print needs its calibration' "$(vam-print frames.exr --display null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
 [ ! -e no ]; report $? 'and leaves no folder when it is refused before a device is opened'
-for print in 1 2 3; do vam-print frames.exr --screen null: --light sim: --uncalibrated --set stage.device=grbl:/nowhere 2>>errors & done; wait
+for print in 1 2 3; do vam-print frames.exr --display null: --light sim: --uncalibrated --set stage.device=grbl:/nowhere 2>>errors & done; wait
 is 'prints that begin in one second have a folder each' "$(cat print-*/summary.json | grep -c '"outcome": "stage failed"')" 3
 rm -r print-*
 
 screen_up 64 48
 turntable() { stage_up --acceleration 1000 --max-speed 360 --at -130 "$@"; }
-print() { env LD_PRELOAD="$shim" vam-print frames.exr --screen sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
+print() { env LD_PRELOAD="$shim" vam-print frames.exr --display sdl:0 --light "sim:?log=$PWD/leds" --uncalibrated "$@"; }
 
 # A machine too busy to turn a stage safely ends a print, as it must (too late an answer, no
 # progress): that is no fault of the print, which is repeated at most twice.

@@ -21,7 +21,7 @@ fails 64 'above the limit of 50' vam-project part.exr -o null: --light 'sim:?cur
 fails 64 'former unit: controller steps, inverted on a LightCrafter 4500; give current_percent' vam-project part.exr -o null: --light 'sim:?current=0'
 fails 64 'give max_current_percent' vam-project part.exr -o null: --light 'sim:?max_current=1'
 fails 64 'give projector.max_led_current_percent' vam-project part.exr -o null: --set projector.max_led_current=1
-ok 'no current is asked for' vam-project --pattern grey -o null: --hold 0.05 --light 'sim:?current_percent=0&log=none' --log engine
+ok 'no current is requested' vam-project --pattern grey -o null: --hold 0.05 --light 'sim:?current_percent=0&log=none' --log engine
 is 'and none flows' "$(grep '"bits":4' none | grep -o '"current_percent":[^]]*]')" '"current_percent":[0.0,0.0,0.0]'
 is 'as the log says' "$(grep '"event":"light"' engine | grep -o '"led_current_percent":[^]]*]')" '"led_current_percent":[0.0,0.0,0.0]'
 fails 73 'cannot be written' vam-project part.exr -o null: --log missing/log

@@ -87,7 +87,7 @@ holds "the inverse response" "$($png get curved/00000.png 44 5) > 140 && $($png 
 is "the straight line" "$($png get frames/00000.png 44 5)" 85
 vam-project part.exr --full-scale 6 -o half/
 is "--full-scale halves" "$($png get half/00000.png 44 3)" 127
-ok "clipping succeeds" vam-project part.exr --gain 3 -o clipped/ --report clipped.json
+ok "clipping succeeds" vam-project part.exr --multiplier 3 -o clipped/ --report clipped.json
 is "and is reported in one line" "$(grep -c 'exceed full intensity' .log/err)" 1
 holds "and in the report" "$(json clipped.json clipped_fraction) > 0.1"
 

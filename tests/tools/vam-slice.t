@@ -95,15 +95,15 @@ says() {  # says REGEX COMMAND...: succeeds with one warning that matches
 says 'metres.obj: no voxel .*is the file in m ' vam-slice metres.obj --voxel 0.1 -o out.vdb
 says 'inches.obj: the part is only 0.6 mm large; is the file in cm .--unit cm. or in .--unit in.' \
   vam-slice inches.obj --voxel 0.1 -o out.vdb
-quiet "a size that is asked for" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
+quiet "a size that is requested" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
 says 'no voxel .*covered to 0.33 at most.; --voxel' \
   vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb
 
-# The height in the image: level with the lens, in the image, or as asked for
+# The height in the image: level with the lens, in the image, or as requested
 place() { vam-slice --shape cone:bottom=8,height=6 --voxel 0.25 "$@" -o out.vdb --report report.json && json report.json place.mm; }
 stretch=$(json gyroid.json stretch_z)
 is "level with the lens" "$(place)" 0.0
-holds "as high as is asked for, in whole voxels" "($(place --place 3) - 12 * 0.25 / $stretch)^2 < 1e-12"
+holds "as high as requested, in whole voxels" "($(place --place 3) - 12 * 0.25 / $stretch)^2 < 1e-12"
 is "by the option" "$(json report.json place.by)" option
 low="--set projector.axis_row=767"
 holds "in an image that begins at the lens" "$(place $low) > 2.9 && $(place $low) < 3.3"

@@ -43,7 +43,7 @@ is 'the model, marked' "$(json about model) $(json about simulated)" 'C-863.11 t
 ok 'ports' vam-stage ports
 quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --to 20 --speed 80
 fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --to 20
-vam-stage follow --device sim: --seconds 0.2 --rate 50 >samples
+vam-stage follow --device sim: --duration 0.2 --rate 50 >samples
 is 'follow takes its samples' "$(wc -l <samples)" 10
 holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
 
@@ -172,5 +172,5 @@ spoilt 76 'was expected' block@POS?:80
 spoilt 76 'is blocked' block@POS?:2
 
 # A full disk behind the samples.
-fails 74 'write failed' sh -c 'vam-stage follow --device sim: --seconds 1 >/dev/full'
+fails 74 'write failed' sh -c 'vam-stage follow --device sim: --duration 1 >/dev/full'
 done_testing

@@ -6,17 +6,17 @@ PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
 printf '[camera]\ndevice = "sim:?lit_s=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
-print() { vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 "$@"; }
+print() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 "$@"; }
 
 fails 66 'nowhere: is no folder' vam-status nowhere
 fails 66 'frames.exr: is no folder' vam-status frames.exr
 mkdir empty
 fails 65 'empty: has no events.jsonl' vam-status empty
 fails 64 '--folow: unknown option; did you mean --follow' vam-status empty --folow
-fails 64 '^vam-print: --page: takes no value' vam-print frames.exr --screen null: --page=x
+fails 64 '^vam-print: --page: takes no value' vam-print frames.exr --display null: --page=x
 
 # On a terminal: the line, renewed in place, and the page beside it.
-script -qefc "TERM=dumb vam-print frames.exr --screen null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 --turns 3 --page --run run" typed \
+script -qefc "TERM=dumb vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 --turns 3 --page --run run" typed \
   >/dev/null 2>&1 & printing=$!
 await test -s run/page.html
 sleep 3
@@ -30,7 +30,7 @@ ok 'the page is among the hashes' grep -q page.html run/SHA256SUMS
 ok 'and as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
 is 'no longer renewed' "$(grep -c http-equiv=.refresh during.html) $(grep -c http-equiv=.refresh run/page.html)" '1 0'
 print --run quiet >out 2>err
-is 'not on a terminal, nothing is said and no page made' "$? $(cat out err | grep -c .) $(ls quiet | grep -c html)" '0 0 0'
+is 'not on a terminal, nothing is printed and no page made' "$? $(cat out err | grep -c .) $(ls quiet | grep -c html)" '0 0 0'
 
 # How far: half of the flips. The dose is that of the light that was given, by vam-dose on the same log.
 cp -r run half
@@ -58,7 +58,7 @@ ok 'a page of hostile names' vam-status "$hostile" --page page.html
 is 'has none of their elements' "$(grep -Ec '<img src=x|<b onm|document\.title=2</script>' page.html)" 0
 rm "$hostile/sinogram.exr"
 vam-status "$hostile" --page bare.html 2>bare.err
-is 'a page without sinogram, which is said' "$? $(grep -c 'the page has no images of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
+is 'a page without sinogram, which is reported' "$? $(grep -c 'the page has no images of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
 fails 74 '/dev/full: ' vam-status run --page /dev/full
 vam-status run --page - | head -c 100 >/dev/null; report 0 'a page to head'
 is 'nothing of it on a terminal line to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1

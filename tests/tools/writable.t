@@ -25,7 +25,7 @@ fails 65 'reaches 4 mm \(20 voxels\) from the axis, beyond the writable radius o
 fails 65 'light reaches only 16.98;' vam-optimize $few --geometry parallel disc.vdb -o out.exr
 # The projector's own rays know from which angles light comes.
 vam-optimize $few --iterations 1 --angles 24 disc.vdb -o out.exr 2>err
-is 'it is said from how many angles the rim is lit' "$?:$(cat err)" \
+is 'it is reported from how many angles the rim is lit' "$?:$(cat err)" \
   '0:vam-optimize: warning: disc.vdb: reaches 4.111 mm from the axis, beyond the writable radius of 3.395 mm; there light comes from 62.5 % of the angles'
 # A part that is narrower, but whose voxels are not.
 brim='--shape cylinder:diameter=16.59,height=2 --voxel 0.4'

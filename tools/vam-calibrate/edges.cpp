@@ -55,8 +55,8 @@ struct Sweeps {
 
 Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
   Sweeps sweeps;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    const auto means = metrology::band_means(frame.image, options.bands);
+  each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) {
+    const auto means = metrology::band_means(frame.image, options.heights);
     const long angle = std::isfinite(frame.angle_deg) ? (std::lround(frame.angle_deg) % 360 + 360) % 360 : -1;
     auto& [count, sum] = sweeps.by_angle[angle][frame.shown];
     sum.resize(means.size());
@@ -71,14 +71,14 @@ Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
 metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, const Sweep& sweep) {
   metrology::SweepScan scan;
   scan.width_px = options.width_px;
-  scan.signal.resize(static_cast<std::size_t>(options.bands));
+  scan.signal.resize(static_cast<std::size_t>(options.heights));
   for (const auto& [shown, sum] : sweep) {
     scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
     for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
   }
-  const int band_rows = sweeps.rows / options.bands;  // as band_means() cuts them
-  for (int b = 0; b < options.bands; ++b) {
-    scan.height_mm.push_back((0.5 * options.bands - b - 0.5) * band_rows * sweeps.row_mm);
+  const int band_rows = sweeps.rows / options.heights;  // as band_means() cuts them
+  for (int b = 0; b < options.heights; ++b) {
+    scan.height_mm.push_back((0.5 * options.heights - b - 0.5) * band_rows * sweeps.row_mm);
   }
   return scan;
 }
@@ -146,7 +146,7 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   finding.facts["settings"] = {{"pitch_px", options.pitch_px},
                                {"width_px", options.width_px},
                                {"positions", positions},
-                               {"heights", options.bands},
+                               {"heights", options.heights},
                                {"pixel_mm", printer.projector.pixel_mm},
                                {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
   if (all.size() > 1) finding.facts["settings"]["stage_angles_deg"] = angles;

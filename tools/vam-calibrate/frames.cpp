@@ -60,14 +60,14 @@ std::vector<Showing> read_flips(const std::string& path) {
   return flips;
 }
 
-void each_frame(const ScanOptions& options, const model::Printer& printer,
+void each_frame(const ScanOptions& options, const model::Printer& printer, Frames wanted,
                 const std::function<void(const ScanFrame&)>& take) {
   const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
-  // Only the scans `axis` and `lag` need angles; where others are given frames without, these are at no angle.
-  const bool needs_angles = options.command == "axis" || options.command == "lag";
-  io::ViewSource source(options.from, needs_angles ? options.step_deg : std::numeric_limits<double>::quiet_NaN());
+  // Where angles are not needed, frames without are at none.
+  const double step_deg = wanted == Frames::turned ? options.step_deg : std::numeric_limits<double>::quiet_NaN();
+  io::ViewSource source(options.from, step_deg);
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
   for (int n = 0; source.next(frame); ++n) {
@@ -79,7 +79,7 @@ void each_frame(const ScanOptions& options, const model::Printer& printer,
       }
       scan.shown = shown_between(flips, frame.time_s - latency_s - half_s - margin_s,
                                  frame.time_s - latency_s + half_s + margin_s);
-      if (scan.shown < 0 && options.command != "latency") continue;
+      if (scan.shown < 0 && wanted != Frames::changing) continue;
     }
     take(scan);
   }

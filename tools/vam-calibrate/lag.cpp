@@ -22,7 +22,7 @@ Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
   const auto two = metrology::find_camera_axis(backwards.scan);
   const auto lag = metrology::camera_lag_ms(one, speed(forwards), two, speed(backwards));
   Finding finding;
-  finding.value("camera_latency", lag, "ms", "bead turned both ways");
+  finding.value("camera_lag", lag, "ms", "bead turned both ways");
   finding.facts["settings"] = {{"forwards_deg_s", speed(forwards)}, {"backwards_deg_s", speed(backwards)}};
   if (lag.sigma > wanted_sigma_ms) {
     finding.fail_because("standard deviation is " + format_number(lag.sigma, 3) + " ms, above " +

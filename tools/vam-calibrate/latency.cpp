@@ -20,7 +20,7 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
   }
   scan.exposure_s = 1e-6 * printer.camera.exposure_us;
   int number = 0;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
+  each_frame(options, printer, Frames::changing, [&](const ScanFrame& frame) {
     if (number++ < settling_frames) return;
     if (frame.time_s < flips.front().t_s || frame.time_s > flips.back().t_s) return;
     scan.begin_s.push_back(frame.time_s - 0.5 * scan.exposure_s);

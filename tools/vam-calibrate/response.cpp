@@ -14,39 +14,28 @@
 
 namespace vam::calibrate_tool {
 
-Finding scan_response(const ScanOptions& options, const model::Printer& printer) {
-  double dark = 0;
-  if (!options.dark.empty()) dark = mean_level(io::read_field(options.dark));
-  std::map<int, std::vector<double>> readings;
-  each_frame(options, printer, [&](const ScanFrame& frame) {
-    // Without flips the frames of a level follow one another.
-    readings[frame.shown].push_back(mean_level(frame.image) - dark);
-  });
-  std::map<int, std::vector<double>> by_level;
-  if (options.flips.empty()) {
-    if (readings.size() % static_cast<std::size_t>(options.steps) != 0) {
-      throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames cannot be split into " +
-                                   std::to_string(options.steps) + " levels of equal length; see --steps"};
-    }
-    const int each = static_cast<int>(readings.size()) / options.steps;
-    for (const auto& [n, light] : readings) by_level[n / each].push_back(light.front());
-  } else {
-    by_level = readings;
+namespace {
+
+/// Light of the frames of each level: the pattern's frames are levels; without flips those of a level follow one
+/// another.
+std::map<int, std::vector<double>> by_level(const ScanOptions& options, std::map<int, std::vector<double>> readings) {
+  if (!options.flips.empty()) return readings;
+  if (readings.size() % static_cast<std::size_t>(options.steps) != 0) {
+    throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames cannot be split into " +
+                                 std::to_string(options.steps) + " levels of equal length; see --steps"};
   }
-  metrology::ResponseScan scan;
-  const int full = (1 << printer.projector.bits) - 1;
-  for (const auto& [level, light] : by_level) {
-    scan.grey.push_back(std::round(static_cast<double>(level) / (options.steps - 1) * full));
-    scan.light.push_back(light);
-  }
-  const auto curve = metrology::measure_response(scan);
+  const int each = static_cast<int>(readings.size()) / options.steps;
+  std::map<int, std::vector<double>> levels;
+  for (const auto& [n, light] : readings) levels[n / each].push_back(light.front());
+  return levels;
+}
+
+Finding finding_of(const metrology::ResponseCurve& curve, const std::string& instrument) {
   Finding finding;
-  finding.value("contrast",
-                {1 / std::max(curve.intensity.front().value, 1e-9),
-                 curve.intensity.front().sigma / std::pow(std::max(curve.intensity.front().value, 1e-9), 2),
-                 curve.intensity.front().n},
-                "1", "full grey over black");
-  std::string csv = "# of " + printer.calibration.instrument + ", by vam-calibrate response\ngrey,intensity\n";
+  const stats::Measured& black = curve.intensity.front();
+  const double least = std::max(black.value, 1e-9);
+  finding.value("contrast", {1 / least, black.sigma / std::pow(least, 2), black.n}, "1", "full grey over black");
+  std::string csv = "# of " + instrument + ", by vam-calibrate response\ngrey,intensity\n";
   Json levels = Json::array();
   for (std::size_t i = 0; i < curve.grey.size(); ++i) {
     csv += format_number(curve.grey[i]) + "," + format_number(curve.intensity[i].value, 9) + "\n";
@@ -60,6 +49,23 @@ Finding scan_response(const ScanOptions& options, const model::Printer& printer)
   finding.facts["response"] = levels;
   finding.products.push_back({"response", ".csv", [csv](const std::string& path) { io::write_text(path, csv); }});
   return finding;
+}
+
+}  // namespace
+
+Finding scan_response(const ScanOptions& options, const model::Printer& printer) {
+  double dark = 0;
+  if (!options.dark.empty()) dark = mean_level(io::read_field(options.dark));
+  std::map<int, std::vector<double>> readings;
+  each_frame(options, printer, Frames::steady,
+             [&](const ScanFrame& frame) { readings[frame.shown].push_back(mean_level(frame.image) - dark); });
+  metrology::ResponseScan scan;
+  const int full = (1 << printer.projector.bits) - 1;
+  for (const auto& [level, light] : by_level(options, std::move(readings))) {
+    scan.grey.push_back(std::round(static_cast<double>(level) / (options.steps - 1) * full));
+    scan.light.push_back(light);
+  }
+  return finding_of(metrology::measure_response(scan), printer.calibration.instrument);
 }
 
 }  // namespace vam::calibrate_tool

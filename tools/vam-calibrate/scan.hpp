@@ -12,6 +12,7 @@
 #include "cli/common.hpp"
 #include "metrology/calibrate/axis.hpp"
 #include "model/printer.hpp"
+#include "optics/patterns.hpp"
 
 namespace vam::calibrate_tool {
 
@@ -22,8 +23,9 @@ struct ScanOptions {
   std::string flips;    // log of vam-project from the time of the capture
   std::string dark;
   bool accept = false;
-  int bands = 5;
-  int pitch_px = 4, width_px = 4, steps = 17;      // of the pattern
+  int heights = 5;
+  int pitch_px = optics::sweep_line_px, width_px = optics::sweep_line_px,
+      steps = optics::PatternPlan{}.steps;         // of the pattern
   double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
   bool side = false;                               // beam: frames of a camera beside the vial
   double step_deg = 0;                             // axis: frames without recorded angles
@@ -57,9 +59,13 @@ struct ScanFrame {
   int shown = 0;         // pattern frame during the whole exposure: by the flips, else the frame's own number
 };
 
-/// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on.
+/// What a scan needs of its frames: any angle, one each, or also those during which the pattern changed.
+enum class Frames { steady, turned, changing };
+
+/// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on, unless
+/// changing ones are wanted.
 /// Throws Error: no_input, data (also a frame that is over-exposed), usage (flips, but frames without times).
-void each_frame(const ScanOptions& options, const model::Printer& printer,
+void each_frame(const ScanOptions& options, const model::Printer& printer, Frames wanted,
                 const std::function<void(const ScanFrame&)>& take);
 
 /// A pattern frame and when it came on.

@@ -17,7 +17,7 @@ struct Options {
   std::string follow;
   std::optional<double> speed_deg_s, angle_deg, every_deg, pixel_mm, turns;
   std::optional<int> frames, max_lost;
-  std::optional<double> latency_ms;  // absent: camera.latency_ms
+  std::optional<double> lag_ms;  // absent: camera.lag_ms
   bool live = false;
   bool with_parent = false;
   std::string latest, log, report;

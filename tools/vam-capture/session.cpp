@@ -48,7 +48,7 @@ device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
   plan.triggered = o.camera.trigger == "software";
   plan.every_deg = o.every_deg;
   plan.by_number = is_folder(o.output);
-  plan.latency_s = 1e-3 * o.latency_ms.value_or(printer.camera.latency_ms);
+  plan.latency_s = 1e-3 * o.lag_ms.value_or(printer.camera.lag_ms);
   if (o.max_lost) plan.max_lost = *o.max_lost;
   plan.frames = o.frames.value_or(0);
   if (!o.every_deg) {
@@ -138,7 +138,7 @@ class Latest {
   double shown_s_ = -1e300;
 };
 
-// What was lost is said, whatever else happens; what is missing is an error.
+// What was lost is reported, whatever else happens; what is missing is an error.
 void conclude(const Options& o, const device::CaptureTally& tally, long wanted) {
   std::string lost;
   if (tally.dropped + tally.incomplete > 0) {
@@ -181,7 +181,7 @@ void take(const cli::App& app, const Options& options) {
   const auto camera = open_camera(options, printer);
   const auto store = open_store(app, options, printer, *camera, plan.frames);
   Json about = facts(*camera);
-  about["latency_ms"] = 1e3 * plan.latency_s;
+  about["lag_ms"] = 1e3 * plan.latency_s;
   log("begin", about);
   Progress progress("capturing", plan.frames);
   Latest latest(options.latest);

@@ -25,14 +25,15 @@ std::string cells(const std::vector<std::string>& texts) {
 }  // namespace
 
 Json compare(const CorrectOptions& options, const Print& print, const resin::PartColumns& part) {
-  const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "critical_dose_mj_cm3"});
+  const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"},
+                                          {{"critical_dose_mj_cm3", "full_cure_dose_mj_cm3"}});
   std::string text = cells(
-      {"resin", "h_a um", "D_c mJ/cm3", "limit mm/h", "speed mm/h", "Phi_max", "gap um", "tight gaps", "fused gaps"});
+      {"resin", "h_a um", "D_f mJ/cm3", "limit mm/h", "speed mm/h", "Phi_max", "gap um", "tight gaps", "fused gaps"});
   Json report = Json::array();
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     resin::Process process = print.process;
     process.absorbance_height_um = table.number(row, 1);
-    process.critical_dose_mj_cm3 = table.number(row, 2);
+    process.full_cure_dose_mj_cm3 = table.number(row, 2);
     const double limit = resin::speed_limit_mm_h(process);
     std::vector<double> speeds = options.speeds_mm_h;
     if (speeds.empty()) speeds = {0.2 * limit, 0.4 * limit, 0.6 * limit, 0.8 * limit};
@@ -43,13 +44,13 @@ Json compare(const CorrectOptions& options, const Print& print, const resin::Par
       const resin::GapReport judged = resin::judge_gaps(part, limits, options.clear);
       const bool prints = speed < limit;
       text += cells({table.rows[row][0], format_number(process.absorbance_height_um),
-                     format_number(process.critical_dose_mj_cm3), format_number(limit, 4), format_number(speed, 4),
+                     format_number(process.full_cure_dose_mj_cm3), format_number(limit, 4), format_number(speed, 4),
                      format_number(limits.phi_max, 4), gap > 0 ? format_number(gap * process.slice_um) : "-",
                      prints ? std::to_string(judged.tight_gaps) : "-",
                      prints ? std::to_string(judged.infeasible_gaps) : "-"});
       Json entry{{"name", table.rows[row][0]},
                  {"absorbance_height_um", process.absorbance_height_um},
-                 {"critical_dose_mj_cm3", process.critical_dose_mj_cm3},
+                 {"full_cure_dose_mj_cm3", process.full_cure_dose_mj_cm3},
                  {"speed_limit_mm_h", limit},
                  {"speed_mm_h", speed},
                  {"phi_max", limits.phi_max},

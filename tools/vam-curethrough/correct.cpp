@@ -190,18 +190,18 @@ void declare(cli::App& app, CorrectOptions& options) {
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   app.group("Correction");
   app.option("--omega-max", "DOSE", options.limit.omega_max, {1, std::numeric_limits<double>::infinity()},
-             "Maximum dose inside features, in critical doses; inf is no limit.");
+             "Maximum dose inside features, in full-cure doses; inf is no limit.");
   app.flag("--strong-base", options.limit.strong_base,
            "Expose features on the platform at maximum intensity regardless of --omega-max: there is no resin behind "
            "them to cure.");
   app.option("--clear", "DOSE", options.clear, {0, 1, true},
-             "A gap whose dose nowhere falls to this number of critical doses is reported as tight.");
+             "A gap whose dose nowhere falls to this number of full-cure doses is reported as tight.");
   add_part(app, options.part);
   app.option("--mask", "FILE", options.mask,
              "PNG of the columns: 0 good or empty, 128 with a tight gap, 255 with a gap that must fuse.");
   app.group("Catalogue");
   app.option("--catalogue", "FILE", options.catalogue,
-             "CSV name,absorbance_height_um,critical_dose_mj_cm3: print a table that compares these resins for this "
+             "CSV name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that compares these resins for this "
              "part; slices are then written only with -o or --png.");
   app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Speeds of the table.")
       .needs({"--catalogue"})

@@ -67,7 +67,7 @@ void draw_image(plot::Canvas& canvas, const plot::PlotFrame& frame, const RgbIma
 void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure& plane, const Print& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
-  frame.x = {"dose / critical dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
+  frame.x = {"dose / full-cure dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
   std::vector<plot::Spot> dose;
   std::vector<plot::Spot> stairs;
   for (int n = 0; n < slices; ++n) {
@@ -202,7 +202,7 @@ void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& p
   const double margin = std::max(0.5, 0.05 * (factors.back() - factors.front()));
   plot::Plot plot;
   plot.title = "omega_max = " + format_number(first);
-  plot.x = {"assumed critical dose / gelation dose", factors.front() - margin, factors.back() + margin};
+  plot.x = {"assumed full-cure dose / gelation dose", factors.front() - margin, factors.back() + margin};
   plot.y = {"height error, corrected / uncorrected", 0, 1.1 * most};
   for (std::size_t s = 0; s < ratios.size(); ++s) {
     const Rgb colour = colours[s % colours.size()];

@@ -30,7 +30,7 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& 
 void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
                         const resin::WorkingCurve& curve);
 void draw_response(const std::string& path, const model::ResponseTable& table);
-/// As [CURE19 fig 5c]: the ratio of height errors against the assumed critical dose.
+/// As [CURE19 fig 5c]: the ratio of height errors against the assumed full-cure dose.
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um);
 
 }  // namespace vam::curethrough

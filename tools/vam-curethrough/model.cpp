@@ -200,7 +200,7 @@ void declare(cli::App& app, ModelOptions& options) {
                  "intensity in the part, minimum outside.")
       .reads();
   app.option("-o,--output", "FILE", options.output,
-             "Write the dose as a volume (OpenVDB grid dose, in critical doses, at the centres of the voxels).")
+             "Write the dose as a volume (OpenVDB grid dose, in full-cure doses, at the centres of the voxels).")
       .writes();
   app.option("--target", "FILE", options.part.path, "Part that the slices should give, for the cure map.")
       .was("--part")
@@ -228,11 +228,11 @@ void run(const cli::App& root, const cli::App& app, const ModelOptions& options)
   Judge judge(options, in);
   read_twice(in, judge);
   if (judge.dose_) {
-    judge.dose_->units = "critical doses";
+    judge.dose_->units = "full-cure doses";
     judge.dose_->history = in.slices.history;
     judge.dose_->history.push_back(root.history());
     judge.dose_->metadata = attributes(in.print.process);
-    judge.dose_->metadata["vam:critical_dose_mj_cm3"] = format_number(in.print.process.critical_dose_mj_cm3, 9);
+    judge.dose_->metadata["vam:full_cure_dose_mj_cm3"] = format_number(in.print.process.full_cure_dose_mj_cm3, 9);
     io::write_volume(options.output, *judge.dose_);
   }
   Json report{{"process", to_json(in.print.process)}, {"slices", in.slices.count}};

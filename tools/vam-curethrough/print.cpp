@@ -17,8 +17,9 @@ void add_print(cli::App& app, PrintOptions& options) {
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("determined by resin.absorption_per_mm, else 2000");
-  app.option("--critical-dose", "MJ_CM3", options.critical_dose_mj_cm3, cli::positive,
-             "Dose D_c that cures to full strength; five times the gelation dose is recommended.");
+  app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive,
+             "Dose D_f that cures to full strength; five times the gelation dose is recommended.")
+      .was("--critical-dose");
   app.default_is("resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
              "Irradiance at the window, at grey 0.");
@@ -59,8 +60,8 @@ Print resolve(const PrintOptions& options, double slice_um) {
   const model::Resin& resin = print.printer.resin;
   if (resin.absorption_per_mm > 0) process.absorbance_height_um = std::numbers::ln10 / resin.absorption_per_mm * 1e3;
   if (options.absorbance_height_um) process.absorbance_height_um = *options.absorbance_height_um;
-  if (resin.critical_dose_mj_cm3) process.critical_dose_mj_cm3 = *resin.critical_dose_mj_cm3;
-  if (options.critical_dose_mj_cm3) process.critical_dose_mj_cm3 = *options.critical_dose_mj_cm3;
+  if (resin.critical_dose_mj_cm3) process.full_cure_dose_mj_cm3 = *resin.critical_dose_mj_cm3;
+  if (options.full_cure_dose_mj_cm3) process.full_cure_dose_mj_cm3 = *options.full_cure_dose_mj_cm3;
   process.max_intensity_mw_cm2 = projector.max_intensity_mw_cm2;
   process.min_intensity_mw_cm2 = projector.min_intensity_mw_cm2;
   print.response = tool::response_of(projector);
@@ -78,12 +79,12 @@ Json to_json(const resin::Process& process) {
   return {{"exposure", process.exposure == resin::ExposureMode::layered ? "layered" : "continuous"},
           {"slice_um", process.slice_um},
           {"absorbance_height_um", process.absorbance_height_um},
-          {"critical_dose_mj_cm3", process.critical_dose_mj_cm3},
+          {"full_cure_dose_mj_cm3", process.full_cure_dose_mj_cm3},
           {"speed_mm_h", process.speed_mm_h},
           {"fps", frames_per_s(process)},
           {"min_intensity_mw_cm2", process.min_intensity_mw_cm2},
           {"max_intensity_mw_cm2", process.max_intensity_mw_cm2},
-          {"critical_intensity_mw_cm2", resin::critical_intensity_mw_cm2(process)},
+          {"full_cure_intensity_mw_cm2", resin::full_cure_intensity_mw_cm2(process)},
           {"phi_min", limits.phi_min},
           {"phi_max", limits.phi_max}};
 }

@@ -17,7 +17,7 @@ namespace vam::curethrough {
 struct PrintOptions {
   double speed_mm_h = resin::Process{}.speed_mm_h;
   std::optional<double> absorbance_height_um;
-  std::optional<double> critical_dose_mj_cm3;
+  std::optional<double> full_cure_dose_mj_cm3;
   std::optional<double> min_intensity_mw_cm2;
   std::optional<double> max_intensity_mw_cm2;
   std::string exposure = "continuous";

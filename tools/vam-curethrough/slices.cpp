@@ -51,7 +51,7 @@ SliceSource from_stack(const std::string& path, const resin::Response& response)
 
 void to_grey(Image& slice, const resin::Response& response) {
   parallel_for(slice.height, [&](int y) {
-    // Rows are long runs of few values, so the inverse is asked for once a run.
+    // Rows are long runs of few values, so the inverse is computed once a run.
     float* row = slice.row(y);
     float intensity = -1;
     float grey = 0;

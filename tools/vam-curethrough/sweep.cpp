@@ -106,14 +106,14 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
 
 void declare(cli::App& app, SweepOptions& options) {
   app.positional("RANGES", options.ranges,
-                 "Parameters to vary: dc, the assumed critical dose in gelation doses, and omega_max. Each is "
+                 "Parameters to vary: dc, the assumed full-cure dose in gelation doses, and omega_max. Each is "
                  "FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
   app.option("--heights", "SLICES,...", options.heights, 0,
              "Heights of the rungs of the ladder; each gap is as high as the next rung.");
   app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height.");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation dose D_gel of the working curve.");
-  app.default_is("a fifth of the critical dose, as in the paper");
+  app.default_is("a fifth of the full-cure dose, as in the paper");
   app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.").writes();
   add_print(app, options.print);
   app.group("Report and performance");
@@ -125,7 +125,7 @@ void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   resin::Study study;
   parse(options.ranges, study);
   study.process = resolve(options.print, options.slice_um).process;
-  study.gel_dose_mj_cm3 = options.gel_dose_mj_cm3.value_or(study.process.critical_dose_mj_cm3 / 5);
+  study.gel_dose_mj_cm3 = options.gel_dose_mj_cm3.value_or(study.process.full_cure_dose_mj_cm3 / 5);
   const auto points = resin::run_study(resin::graded_ladder(whole_heights(options.heights)), study);
   if (options.report != "-") io::write_text("-", csv_of(points, options.slice_um));
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);

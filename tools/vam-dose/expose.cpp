@@ -109,7 +109,7 @@ double blur_mm(const Options& options, const model::Printer& printer, const mode
   if (options.no_blur) return 0;
   const double usual = model::repeat(info.poses) ? printer.stage.turns : optics::turns_of(info);
   const double turns = options.shown.empty() ? usual : shown_turns;
-  const double seconds = options.seconds.value_or(model::seconds_of(printer.stage, turns));
+  const double seconds = options.diffusion_time_s.value_or(model::seconds_of(printer.stage, turns));
   return light::spread_mm(printer.resin.psf_mm, printer.resin.diffusion_mm2_s, seconds);
 }
 

@@ -19,7 +19,8 @@ cli::Manual manual() {
        "any.",
        "A stack that was made for a vial or part that is displaced while it is shown knows its poses (vam-formats(7), "
        "Poses), and is judged with them: the dose is then that of all its frames, which may be several turns, and what "
-       "the report says of one turn is said of all frames. --poses simulates the projections with other poses than "
+       "the report states for one turn is stated for all frames. --poses simulates the projections with other poses "
+       "than "
        "those they were computed for.",
        "A grid 'insert' in the volume of --like is an opaque object to print around (overprinting; vam-slice "
        "--insert): every ray ends at the first voxel that is at least half insert, all behind it is in shadow, and "
@@ -61,7 +62,8 @@ cli::Manual manual() {
         "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"},
        {"The dose of an aborted print, here a dry run:",
         "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout 15 "
-        "vam-print short.exr --screen null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 --missed "
+        "vam-print short.exr --display null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 "
+        "--missed "
         "0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer ended/printer.toml "
         "--like "
         "part.vdb --report given.json -o given.vdb"}},

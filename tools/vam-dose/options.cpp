@@ -28,8 +28,9 @@ void declare(cli::App& app, Options& options) {
              "Sinogram value shown at full intensity; larger values are clipped, values below "
              "projector.min_intensity_mw_cm2 are raised to it.");
   app.default_is("the maximum of the stack, zero intensity at grey 0");
-  app.option("--seconds", "S", options.seconds, cli::non_negative, "Time during which the dose diffuses.");
-  app.default_is("the time of stage.turns turns");
+  app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
+             "Time during which the dose diffuses.");
+  app.default_is("the duration of stage.turns turns").was("--seconds");
   app.flag("--exposure-plan", options.exposure_plan,
            "Determine whole turns and the fraction of full intensity that put the critical dose in the middle half of "
            "the "

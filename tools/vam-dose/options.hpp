@@ -19,7 +19,7 @@ struct Options {
   std::optional<double> size_mm;
   std::string poses;
   std::optional<double> full_scale;
-  std::optional<double> seconds;
+  std::optional<double> diffusion_time_s;
   bool no_blur = false;
   bool in_plane = false;
   std::string negative = "clip";

@@ -26,7 +26,7 @@ model::StackInfo posed(model::StackInfo info, const Options& options) {
   if (options.exposure_plan && !model::repeat(info.poses)) {
     throw Error{Fault::usage, "--exposure-plan: the poses of " + options.input +
                                   " do not return to the first one, so the print cannot be repeated turn by turn; set "
-                                  "the intensity by vam-project --gain"};
+                                  "the intensity by vam-project --multiplier"};
   }
   return info;
 }

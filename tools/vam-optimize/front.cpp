@@ -27,7 +27,7 @@ std::string front_csv(const std::vector<optimize::FrontPoint>& front, const mode
                       const model::StackInfo& info, const Options& options) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   std::ostringstream csv;
-  csv << "max_intensity,seconds,turns,pw,ver,iou,peak\n";
+  csv << "max_intensity,duration_s,turns,pw,ver,iou,peak\n";
   for (const optimize::FrontPoint& point : front) {
     csv << format_number(point.max_intensity) << ",";
     const double full_scale = options.full_scale.value_or(point.peak);

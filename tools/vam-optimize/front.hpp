@@ -13,8 +13,8 @@ namespace vam::optimize_tool {
 /// otherwise. Throws Error when the response cannot be read.
 [[nodiscard]] optimize::Show make_show(const model::Printer& printer, const Options& options);
 
-/// The columns max_intensity,seconds,turns,pw,ver,iou,peak, a line for each limit; seconds and turns are empty unless
-/// the resin is known.
+/// The columns max_intensity,duration_s,turns,pw,ver,iou,peak, a line for each limit; duration_s and turns are empty
+/// unless the resin is known.
 [[nodiscard]] std::string front_csv(const std::vector<optimize::FrontPoint>& front, const model::Printer& printer,
                                     const model::StackInfo& info, const Options& options);
 

@@ -32,12 +32,12 @@ Inputs read(const Options& options) {
       in.insert.push_back(std::move(volume));
     else if (volume.name() == "weight" && options.weights.empty())
       in.weight.push_back(std::move(volume));
-    else if (volume.name() == "tolerance" && options.tolerances.empty())
+    else if (volume.name() == "tolerance" && options.band_volume.empty())
       in.tolerance.push_back(std::move(volume));
   }
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice makes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
-  if (!options.tolerances.empty()) in.tolerance.push_back(read_own(options.tolerances, "tolerance"));
+  if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
   if (!in.insert.empty()) in.insert.front().extend_to(in.grid());  // other programs leave the void around it out
   for (const auto* volumes : {&in.weight, &in.tolerance}) {
     if (volumes->empty() || volumes->front().grid() == in.grid()) continue;

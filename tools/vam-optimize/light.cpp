@@ -19,7 +19,7 @@ namespace vam::optimize_tool {
 
 namespace {
 
-light::VialSetup vial_setup(model::Printer printer, const Scene& scene, const Options& options) {
+light::VialSetup light_of(model::Printer printer, const Scene& scene, const Options& options) {
   if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
   light::VialSetup setup =
       light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
@@ -55,7 +55,7 @@ void place_poses(Scene& scene, const model::Grid& part) {
 }
 
 light::Beam beam_of(const Scene& scene, const Options& options) {
-  if (options.geometry == "vial") return vial_setup(scene.printer, scene, options);
+  if (options.geometry == "vial") return light_of(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
   model::Printer printer = scene.printer;
   if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
@@ -122,7 +122,7 @@ double diffusion_s(const Scene& scene, const Options& options) {
   const model::PrinterStage& stage = scene.printer.stage;
   const bool once = !model::repeat(scene.poses);
   const double turns = once ? static_cast<double>(scene.frames()) / scene.turn.angles : stage.turns;
-  return options.seconds.value_or(model::seconds_of(stage, options.turns.value_or(turns)));
+  return options.diffusion_time_s.value_or(model::seconds_of(stage, options.turns.value_or(turns)));
 }
 
 namespace {
@@ -146,7 +146,7 @@ namespace {
 optimize::Scenario make_scenario(const Scene& scene, const Options& options, std::span<const Slab> inserts,
                                  const model::Deviation& by) {
   const model::DeviatingPrinter off = model::deviate(scene.printer, *options.printer_tolerances, by);
-  light::VialSetup setup = vial_setup(off.printer, scene, options);
+  light::VialSetup setup = light_of(off.printer, scene, options);
   setup.angle_offset_rad += off.angle_offset_rad;
   setup.z_scale = model::vertical_magnification(scene.printer);
   return {light::make_operator(setup, inserts), blur_px(off.printer.resin, scene, options), off.intensity};

@@ -34,7 +34,7 @@ std::vector<std::string> description() {
       {"The dose of the projections is relative: the printing threshold is (LOW + HIGH)/2 of --dose-low and "
        "--dose-high, the same number in every slice. Each slice is scaled so that this threshold lies in the middle of "
        "its process window, or so that the part's minimum dose is HIGH if the window is wider than that, or, where the "
-       "threshold dose is asked for on the surface, so that it lies in the middle half of the window. The dose is "
+       "threshold dose is prescribed on the surface, so that it lies in the middle half of the window. The dose is "
        "the sum of intensity * (angle step in radian) over all angles along the rays.",
        "Intensity is limited (--max-intensity, --turns), because the brightest pixel at full grey determines the "
        "duration of the print: unconstrained projections consist of single-pixel peaks, and their print takes some "
@@ -65,7 +65,7 @@ std::vector<std::string> description() {
        "point of entry into the resin, is part of the forward model, and intensities are those at the point of entry.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are neither part nor void. Method apg asks for the "
        "threshold dose on the surface itself, so that the print has the size of the design; --free-surface does not, "
-       "nor do other methods, whose prints are smaller by half a voxel all around. The band of --tolerance-mm around "
+       "nor do other methods, whose prints are smaller by half a voxel all around. The band of --surface-margin around "
        "the surface is unconstrained. --surface constrains surface voxels like others. A slice with only such "
        "voxels is printed if any of them is at least half covered. --weights sets the relative cost of errors.",
        "With --grey-target the target is a dose for every voxel, for graded stiffness or colour: doses (or responses) "

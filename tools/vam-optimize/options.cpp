@@ -33,8 +33,9 @@ void declare_constraints(cli::App& app, Options& options) {
              "LOW: upper bound on the dose of void voxels.");
   app.option("--dose-high", "DOSE", options.demands.window.high, cli::positive,
              "HIGH: lower bound on the dose of part voxels.");
-  app.option("--tolerance-mm", "MM", options.tolerance_mm, cli::non_negative,
+  app.option("--surface-margin", "MM", options.surface_margin_mm, cli::non_negative,
              "Leave voxels within this distance of the part's surface unconstrained.");
+  app.was("--tolerance-mm");
   app.flag(
       "--free-surface", options.demands.free_surface,
       readers("--free-surface") +
@@ -52,10 +53,10 @@ void declare_constraints(cli::App& app, Options& options) {
   app.was("--grey");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
              readers("--band", ", --grey-target") + "largest deviation of the resin's response from the target.");
-  app.option("--tolerances", "FILE", options.tolerances,
+  app.option("--band-volume", "FILE", options.band_volume,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
       .reads();
-  app.default_is("the grid 'tolerance' of the target file, if present");
+  app.default_is("the grid 'tolerance' of the target file, if present").was("--tolerances");
   app.option("--resin-response", "CURVE", options.response,
              readers("--resin-response", ", --grey-target") +
                  "response of the resin to a dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
@@ -71,8 +72,8 @@ void declare_stopping(cli::App& app, Options& options) {
   app.option("--until", "CONDITIONS", options.until,
              "Stop when all conditions hold, e.g. 'ver=0,pw>=0.1'. Figures of merit: " +
                  join(optimize::SliceFigures::names(), ", ") + ".");
-  app.default_is(std::string("none; with --method auto, without --iterations or with --shortest, ") +
-                 optimize::automatic_until)
+  app.default_is(std::string(optimize::automatic_until) +
+                 " with --method auto, with --shortest or without --iterations; else no condition")
       .not_in_job();
   app.option("--patience", "N", options.limits.patience, {0, 1000000},
              "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
@@ -107,7 +108,7 @@ void declare_parameters(cli::App& app, Options& options) {
   app.was("--max-light");
   app.option("--turns", "N", options.turns, cli::positive,
              "Duration of the print, in turns at full grey: sets --max-intensity from resin.critical_dose_mj_cm3, "
-             "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --seconds.");
+             "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --diffusion-time.");
   app.flag("--shortest", options.shortest,
            readers("--max-intensity") + "the shortest print that meets the conditions of --until: begin with " +
                format_number(optimize::shortest_of_even) + " times the even intensity and raise the maximum by " +
@@ -148,12 +149,12 @@ void declare_beam(cli::App& app, Options& options) {
              "for parallel beams; or neglected.");
   app.was("--absorption");
   app.flag("--no-blur", options.no_blur, "Do not compensate for point spread and diffusion.");
-  app.option("--seconds", "S", options.seconds, cli::non_negative, "Time during which the dose diffuses.");
-  app.default_is("the time of stage.turns turns");
+  app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
+             "Time during which the dose diffuses.");
+  app.default_is("the duration of stage.turns turns").was("--seconds");
   app.group("Grey levels of the projector");
   app.option("--bits", "N", options.bits, {1, 16},
-             "Quantise intensities to the grey levels of this bit depth, through projector.response.")
-      .default_is("none");
+             "Quantise intensities to the grey levels of this bit depth, through projector.response.");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
       .needs({"--bits"});
   app.default_is("the largest of all projections").was("--peak");

@@ -23,8 +23,8 @@ struct Options {
   std::optional<double> helix_mm;
   std::string wobble;
   optimize::Demands demands;  // target constraints
-  double tolerance_mm = 0;
-  std::string weights, tolerances;
+  double surface_margin_mm = 0;
+  std::string weights, band_volume;
   std::string response = "logistic";
   double softness = 0.05;
   std::optional<int> iterations;  // stopping criteria
@@ -46,7 +46,7 @@ struct Options {
   std::string negative = "clip";
   std::string absorption_model = "exact";
   bool no_blur = false;
-  std::optional<double> seconds;
+  std::optional<double> diffusion_time_s;
   std::optional<int> bits;  // the projector's grey levels
   std::optional<double> full_scale;
   bool error_feedback = false;

@@ -11,7 +11,7 @@
 
 namespace vam::optimize_tool {
 
-/// Warnings on stderr; the files of --trace and --report where they are asked for.
+/// Warnings on stderr; the files of --trace and --report where they are requested.
 void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials,
              const model::Printer& printer, const model::StackInfo& info, const Options& options);
 

@@ -84,8 +84,8 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
     throw Error{Fault::usage,
                 "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
   }
-  if (options.demands.grey && (options.tolerance_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --tolerance-mm and --surface"};
+  if (options.demands.grey && (options.surface_margin_mm > 0 || options.demands.surface)) {
+    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --surface-margin and --surface"};
   }
 }
 

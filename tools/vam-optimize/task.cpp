@@ -5,7 +5,6 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/settings/printer_file.hpp"
-#include "optimize/methods/tolerant.hpp"
 #include "score/exposure.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -64,7 +63,7 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
   source.insert = padded(in.insert, scene, 0);
   source.weight = padded(in.weight, scene, 1);
   source.tolerance = padded(in.tolerance, scene, static_cast<float>(options.demands.band));
-  source.band_px = options.tolerance_mm / in.grid().voxel_mm;
+  source.band_px = options.surface_margin_mm / in.grid().voxel_mm;
   return source;
 }
 
@@ -103,8 +102,8 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
   task.make = [&](double max_intensity) {
     optimize::MethodOptions how = options.how;
     how.max_intensity = max_intensity;
-    if (options.printer_tolerances) return optimize::make_tolerant(how);
-    return optimize::make_method(options.method, how);
+    const optimize::MethodEntry& method = optimize::method_entry(options.method);
+    return (options.printer_tolerances ? method.make_tolerant : method.make)(how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
   if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);

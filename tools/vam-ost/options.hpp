@@ -25,7 +25,7 @@ struct Options {
   std::string mesh, projections;
   bool live = false;
   double every_deg = 360;
-  std::string reference, until, log, page;
+  std::string target, until, log, page;
   std::string report;
   cli::PrinterOptions printer;
 };

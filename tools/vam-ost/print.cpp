@@ -37,9 +37,9 @@ Print::Print(const cli::App& app, const Options& options, const model::PrinterCa
       absorbs_(camera.absorption_per_mm > 0),
       isovalue_(isovalue_of(options)),
       rules_{options.pieces_mm3, {}} {
-  if (!options.reference.empty()) reference_ = dense(io::read_volume(options.reference, ""));
+  if (!options.target.empty()) target_ = dense(io::read_volume(options.target, ""));
   constexpr double margin_mm = 1;
-  if (isovalue_ && reference_) rules_.inside = metrology::neighbourhood(*reference_, margin_mm);
+  if (isovalue_ && target_) rules_.inside = metrology::neighbourhood(*target_, margin_mm);
 }
 
 void Print::keep(model::Volume& volume) {
@@ -72,7 +72,7 @@ void Print::write(const model::Volume& volume) const {
     if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
   }
   if (options_.projections.empty()) return;
-  const auto sheet = metrology::projection_sheet(volume, isovalue_, reference_ ? &*reference_ : nullptr);
+  const auto sheet = metrology::projection_sheet(volume, isovalue_, target_ ? &*target_ : nullptr);
   plot::ImageFigure figure;
   figure.title = "Sum projections";
   for (std::size_t i = 0; i < sheet.images.size(); ++i)
@@ -86,8 +86,8 @@ void Print::write(const model::Volume& volume) const {
 }
 
 std::optional<metrology::Cured> Print::state(const model::Volume& volume) const {
-  if (!isovalue_ || !reference_) return std::nullopt;
-  return metrology::cured(volume, *isovalue_, *reference_);
+  if (!isovalue_ || !target_) return std::nullopt;
+  return metrology::cured(volume, *isovalue_, *target_);
 }
 
 std::optional<metrology::BodyCount> Print::bodies() const { return isovalue_ ? std::optional(bodies_) : std::nullopt; }

@@ -37,7 +37,7 @@ class Print {
   bool absorbs_;
   std::optional<double> isovalue_;
   metrology::BodyRules rules_;
-  std::optional<model::Volume> reference_;
+  std::optional<model::Volume> target_;
   metrology::BodyCount bodies_;
 };
 

@@ -27,7 +27,7 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const Frames frames = frames_of(light, schedule);
-  const auto tally = show(frames, static_cast<float>(options.gain / peak), projector, app.given("--bits"), *sink);
+  const auto tally = show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), *sink);
   Json report = figures(frames, projector.bits, peak, tally);
   if (!differences.empty()) report["printer_differences"] = differences;
   io::write_report(options.report, "vam-project/1", report);
@@ -40,7 +40,7 @@ void write_slices(const cli::App& app, const Options& options, const model::Prin
                              options.stack};
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
-  const auto scale = static_cast<float>(options.gain / options.full_scale.value_or(1));
+  const auto scale = static_cast<float>(options.multiplier / options.full_scale.value_or(1));
   const auto tally = show(frames, scale, printer.projector, app.given("--bits"), *sink);
   io::write_report(options.report, "vam-project/1", slice_figures(frames, options, printer.projector, tally));
 }

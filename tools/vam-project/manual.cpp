@@ -35,7 +35,8 @@ cli::Manual manual() {
        "linearly to rows, or averaged where they are finer than rows. Columns are those of vam-resample, which places "
        "the axis at projector.axis_column; --column-offset shifts them. Intensity outside the projector's columns or "
        "rows is an error. The orientation is applied last.",
-       "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times --gain. "
+       "Grey: the value --full-scale (default: the maximum of the stack) is shown at full intensity, times "
+       "--multiplier. "
        "Each pixel is set to the grey level whose intensity, by the measured response (projector.response) or else the "
        "linear response from min_intensity to max_intensity, is nearest to the required one.",
        "Slices of continuous stereolithography (vam-curethrough correct) are shown one after the other, each once, "

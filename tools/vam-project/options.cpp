@@ -1,6 +1,7 @@
 #include "vam-project/options.hpp"
 
 #include "base/error.hpp"
+#include "device/open/display.hpp"
 #include "device/open/light.hpp"
 #include "printer.hpp"
 
@@ -38,12 +39,14 @@ void add_patterns(cli::App& app, PatternOptions& options) {
   app.group("Test patterns (instead of a sinogram)");
   app.option("--pattern", "NAME", options.plan.name,
              "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) "
-             "or row (a line at z = 0, for vam-calibrate beam).");
+             "or row (a line at z = 0, for vam-calibrate beam).")
+      .form();
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
       .was("--level");
-  app.option("--pitch", "PX", options.plan.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.");
-  app.option("--width", "PX", options.plan.width_px, {1, 100000}, "Width of lines.");
+  app.option("--pitch", "PX", options.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
+      .default_is("16; 4 for sweep");
+  app.option("--width", "PX", options.width_px, {1, 100000}, "Width of lines.").default_is("1; 4 for sweep");
   app.option("--steps", "N", options.plan.steps, {2, 65536}, "Levels of the ramp.");
   app.option("--hold", "S", options.hold_s, {0.001, 86400}, "Duration of each frame.");
   app.flag("--repeat", options.repeat, "Repeat from the first frame, until a signal.");
@@ -79,8 +82,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Value that is shown at full intensity.")
       .was("--peak")
       .default_is("maximum of the stack, for slices 1");
-  app.option("--gain", "FACTOR", options.gain, cli::positive,
+  app.option("--multiplier", "FACTOR", options.multiplier, cli::positive,
              "Factor on the intensity; values above full intensity are clipped.")
+      .was("--gain")
       .was("--intensity");
   add_live(app, options);
   add_patterns(app, options.pattern);
@@ -101,12 +105,13 @@ void refuse_live(const cli::App& app, const std::string& output) {
   for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--missed",
                            "--missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;
-    throw Error{Fault::usage, std::string(flag) + ": applies to live output, but -o names no screen: " +
-                                  (output == "-" ? "standard output" : output)};
+    throw Error{Fault::usage, std::string(flag) + ": applies to a display, but -o names " +
+                                  (output == "-" ? "standard output" : output) + "; give " + device::display_devices()};
   }
 }
 
 model::Printer settle(Options& options) {
+  optics::set_lines(options.pattern.plan, options.pattern.pitch_px, options.pattern.width_px);
   model::Printer printer = tool::load_printer(options.printer);
   printer.projector.fps = options.fps.value_or(printer.projector.fps);
   printer.projector.bits = options.bits.value_or(printer.projector.bits);

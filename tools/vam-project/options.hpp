@@ -29,6 +29,7 @@ struct LiveOptions {
 
 struct PatternOptions {
   optics::PatternPlan plan;
+  std::optional<int> pitch_px, width_px;
   double hold_s = 0.5;
   bool repeat = false;
 };
@@ -41,7 +42,7 @@ struct Options {
   std::string orientation;
   double column_offset = 0;
   double row_offset = 0;
-  double gain = 1;
+  double multiplier = 1;
   cli::PrinterOptions printer;
   bool accept_printer = false;
   bool only_plan = false;

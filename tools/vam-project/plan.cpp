@@ -92,7 +92,7 @@ void print_plan(const Options& options, const model::Printer& printer) {
   require_printer(options, info, printer);
   const int turns = turns_to_show(options, info, printer);
   const double full_scale =
-      options.full_scale.value_or(read_light(options, reader, printer.projector).peak) / options.gain;
+      options.full_scale.value_or(read_light(options, reader, printer.projector).peak) / options.multiplier;
   const int frames = options.live.frames_per_turn.value_or(info.height);
   const model::Projector& projector = printer.projector;
   say("frames", std::to_string(frames) + " a turn, " + std::to_string(projector.columns) + " x " +

@@ -27,7 +27,7 @@ void play_slices(const cli::App& app, const Options& options, const model::Print
                  Live& live) {
   const Frames frames = slices_in_time(app, options, printer, slices);
   LiveSink sink(live, [&] { return live.play_through(1 / frames.fps, false); });
-  const auto scale = static_cast<float>(options.gain / options.full_scale.value_or(1));
+  const auto scale = static_cast<float>(options.multiplier / options.full_scale.value_or(1));
   const auto tally = show(frames, scale, printer.projector, app.given("--bits"), sink);
   Json report = slice_figures(frames, options, printer.projector, tally);
   write_report(options, report, sink.tally);
@@ -56,7 +56,8 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const auto schedule = optics::frame_schedule(frames, 360, 1);
   LiveSink sink(live, [&] { return live.play(printer.stage.speed_deg_s, turns); });
   const Frames shown = frames_of(light, schedule);
-  const auto tally = show(shown, static_cast<float>(options.gain / peak), printer.projector, app.given("--bits"), sink);
+  const auto tally =
+      show(shown, static_cast<float>(options.multiplier / peak), printer.projector, app.given("--bits"), sink);
   Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;

@@ -19,7 +19,7 @@ namespace {
 void warn_clipped(const resin::LightTally& tally) {
   if (tally.clipped == 0) return;
   warn(format_number(100.0 * static_cast<double>(tally.clipped) / static_cast<double>(tally.lit), 3) +
-       " % of the lit pixels exceed full intensity and were clipped; reduce --gain or increase --full-scale");
+       " % of the lit pixels exceed full intensity and were clipped; reduce --multiplier or increase --full-scale");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Frames {
   int count = 0;
   double fps = 0;       // frame n belongs to the time n / fps
   double step_deg = 0;  // and to the stage angle n * step_deg
-  /// The light of frame n, in the memory of a former one. Asked for once for every n: in order, or by many threads at
+  /// The light of frame n, in the memory of a former one. Called once for every n: in order, or by many threads at
   /// once.
   std::function<Image(int n, Image former)> light;
   bool in_order = false;

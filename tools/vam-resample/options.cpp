@@ -12,7 +12,8 @@ void declare(cli::App& app, Options& options) {
   app.choice("--interpolation", options.interpolation, {"linear", "cubic"}, "Interpolation across columns and angles.");
   app.flag("--explain", options.explain,
            "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is "
-           "read.");
+           "read.")
+      .form();
   app.option("--row", "N", options.row, {0, 65535},
              "The exact rays of this row of the projector, from 0 at the top, instead of horizontal ones: "
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")

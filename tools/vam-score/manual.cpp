@@ -11,9 +11,9 @@ cli::Manual manual() {
        "writable circle, f the dose: VER = #{V: f >= min_G f} / (#G + #V). PW, the process window, = min_G f - max_V "
        "f; where it is positive some threshold dose prints the part exactly. IPDR = max_G f - min_G f. CV = sigma_G / "
        "mean_G. IoU = |print and part| / |print or part| at the threshold where it is best.",
-       "The last line is the verdict in words: whether the part will print (PW >= 0), by what margin, of how many "
-       "voxels that is said, what the figures are with the voxels that the surface cuts, and the seconds of the print "
-       "if the resin is known. Only --require decides on the exit status.",
+       "The last line is the verdict in words: whether the part will print (PW >= 0), by what margin, from how many "
+       "voxels, the figures with the voxels that the surface cuts included, and the duration of the print if the resin "
+       "is known. Only --require decides on the exit status.",
        "PW and IPDR are fractions of the largest dose, or in the dose's unit with --absolute. The trimmed figures take "
        "the ALPHA/2 and 1 - ALPHA/2 percentiles for the extremes, to limit the influence of single voxels.",
        "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "

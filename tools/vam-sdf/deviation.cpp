@@ -1,4 +1,4 @@
-// The plain form of vam-sdf: print against reference.
+// The plain form of vam-sdf: print against design.
 #include "metrology/compare/deviation.hpp"
 
 #include <algorithm>
@@ -23,19 +23,19 @@ namespace vam::sdf_tool {
 
 namespace {
 
-solid::Alignment align(const Options& options, const model::TriangleSoup& print,
-                       const model::TriangleSoup& reference_mesh, const solid::Surface& reference) {
+solid::Alignment align(const Options& options, const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
+                       const solid::Surface& design) {
   solid::AlignOptions how;
   how.with_scale = options.scale;
-  if (options.align == "full") return solid::align(print, reference_mesh, reference, how);
-  if (options.align == "icp") return solid::refine(print, reference, how);
+  if (options.align == "full") return solid::align(print, design_mesh, design, how);
+  if (options.align == "icp") return solid::refine(print, design, how);
   solid::Alignment as_it_is;
   as_it_is.converged = true;
   return as_it_is;
 }
 
 double figure(const metrology::Comparison& found, const std::string& name) {
-  const auto& d = found.print_to_reference;
+  const auto& d = found.print_to_design;
   if (name == "rms") return d.rms_mm;
   if (name == "mean") return d.mean_mm;
   if (name == "sigma") return d.sigma_mm;
@@ -45,15 +45,15 @@ double figure(const metrology::Comparison& found, const std::string& name) {
   return 100 * d.rms_mm / found.largest_dimension_mm;  // rms_percent
 }
 
-void write_coloured(const std::string& path, const model::TriangleSoup& print, const solid::Surface& reference,
+void write_coloured(const std::string& path, const model::TriangleSoup& print, const solid::Surface& design,
                     double limit_mm, const std::string& history) {
   model::VertexData vertices;
-  vertices.quality = reference.signed_distances(print.points);
+  vertices.quality = design.signed_distances(print.points);
   for (const float distance : vertices.quality) {
     vertices.colours.push_back(metrology::blue_white_red(static_cast<double>(distance), limit_mm));
   }
   io::write_ply(path, print, vertices,
-                {history, "distance in mm, positive outside the reference; colours -" + format_number(limit_mm, 4) +
+                {history, "distance in mm, positive outside the design; colours -" + format_number(limit_mm, 4) +
                               " (blue) to +" + format_number(limit_mm, 4) + " mm (red)"});
 }
 
@@ -64,11 +64,11 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
   const std::string& path = options.histogram;
   if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
     plot::Plot plot;
-    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_reference.rms_mm, 3) + " mm";
-    plot.x = {"distance to the reference / mm (positive: outside)", -limit_mm, limit_mm};
+    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_design.rms_mm, 3) + " mm";
+    plot.x = {"distance to the design / mm (positive: outside)", -limit_mm, limit_mm};
     plot.y.label = "share of the area / %";
     plot.series.push_back({"", histogram.edges, histogram.percent, plot::paint::blue, plot::SeriesStyle::bars});
-    plot.markers.push_back({0, "reference", plot::paint::grey});
+    plot.markers.push_back({0, "design", plot::paint::grey});
     return io::write_png(path, plot::draw(plot));
   }
   std::string text = "from_mm,to_mm,area_percent\n";
@@ -77,6 +77,20 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
             format_number(histogram.percent[i]) + "\n";
   }
   io::write_text(path, text);
+}
+
+void note_figures(const metrology::Comparison& found) {
+  for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
+    note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
+         format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
+  }
+}
+
+Json facts(const Options& options, const solid::Alignment& alignment) {
+  return {{"method", options.align},
+          {"scale", alignment.transform.scale},
+          {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
+          {"matrix", alignment.transform.matrix()}};
 }
 
 }  // namespace
@@ -90,7 +104,7 @@ void deviation(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
-  const model::TriangleSoup reference_mesh = read_surface(options.reference, options.reference_isovalue);
+  const model::TriangleSoup design_mesh = read_surface(options.design, options.design_isovalue);
   std::optional<metrology::BodyCount> bodies;
   model::TriangleSoup print = read_print(options.print, isovalue, options.pieces_mm3, bodies);
   if (bodies && bodies->dropped > 0) {
@@ -98,29 +112,23 @@ void deviation(const cli::App& app, const Options& options) {
          " mm3, the largest " + format_number(bodies->largest_dropped_mm3, 3) + " mm3");
   }
 
-  const solid::Surface reference(reference_mesh);
-  const solid::Alignment alignment = align(options, print, reference_mesh, reference);
+  const solid::Surface design(design_mesh);
+  const solid::Alignment alignment = align(options, print, design_mesh, design);
   if (!alignment.converged)
     warn("alignment: not converged after " + std::to_string(alignment.iterations) + " iterations");
   for (auto& point : print.points) point = alignment.transform(point);
-  const metrology::Comparison found = metrology::compare(print, reference_mesh, reference, options.samples);
+  const metrology::Comparison found = metrology::compare(print, design_mesh, design, options.samples);
 
-  const auto& ends = found.print_to_reference.percentiles_mm;
+  const auto& ends = found.print_to_design.percentiles_mm;
   const double limit_mm =
       options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
-  if (!options.output.empty()) write_coloured(options.output, print, reference, limit_mm, app.history());
+  if (!options.output.empty()) write_coloured(options.output, print, design, limit_mm, app.history());
   if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
   Json figures = metrology::to_json(found);
-  figures["alignment"] = {{"method", options.align},
-                          {"scale", alignment.transform.scale},
-                          {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
-                          {"matrix", alignment.transform.matrix()}};
+  figures["alignment"] = facts(options, alignment);
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);
   io::write_report(options.report, "vam-sdf/1", figures);
-  for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
-    note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
-         format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
-  }
+  note_figures(found);
   const auto failed = model::unmet(conditions, [&](const std::string& name) { return figure(found, name); });
   if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
 }

@@ -30,7 +30,7 @@ Image read_heights(const HeightOptions& options) {
   Image heights =
       levels || stack
           ? io::read_field(options.image)
-          : solid::height_map(read_surface(options.image, options.reference_isovalue), options.pixel_mm).heights_mm;
+          : solid::height_map(read_surface(options.image, options.design_isovalue), options.pixel_mm).heights_mm;
   for (float& h : heights.values) {
     const bool lost = levels && h == 0;
     const double mm = static_cast<double>(h) * unit_mm;
@@ -45,7 +45,7 @@ metrology::EmbossAlign align_of(const std::string& word) {
   return word == "icp" ? metrology::EmbossAlign::near : metrology::EmbossAlign::any_turn;
 }
 
-// The ends of the section: as asked, or down the middle column [RAY21 fig 8].
+// The ends of the section: as given, or down the middle column [RAY21 fig 8].
 std::vector<double> line_of(const HeightOptions& options, const Image& image) {
   if (options.line.empty()) return {0.5 * (image.width - 1), 0, 0.5 * (image.width - 1), image.height - 1.0};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -95,7 +95,7 @@ void draw_section(const std::string& path, const metrology::Section& section) {
 void height(const HeightOptions& options) {
   std::vector<model::Condition> conditions;
   if (!options.require.empty()) conditions = model::parse_conditions(options.require, metrology::emboss_names());
-  const model::TriangleSoup design = read_surface(options.design, options.reference_isovalue);
+  const model::TriangleSoup design = read_surface(options.design, options.design_isovalue);
   const Image heights = read_heights(options);
   const std::vector<double> line = line_of(options, heights);
   const metrology::Relief print = metrology::levelled(heights, options.pixel_mm);

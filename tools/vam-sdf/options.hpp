@@ -14,14 +14,14 @@ namespace vam::sdf_tool {
 struct Options {
   std::string command;
   std::string print = "-";
-  std::string reference;
+  std::string design;
   std::string output;
   std::string align = "full";
   bool scale = false;
   std::optional<double> isovalue;
   std::string resin_record;
   std::optional<double> pieces_mm3;
-  double reference_isovalue = 0.5;
+  double design_isovalue = 0.5;
   int samples = 200000;
   std::string histogram;
   int bins = 101;
@@ -38,7 +38,7 @@ struct HeightOptions {
   double full_mm = 1;
   std::optional<double> lowest_mm;
   std::string align = "full";
-  double reference_isovalue = 0.5;
+  double design_isovalue = 0.5;
   std::string output;
   std::vector<double> line;
   std::string plot;
@@ -56,7 +56,7 @@ struct HeightOptions {
                                              std::optional<double> least_mm3,
                                              std::optional<metrology::BodyCount>& bodies);
 
-/// Print against reference.
+/// Print against design.
 void deviation(const cli::App& app, const Options& options);
 
 /// Height image against design.

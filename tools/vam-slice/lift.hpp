@@ -8,7 +8,7 @@
 
 namespace vam::slice_tool {
 
-/// By how much the part is lifted along z, in whole voxels of the stretched target: to the height asked for; to that
+/// By how much the part is lifted along z, in whole voxels of the stretched target: to the requested height; to that
 /// with least smear by rays that climb; or, unless it keeps its origin, as little as brings it into the image. Throws
 /// Fault::usage for a height that is none.
 [[nodiscard]] double lift_mm(const Options& options, const model::Printer& printer, const solid::Part& part,

@@ -14,7 +14,8 @@ void declare(cli::App& app, Options& options) {
   app.positional("PART", options.input, "Mesh, or folder of numbered images.").reads({"--shape"});
   cli::add_output(app, options.output);
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
-             "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.");
+             "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
+      .form();
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
              "Inside test: exact, for closed meshes; by vote, for meshes with holes; or chosen by the mesh.");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");

@@ -8,7 +8,7 @@
 
 namespace vam::slice_tool {
 
-/// The part, without the insert where --cut-insert says so. The volume must outlive what is returned.
+/// The part, without the insert with --cut-insert. The volume must outlive what is returned.
 [[nodiscard]] solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options);
 
 /// For --report. Warns of an insert that misses the part or that takes up room of it.

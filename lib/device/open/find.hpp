@@ -8,7 +8,7 @@
 
 namespace vam::device {
 
-/// Stages, cameras, displays and light engines; nothing moves, shines or is told anything. `ports` are serial ports
+/// Stages, cameras, displays and light engines; nothing moves, shines or receives a command. `ports` are serial ports
 /// besides those that the system lists.
 [[nodiscard]] std::vector<Found> find_devices(const std::vector<std::string>& ports);
 

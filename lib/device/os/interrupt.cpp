@@ -50,7 +50,7 @@ void check_interrupted() {
 void end_with_parent() {
   const pid_t parent = getppid();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != parent || parent == 1) raise(SIGTERM);  // it ended before we asked
+  if (getppid() != parent || parent == 1) raise(SIGTERM);  // it ended before this call
 }
 
 void interruptible(const std::function<void()>& body) {
@@ -59,7 +59,7 @@ void interruptible(const std::function<void()>& body) {
   int signal = 0;
   try {
     body();
-    signal = noted;  // came after the last wait: the work is done and safe, but the caller asked for an end
+    signal = noted;  // came after the last wait: the work is done and safe, but the caller requested an end
   } catch (const Interrupted& interrupted) {
     signal = interrupted.signal;
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr double light_lead_s = 0.1;  // the engine's own time to come on
 constexpr double told_late_s = 0.002;
 
-// Black and dark on every way out, and said so: who reads the log must not take the last image for still on.
+// Black and dark on every way out, and logged: who reads the log must not take the last image for still on.
 class DarkOnExit {
  public:
   DarkOnExit(Display& display, LightEngine* light, const std::function<void(const FlipRecord&)>& log)

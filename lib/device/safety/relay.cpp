@@ -101,7 +101,7 @@ void Relay::beat() {
   for (std::string line = answer(1e-9); !line.empty(); line = answer(1e-9)) {
     if (line != "closed") {
       throw Error{Fault::protocol, port_->name() + ": relay has cut the lamp: no heartbeat reached it for " +
-                                       format_number(1000 * limit_s_) + " ms, or it was told to open"};
+                                       format_number(1000 * limit_s_) + " ms, or it was commanded to open"};
     }
     answered_s_ = now_s;
   }

@@ -150,7 +150,7 @@ class GcsStage final : public Stage {
     stop_order_.beat();
   }
 
-  // HLP? lists the commands, one "NAME - what" a line; asked once.
+  // HLP? lists the commands, one "NAME - what" a line; queried once.
   bool has(const std::string& command) {
     if (commands_.empty()) {
       for (const auto& line : link_.ask("HLP?").lines) commands_ += "\n" + line;

@@ -66,8 +66,8 @@ class GrblStage final : public Stage {
     idle_since_s_.reset();
   }
 
-  // "$H" answers ok only when it is done. Reports pause meanwhile, so the one that is asked for at each look comes at
-  // its end; a board that idles and has not said ok is not going to.
+  // "$H" answers ok only when it is done. Reports pause meanwhile, so the one that is requested at each look comes at
+  // its end; a board that idles and has not answered ok is not going to.
   bool homed() override {
     if (!homing_) return true;
     stop_order_.beat();

@@ -9,7 +9,7 @@
 
 namespace vam::device {
 
-/// A stage that moves is asked at least so often: a good answer tells the guardian that all is well.
+/// A stage that moves is queried at least this often: a good answer reports to the guardian that all is well.
 constexpr double heartbeat_s = 0.1;
 
 struct SpinPlan {
@@ -46,7 +46,7 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
                          const std::function<void(const AngleSample&)>& report = {});
 
 /// Turns to an absolute angle, or by an angle, and waits until the stage stands. Throws Fault::data when an
-/// absolute angle is asked of a stage that is not referenced.
+/// absolute angle is commanded of a stage that is not referenced.
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s);
 
 /// Stops the stage and waits until it stands.

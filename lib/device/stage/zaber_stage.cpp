@@ -39,7 +39,7 @@ constexpr std::array flags_known{Flag{"FD", "driver disabled: too hot or too hig
                                  Flag{"FE", "limit sensor not reached or faulty"},
                                  Flag{"WL", "unexpected limit sensor; the stage may have slipped"}};
 
-// Whether it is a fault, and not a remark: the first letter says so, but for the limit sensor.
+// Whether it is a fault, and not a remark: the first letter distinguishes them, but for the limit sensor.
 bool is_fault(const std::string& flag) { return flag.front() == 'F' || flag == "WL"; }
 
 std::string in_words(const std::string& flag) {
@@ -53,7 +53,7 @@ class ZaberStage final : public Stage {
  public:
   ZaberStage(std::unique_ptr<Port> port, Clock& clock, const ZaberSettings& settings, Guardian* guardian)
       : link_(std::move(port)), clock_(clock), settings_(settings), stop_order_(guardian) {
-    link_.port().write("\n");  // ends what a former user left half said
+    link_.port().write("\n");  // ends a command that a former user left incomplete
     firmware_ = number("get version");
     if (settings_.steps_per_deg == 0) settings_.steps_per_deg = cycle_steps() / 360;
   }
@@ -89,7 +89,7 @@ class ZaberStage final : public Stage {
     return caps;
   }
 
-  // The driver of a device that has found a fault stays off until it is told; firmware 6 does not know the command.
+  // The driver of a device that has found a fault stays off until it is enabled; firmware 6 does not know the command.
   void enable() override {
     const Reply reply = ask("driver enable");
     if (!reply.accepted && reply.data != "BADCOMMAND") require(reply, "driver enable");

@@ -3,7 +3,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -66,24 +68,40 @@ std::string table_beside(const CalibrationRecord& record, const char* file) {
   return path;
 }
 
-void take_over(model::Printer& printer, const CalibrationRecord& record) {
-  const std::string scan = record.json->at("scan");
-  if (scan == "edges") {
-    printer.projector.axis_column = record.value("axis_column");
-    printer.vial.radius_mm = record.value("radius");
-  } else if (scan == "response") {
-    printer.projector.response = table_beside(record, "response");
-  } else if (scan == "flat") {
-    printer.camera.flat = beside(record, "flat");
-  } else if (scan == "axis") {
-    printer.camera.axis_column = record.value("axis_column");
-    if (record.json->at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
-  } else if (scan == "lag") {
-    printer.camera.latency_ms = record.value("camera_latency");
-  } else if (scan == "latency") {
-    printer.projector.latency_ms = record.value("latency");
-  }
-}
+/// A scan of vam-calibrate: what its record sets in the printer, and whether that is of one vial only.
+struct Scan {
+  const char* name;
+  bool of_vial;
+  void (*take_over)(model::Printer& printer, const CalibrationRecord& record);
+};
+
+// In the order of precedence.
+constexpr Scan scans[] = {
+    {"edges", true,
+     [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.projector.axis_column = record.value("axis_column");
+       printer.vial.radius_mm = record.value("radius");
+     }},
+    {"response", false,
+     [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.projector.response = table_beside(record, "response");
+     }},
+    {"flat", false,
+     [](model::Printer& printer, const CalibrationRecord& record) { printer.camera.flat = beside(record, "flat"); }},
+    {"beam", false, [](model::Printer&, const CalibrationRecord&) {}},  // for people
+    {"axis", true,
+     [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.camera.axis_column = record.value("axis_column");
+       if (record.json->at("values").contains("tilt")) printer.camera.tilt_deg = record.value("tilt");
+     }},
+    {"latency", false,
+     [](model::Printer& printer, const CalibrationRecord& record) {
+       printer.projector.latency_ms = record.value("latency");
+     }},
+    {"lag", false, [](model::Printer& printer, const CalibrationRecord& record) {
+       const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
+       printer.camera.lag_ms = record.value(former ? "camera_latency" : "camera_lag");
+     }}};
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
 void require_possible(model::Printer printer, const CalibrationRecord& record) {
@@ -106,8 +124,12 @@ void require_possible(model::Printer printer, const CalibrationRecord& record) {
 }  // namespace
 
 const std::vector<std::string>& calibration_scans() {
-  static const std::vector<std::string> scans{"edges", "response", "flat", "beam", "axis", "latency", "lag"};
-  return scans;
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Scan& scan : scans) all.emplace_back(scan.name);
+    return all;
+  }();
+  return names;
 }
 
 std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,
@@ -185,9 +207,11 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   if (instrument != calibration.instrument) {
     return "is of instrument '" + instrument + "', this is '" + calibration.instrument + "'; run vam-calibrate";
   }
-  const std::string scan = json.value("scan", "");
+  const std::string name = json.value("scan", "");
   const std::string vial = json.value("vial", "");
-  if ((scan == "edges" || scan == "axis") && vial != calibration.vial) {
+  const bool of_vial = std::any_of(std::begin(scans), std::end(scans),
+                                   [&](const Scan& scan) { return scan.of_vial && name == scan.name; });
+  if (of_vial && vial != calibration.vial) {
     return "is of vial '" + vial + "', this is '" + calibration.vial + "'; run vam-calibrate";
   }
   if (json.value("status", "") == "fail") return "is of a scan that failed; run vam-calibrate";
@@ -201,16 +225,16 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
 }
 
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s) {
-  for (const auto& scan : calibration_scans()) {
-    const auto record = current_record(calibration, scan);
+  for (const Scan& scan : scans) {
+    const auto record = current_record(calibration, scan.name);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {
       throw Error{Fault::data, record->path + ": " + why + ", or disable records by --set calibration.folder="};
     }
     try {
-      take_over(printer, *record);
+      scan.take_over(printer, *record);
     } catch (const Json::exception&) {
-      throw Error{Fault::data, record->path + ": incomplete record of " + scan + "; run vam-calibrate"};
+      throw Error{Fault::data, record->path + ": incomplete record of " + scan.name + "; run vam-calibrate"};
     }
     require_possible(printer, *record);
   }

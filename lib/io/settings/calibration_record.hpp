@@ -15,7 +15,7 @@
 
 namespace vam::io {
 
-/// edges, response, flat, beam, axis, latency.
+/// edges, response, flat, beam, axis, latency, lag: the order in which their records are taken over.
 [[nodiscard]] const std::vector<std::string>& calibration_scans();
 
 /// The path of a new file that belongs to the record, "FOLDER/cal-INSTRUMENT-SCAN-UTC" + ending. Makes the folder.
@@ -50,7 +50,7 @@ struct CalibrationRecord {
 
 /// Takes over what the current records say: projector.axis_column and vial.radius_mm (edges), projector.response
 /// (response), projector.latency_ms (latency), camera.axis_column and tilt_deg (axis), camera.flat (flat),
-/// camera.latency_ms (lag). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
+/// camera.lag_ms (lag). The beam is for people. Nothing without calibration.folder. Throws Fault::data with the
 /// first objection.
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s);
 

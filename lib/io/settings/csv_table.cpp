@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -22,7 +23,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-// Where each column asked for stands in the header.
+// Where each requested column stands in the header.
 std::vector<std::size_t> places_of(const std::vector<std::string>& header, const std::vector<std::string>& columns,
                                    const std::string& place) {
   std::vector<std::size_t> places;
@@ -37,6 +38,16 @@ std::vector<std::size_t> places_of(const std::vector<std::string>& header, const
   return places;
 }
 
+void rename(std::vector<std::string>& header, const std::map<std::string, std::string>& former,
+            const std::string& place) {
+  for (std::string& name : header) {
+    const auto found = former.find(name);
+    if (found == former.end()) continue;
+    warn(place + ": column " + name + " is now " + found->second);
+    name = found->second;
+  }
+}
+
 }  // namespace
 
 double CsvTable::number(std::size_t row, std::size_t column) const {
@@ -47,7 +58,8 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
               source + ":" + std::to_string(lines[row]) + ": " + columns[column] + " '" + cell + "' is not a number"};
 }
 
-CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns) {
+CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
+                  const std::map<std::string, std::string>& former) {
   CsvTable table{input_name(path), columns, {}, {}};
   std::vector<std::size_t> places;
   int number = 0;
@@ -56,8 +68,9 @@ CsvTable read_csv(const std::string& path, const std::vector<std::string>& colum
     const std::string line = trimmed(raw, quotes);
     if (line.empty() || line[0] == '#') continue;
     const std::string place = table.source + ":" + std::to_string(number);
-    const std::vector<std::string> cells = cells_of(raw);
+    std::vector<std::string> cells = cells_of(raw);
     if (places.empty()) {
+      rename(cells, former, place);
       const bool numbers = std::all_of(cells.begin(), cells.end(),
                                        [](const std::string& cell) { return parse_number(cell).has_value(); });
       for (std::size_t i = 0; numbers && i < columns.size(); ++i) places.push_back(i);

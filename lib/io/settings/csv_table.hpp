@@ -1,12 +1,13 @@
 // Small tables of measurements: CSV with a header line, for working curves, photodiode readings and catalogues.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 namespace vam::io {
 
-/// Cells in the order of the columns asked for.
+/// Cells in the order of the requested columns.
 struct CsvTable {
   std::string source;  // file name, for messages
   std::vector<std::string> columns;
@@ -19,7 +20,9 @@ struct CsvTable {
 
 /// Reads the named columns, in whatever order the header has them; further columns are ignored. Lines that are empty or
 /// begin with # are skipped. A file whose first line is all numbers has no header: its columns are taken in the order
-/// asked for. "-" is stdin. Throws Error: no_input, io, data (a column missing, a row too short, no rows).
-[[nodiscard]] CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns);
+/// given here. former: old names of columns and the present ones, read with a warning. "-" is stdin. Throws Error:
+/// no_input, io, data (a column missing, a row too short, no rows).
+[[nodiscard]] CsvTable read_csv(const std::string& path, const std::vector<std::string>& columns,
+                                const std::map<std::string, std::string>& former = {});
 
 }  // namespace vam::io

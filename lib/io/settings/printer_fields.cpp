@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "model/device_schemes.hpp"
 
@@ -74,7 +76,7 @@ const std::vector<PrinterField> fields{
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
     {"camera", "gain", at<&Printer::camera, &PrinterCamera::gain>, "in dB or the camera's own steps; as it has it if absent", -1e6, 1e6},
     {"camera", "black_level", at<&Printer::camera, &PrinterCamera::black_level>, "in the camera's own unit; as it has it if absent", -1e6, 1e6},
-    {"camera", "latency_ms", at<&Printer::camera, &PrinterCamera::latency_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
+    {"camera", "lag_ms", at<&Printer::camera, &PrinterCamera::lag_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
     {"camera", "index_resin", at<&Printer::camera, &PrinterCamera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
     {"camera", "absorption_per_mm", at<&Printer::camera, &PrinterCamera::absorption_per_mm>, "of the resin at the camera's wavelength, natural logarithm", 0, 1e3},
     {"camera", "axis_column", at<&Printer::camera, &PrinterCamera::axis_column>, "of the rotation axis at the middle row of its images; found in the views if absent", -65536, 131072},
@@ -105,7 +107,7 @@ std::string word_objection(const PrinterField& field, const std::string& word) {
   return "'" + word + "' is not one of " + join(field.words, ", ");
 }
 
-// No device is a value, too: a tool that needs one says so.
+// No device is a value, too: a tool that needs one reports it.
 std::string device_objection(const PrinterField& field, const std::string& device) {
   const std::size_t colon = device.find(':');
   if (device.empty()) return "";
@@ -138,6 +140,13 @@ std::string replacement(std::string_view section, std::string_view key) {
   if (section != "projector" || key != "max_led_current") return "";
   return "; former unit: controller steps, inverted on a LightCrafter 4500; give "
          "projector.max_led_current_percent, in per cent of full current";
+}
+
+std::string_view present_key(std::string_view section, std::string_view key) {
+  if (section != "camera" || key != "latency_ms") return key;
+  static std::once_flag once;
+  std::call_once(once, [] { warn("camera.latency_ms is now camera.lag_ms"); });
+  return "lag_ms";
 }
 
 std::string dotted_name(const PrinterField& field) { return std::string(field.section) + "." + field.key; }

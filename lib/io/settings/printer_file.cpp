@@ -26,7 +26,8 @@ using model::Printer;
 constexpr std::size_t most_bytes = std::size_t{1} << 18;
 constexpr std::ptrdiff_t most_levels = 4096;
 
-const PrinterField* find_field(std::string_view section, std::string_view key) {
+const PrinterField* find_field(std::string_view section, std::string_view given) {
+  const std::string_view key = present_key(section, given);
   for (const auto& field : printer_fields()) {
     if (section == field.section && key == field.key) return &field;
   }

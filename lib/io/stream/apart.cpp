@@ -141,7 +141,7 @@ struct Apart::State {
     }
   }
 
-  // Why the child has not sent what was asked of it.
+  // Why the child has not sent what was requested.
   [[noreturn]] void explain() {
     try {
       if (receiver.drain()) take_verdict(child);

@@ -9,7 +9,7 @@ namespace vam::io {
 
 namespace {
 
-// Passes the voxels of the grid that was asked for to whom begin() names.
+// Passes the voxels of the requested grid to the receiver that begin() names.
 class Taker {
  public:
   Taker(Receiver& in, const std::function<BlockTaker(const VolumeFacts&)>& begin) : in_(in), begin_(begin) {}

@@ -91,7 +91,7 @@ void read_blocks(const std::string& path, const std::string& name,
 /// and leaves grid and background out. Throws what read_volumes throws.
 [[nodiscard]] std::vector<VolumeFacts> check_volumes(const std::string& path, bool fast);
 
-/// Writes one archive, with seals: who reads it is told where it differs. "-" is stdout. A file appears under its final
+/// Writes one archive, with seals: a reader finds where it differs. "-" is stdout. A file appears under its final
 /// name only when complete.
 void write_volumes(const std::string& path, std::vector<SparseVolume>& volumes);
 void write_volume(const std::string& path, SparseVolume& volume);

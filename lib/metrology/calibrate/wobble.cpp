@@ -23,7 +23,7 @@ void require_round(std::vector<double> angle_deg, const std::string& subject) {
   if (gap_deg < 180 - 1e-6) return;
   throw Error{Fault::data, subject + ": " + std::to_string(angle_deg.size()) + " stage angles leave a gap of " +
                                format_number(gap_deg, 4) +
-                               " degrees, so that axis and wobble cannot be told apart; "
+                               " degrees, so that axis and wobble cannot be distinguished; "
                                "measure at 0, 90, 180 and 270"};
 }
 

@@ -62,21 +62,21 @@ Deviation deviation(std::span<const float> distances_mm) {
   return d;
 }
 
-Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
-                   const solid::Surface& reference, int samples) {
+Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
+                   const solid::Surface& design, int samples) {
   const auto points_on = [samples](const model::TriangleSoup& mesh) {
     std::vector<Vector3> points;
     for (const auto& sample : solid::sample_surface(mesh, samples)) points.push_back(sample.point);
     return points;
   };
   Comparison result;
-  result.largest_dimension_mm = solid::bounding_box(reference_mesh).largest_side();
-  result.samples_mm = reference.signed_distances(points_on(print));
-  result.print_to_reference = deviation(result.samples_mm);
-  std::vector<float> back = solid::Surface(print).signed_distances(points_on(reference_mesh));
+  result.largest_dimension_mm = solid::bounding_box(design_mesh).largest_side();
+  result.samples_mm = design.signed_distances(points_on(print));
+  result.print_to_design = deviation(result.samples_mm);
+  std::vector<float> back = solid::Surface(print).signed_distances(points_on(design_mesh));
   for (float& distance : back) distance = -distance;
-  result.reference_to_print = deviation(back);
-  result.hausdorff_mm = std::max(result.print_to_reference.max_abs_mm, result.reference_to_print.max_abs_mm);
+  result.design_to_print = deviation(back);
+  result.hausdorff_mm = std::max(result.print_to_design.max_abs_mm, result.design_to_print.max_abs_mm);
   return result;
 }
 
@@ -91,8 +91,8 @@ Json to_json(const Comparison& comparison) {
   return {{"largest_dimension_mm", size},
           {"hausdorff_mm", comparison.hausdorff_mm},
           {"hausdorff_percent", 100 * comparison.hausdorff_mm / size},
-          {"print_to_reference", to_json(comparison.print_to_reference, size)},
-          {"reference_to_print", to_json(comparison.reference_to_print, size)}};
+          {"print_to_design", to_json(comparison.print_to_design, size)},
+          {"design_to_print", to_json(comparison.design_to_print, size)}};
 }
 
 }  // namespace vam::metrology

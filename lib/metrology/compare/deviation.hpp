@@ -12,7 +12,7 @@
 
 namespace vam::metrology {
 
-/// Statistics of signed distances in mm, positive where the print stands outside the reference. Of samples of equal
+/// Statistics of signed distances in mm, positive where the print stands outside the design. Of samples of equal
 /// area: vertices would weight a surface by how finely it is meshed.
 struct Deviation {
   std::size_t samples = 0;
@@ -29,17 +29,17 @@ struct Deviation {
 /// Throws Fault::data when there are no distances.
 [[nodiscard]] Deviation deviation(std::span<const float> distances_mm);
 
-/// Both directions: print to reference, and reference to print with the sign turned so that positive still means
-/// "print outside the reference"; what is missing in the print shows only in the second.
+/// Both directions: print to design, and design to print with the sign turned so that positive still means
+/// "print outside the design"; what is missing in the print shows only in the second.
 struct Comparison {
-  Deviation print_to_reference;
-  Deviation reference_to_print;
+  Deviation print_to_design;
+  Deviation design_to_print;
   double hausdorff_mm = 0;
-  double largest_dimension_mm = 0;  // of the reference; percentages refer to it
-  std::vector<float> samples_mm;    // print to reference, for the histogram
+  double largest_dimension_mm = 0;  // of the design; percentages refer to it
+  std::vector<float> samples_mm;    // print to design, for the histogram
 };
-[[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
-                                 const solid::Surface& reference, int samples);
+[[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
+                                 const solid::Surface& design, int samples);
 
 /// Blue (inside, -limit) over white (0) to red (outside, +limit), as CloudCompare's and [OST22 fig 6]'s scale.
 [[nodiscard]] std::array<std::uint8_t, 3> blue_white_red(double distance_mm, double limit_mm);

@@ -146,11 +146,11 @@ double median_inside(const model::Volume& volume, double level) {
 
 }  // namespace
 
-Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm) {
-  const model::Grid& g = reference.grid;
+Neighbourhood neighbourhood(const model::Volume& target, double margin_mm) {
+  const model::Grid& g = target.grid;
   Neighbourhood box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-  Runs runs(reference, 0.5, true, 1);
-  if (runs.size() == 0) throw Error{Fault::data, "reference: no voxel is covered by a half or more"};
+  Runs runs(target, 0.5, true, 1);
+  if (runs.size() == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   runs.each([&](std::size_t, const Run& run, int j, int k) {
     const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k)};
     const double high[3] = {g.x_mm(run.last - 1), low[1], low[2]};

@@ -15,9 +15,9 @@ struct Neighbourhood {
   std::array<double, 3> high{};
 };
 
-/// The box around all voxels of a reference that are covered by a half or more, grown by margin_mm on all sides.
+/// The box around all voxels of a target that are covered by a half or more, grown by margin_mm on all sides.
 /// Throws Fault::data when there is none.
-[[nodiscard]] Neighbourhood neighbourhood(const model::Volume& reference, double margin_mm);
+[[nodiscard]] Neighbourhood neighbourhood(const model::Volume& target, double margin_mm);
 
 struct BodyRules {
   std::optional<double> least_mm3;      // smallest body that is kept; 1 % of the largest by default

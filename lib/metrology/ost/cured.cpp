@@ -60,10 +60,10 @@ float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_m
   return sum;
 }
 
-Cured cured(const model::Volume& scatter, double level, const model::Volume& reference) {
-  const double whole = std::accumulate(reference.values.begin(), reference.values.end(), 0.0,
+Cured cured(const model::Volume& scatter, double level, const model::Volume& target) {
+  const double whole = std::accumulate(target.values.begin(), target.values.end(), 0.0,
                                        [](double sum, float v) { return sum + (v >= 0.5F ? 1 : 0); });
-  if (whole == 0) throw Error{Fault::data, "reference: no voxel is covered by a half or more"};
+  if (whole == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   const model::Grid& g = scatter.grid;
   std::vector<std::array<long, 3>> counts(static_cast<std::size_t>(g.nz), {0, 0, 0});  // both, only print, only design
   parallel_for(g.nz, [&](int k) {
@@ -72,7 +72,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& ref
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {
         const bool print = static_cast<double>(in[j * g.nx + i]) >= level;
-        const bool design = value_at(reference, g.x_mm(i), g.y_mm(j), g.z_mm(k)) >= 0.5F;
+        const bool design = value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)) >= 0.5F;
         count[0] += print && design ? 1 : 0;
         count[1] += print && !design ? 1 : 0;
         count[2] += !print && design ? 1 : 0;
@@ -84,7 +84,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& ref
     for (std::size_t d = 0; d < 3; ++d) sums[d] += static_cast<double>(count[d]);
   }
   const double voxel_mm3 = g.voxel_mm * g.voxel_mm * g.voxel_mm;
-  const double design_mm3 = whole * std::pow(reference.grid.voxel_mm, 3);
+  const double design_mm3 = whole * std::pow(target.grid.voxel_mm, 3);
   const double outside_mm3 = design_mm3 - voxel_mm3 * (sums[0] + sums[2]);  // design that the camera does not see
   Cured state;
   state.target_mm3 = design_mm3;

@@ -23,19 +23,19 @@ struct SumProjections {
 /// The value at a point in mm, trilinear between voxel centres; 0 outside.
 [[nodiscard]] float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_mm);
 
-/// Volumes in mm^3, of what is cured ({scatter >= I_p}) against a reference (coverage of 1/2 or more).
+/// Volumes in mm^3, of what is cured ({scatter >= I_p}) against a target (coverage of 1/2 or more).
 struct Cured {
   double target_mm3 = 0;
   double cured_mm3 = 0;
-  double missing_mm3 = 0;   // in the reference, not cured
-  double overcure_mm3 = 0;  // cured, not in the reference
+  double missing_mm3 = 0;   // in the target, not cured
+  double overcure_mm3 = 0;  // cured, not in the target
   double iou = 0;           // of the two
   [[nodiscard]] double missing_percent() const { return 100 * missing_mm3 / target_mm3; }
   [[nodiscard]] double overcure_percent() const { return 100 * overcure_mm3 / target_mm3; }
 };
 
-/// The reference lies in the same frame, on any grid. Throws Fault::data when it is empty.
-[[nodiscard]] Cured cured(const model::Volume& scatter, double level, const model::Volume& reference);
+/// The target lies in the same frame, on any grid. Throws Fault::data when it is empty.
+[[nodiscard]] Cured cured(const model::Volume& scatter, double level, const model::Volume& target);
 
 [[nodiscard]] Json to_json(const Cured& state);
 

@@ -1,5 +1,6 @@
 // What a real bench adds to the views of a print: an even background, specks that stay where they are, bubbles that
-// pass. All are told from the print by consistency over the angles: a line is seen twice a turn, from either end.
+// pass. All are distinguished from the print by consistency over the angles: a line is seen twice a turn, from either
+// end.
 #pragma once
 
 #include <span>

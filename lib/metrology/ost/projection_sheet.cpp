@@ -33,11 +33,11 @@ void add_row(const SumProjections& sums, const std::string& what, Sheet& sheet) 
   }
 }
 
-model::Volume sampled(const model::Volume& reference, const model::Grid& g) {
+model::Volume sampled(const model::Volume& target, const model::Grid& g) {
   model::Volume out{g, std::vector<float>(g.size())};
   parallel_for(g.nz, [&](int k) {
     for (int j = 0; j < g.ny; ++j) {
-      for (int i = 0; i < g.nx; ++i) out.slice(k)[j * g.nx + i] = value_at(reference, g.x_mm(i), g.y_mm(j), g.z_mm(k));
+      for (int i = 0; i < g.nx; ++i) out.slice(k)[j * g.nx + i] = value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k));
     }
   });
   return out;
@@ -45,13 +45,13 @@ model::Volume sampled(const model::Volume& reference, const model::Grid& g) {
 
 }  // namespace
 
-Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level, const model::Volume* reference) {
+Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level, const model::Volume* target) {
   Sheet sheet;
   sheet.pixel_mm = scatter.grid.voxel_mm;
   sheet.brightest = 1;
   add_row(sum_projections(scatter), "volume", sheet);
   if (level) add_row(sum_projections(scatter, level), "print", sheet);
-  if (reference != nullptr) add_row(sum_projections(sampled(*reference, scatter.grid)), "design", sheet);
+  if (target != nullptr) add_row(sum_projections(sampled(*target, scatter.grid)), "design", sheet);
   return sheet;
 }
 

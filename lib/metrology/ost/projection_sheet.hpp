@@ -17,9 +17,9 @@ struct Sheet {
   float brightest = 0;
 };
 
-/// One row for the scattering volume; with a level one for { scatter >= level }; with a reference one for its design,
+/// One row for the scattering volume; with a level one for { scatter >= level }; with a target one for its design,
 /// sampled at the volume's voxels. Each row is scaled to its own brightest pixel.
 [[nodiscard]] Sheet projection_sheet(const model::Volume& scatter, std::optional<double> level,
-                                     const model::Volume* reference);
+                                     const model::Volume* target);
 
 }  // namespace vam::metrology

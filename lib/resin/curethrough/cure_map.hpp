@@ -11,7 +11,7 @@ namespace vam::resin {
 
 enum class Cure : std::uint8_t { empty = 0, correct = 1, through = 2, under = 3 };
 
-/// A voxel, by the dose at its centre (in units of D_c) and whether it is in the part.
+/// A voxel, by the dose at its centre (in units of D_f) and whether it is in the part.
 [[nodiscard]] Cure cure_of(double centre_dose, bool solid);
 
 /// Heights in slices. The error of a feature is the height undercured inside it, plus the height cured through in the

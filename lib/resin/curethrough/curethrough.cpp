@@ -20,7 +20,7 @@ void check_positive(const char* what, double value, const char* unit) {
 void check(const Process& p) {
   check_positive("slice height", p.slice_um, "um");
   check_positive("absorbance height", p.absorbance_height_um, "um");
-  check_positive("critical dose", p.critical_dose_mj_cm3, "mJ/cm3");
+  check_positive("full-cure dose", p.full_cure_dose_mj_cm3, "mJ/cm3");
   check_positive("print speed", p.speed_mm_h, "mm/h");
   check_positive("maximum intensity", p.max_intensity_mw_cm2, "mW/cm2");
   if (!(p.min_intensity_mw_cm2 >= 0 && p.min_intensity_mw_cm2 < p.max_intensity_mw_cm2)) {
@@ -37,9 +37,9 @@ void check(const Process& p) {
 
 }  // namespace
 
-double critical_intensity_mw_cm2(const Process& process) {
+double full_cure_intensity_mw_cm2(const Process& process) {
   const double speed_cm_s = process.speed_mm_h / 36000.0;
-  const double continuous = speed_cm_s * process.critical_dose_mj_cm3;  // I_c = s D_c
+  const double continuous = speed_cm_s * process.full_cure_dose_mj_cm3;  // I_f = s D_f
   if (process.exposure == ExposureMode::continuous) return continuous;
   return continuous * process.absorbance_height_um / (std::numbers::ln10 * process.slice_um);
 }
@@ -47,7 +47,7 @@ double critical_intensity_mw_cm2(const Process& process) {
 CureLimits limits_of(const Process& process) {
   check(process);
   const double q = std::pow(10.0, -process.slice_um / process.absorbance_height_um);
-  const double critical = critical_intensity_mw_cm2(process);
+  const double critical = full_cure_intensity_mw_cm2(process);
   return {process.exposure, q, process.exposure == ExposureMode::continuous ? 1 - q : q,
           process.min_intensity_mw_cm2 / critical, process.max_intensity_mw_cm2 / critical};
 }

@@ -25,14 +25,14 @@ struct Process {
   ExposureMode exposure = ExposureMode::continuous;
   double slice_um = 50;                // h_s
   double absorbance_height_um = 2000;  // h_a: the depth in which the intensity falls to a tenth (base 10)
-  double critical_dose_mj_cm3 = 576;   // D_c
+  double full_cure_dose_mj_cm3 = 576;  // D_f
   double speed_mm_h = 1000;            // s; layer by layer, a layer is exposed for h_s / s
   double min_intensity_mw_cm2 = 0.2;   // at grey 0: the contrast limit
   double max_intensity_mw_cm2 = 110;   // at full grey
 };
 
 /// What the mathematics needs of a process. Omega(node) = gain * Phi(node) + q * Omega(node + 1), Omega beyond the last
-/// slice = 0 [CURE19 eq 5]: Omega = D / D_c, Phi = I / I_c, q = 10^(-h_s/h_a), gain = 1 - q (continuous) or q
+/// slice = 0 [CURE19 eq 5]: Omega = D / D_f, Phi = I / I_f, q = 10^(-h_s/h_a), gain = 1 - q (continuous) or q
 /// (layered).
 struct CureLimits {
   ExposureMode exposure = ExposureMode::continuous;
@@ -47,9 +47,9 @@ struct CureLimits {
   [[nodiscard]] double hold() const { return (1 - q) / gain; }
 };
 
-/// I_c. Continuous: s * D_c [CURE19 below eq 4]. Layered: the intensity whose exposure of h_s / s brings D_c to the
-/// surface, D_c h_a s / (ln(10) h_s).
-[[nodiscard]] double critical_intensity_mw_cm2(const Process& process);
+/// I_f. Continuous: s * D_f [CURE19 below eq 4]. Layered: the intensity whose exposure of h_s / s brings D_f to the
+/// surface, D_f h_a s / (ln(10) h_s).
+[[nodiscard]] double full_cure_intensity_mw_cm2(const Process& process);
 
 /// Throws Fault::data: a value not finite or not positive, min >= max intensity, h_s > 10 h_a.
 [[nodiscard]] CureLimits limits_of(const Process& process);

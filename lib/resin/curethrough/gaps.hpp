@@ -18,7 +18,7 @@ namespace vam::resin {
 /// the dark alone settles above it or the light is too weak to cure at all.
 [[nodiscard]] int narrowest_gap(const CureLimits& limits, double clear);
 
-/// The speed at which the maximum intensity only just keeps the critical dose: I_max / D_c when continuous. Below it
+/// The speed at which the maximum intensity only just keeps the full-cure dose: I_max / D_f when continuous. Below it
 /// everything can be cured, the more slowly the narrower the gaps.
 [[nodiscard]] double speed_limit_mm_h(const Process& process);
 

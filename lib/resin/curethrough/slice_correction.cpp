@@ -13,17 +13,7 @@ namespace vam::resin {
 
 namespace {
 
-const CorrectionKernels& kernels() {
-  switch (simd_level()) {
-    case Simd::avx512:
-      return avx512::correction_kernels;
-    case Simd::avx2:
-      return avx2::correction_kernels;
-    case Simd::baseline:
-      break;
-  }
-  return baseline::correction_kernels;
-}
+const CorrectionKernels& kernels() { return VAM_KERNEL(correction_kernels, simd_level()); }
 
 constexpr int guess_bins = 4096;
 
@@ -75,12 +65,12 @@ void require_printable(const CureLimits& limits) {
   if (limits.settled(limits.phi_min) >= 1) {
     throw Error{Fault::data, "intensity range: the minimum alone settles at " +
                                  format_number(limits.settled(limits.phi_min), 3) +
-                                 " critical doses, so everything cures; increase contrast or print faster"};
+                                 " full-cure doses, so everything cures; increase contrast or print faster"};
   }
   if (burst_slices(limits) == 0) {
     const double highest = limits.settled(limits.phi_max);
     throw Error{Fault::data, "intensity range: the maximum settles at " + format_number(highest, 3) +
-                                 " critical doses, so nothing cures; increase the intensity, or print at " +
+                                 " full-cure doses, so nothing cures; increase the intensity, or print at " +
                                  format_number(highest, 3) + " times this speed or slower"};
   }
 }

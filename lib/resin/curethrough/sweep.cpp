@@ -28,14 +28,14 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
   point.dose_factor = factor;
   point.omega_max = omega_max;
   Process assumed = study.process;
-  assumed.critical_dose_mj_cm3 = factor * study.gel_dose_mj_cm3;
+  assumed.full_cure_dose_mj_cm3 = factor * study.gel_dose_mj_cm3;
   const CureLimits limits = limits_of(assumed);
   point.printable = burst_slices(limits) > 0 && limits.settled(limits.phi_min) < 1;
   if (!point.printable) return point;
   point.extra_slices = extra_slices(part, limits);
   Column column = correct_column(part, limits, {omega_max}, point.extra_slices);
   // The same light in units of the dose that really cures.
-  const double scale = assumed.critical_dose_mj_cm3 / study.process.critical_dose_mj_cm3;
+  const double scale = assumed.full_cure_dose_mj_cm3 / study.process.full_cure_dose_mj_cm3;
   for (double& phi : column.phi) phi *= scale;
   const CureTotals corrected = judge_column(part, column.phi, limits_of(study.process));
 

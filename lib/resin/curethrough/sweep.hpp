@@ -1,5 +1,5 @@
-// Parameter study: how much of the height error a correction removes, for a range of assumed critical doses and maximum
-// doses [CURE19 fig 5c].
+// Parameter study: how much of the height error a correction removes, for a range of assumed full-cure doses and
+// maximum doses [CURE19 fig 5c].
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ namespace vam::resin {
 [[nodiscard]] std::vector<std::uint8_t> graded_ladder(const std::vector<int>& heights);
 
 struct Study {
-  Process process;                   // critical_dose_mj_cm3 is the dose that really cures: what the print is judged by
+  Process process;                   // full_cure_dose_mj_cm3 is the dose that really cures: what the print is judged by
   double gel_dose_mj_cm3 = 0;        // D_gel: what dose_factors multiply
-  std::vector<double> dose_factors;  // assumed critical dose / D_gel
+  std::vector<double> dose_factors;  // assumed full-cure dose / D_gel
   std::vector<double> omega_max;
 };
 
@@ -30,7 +30,7 @@ struct SizeRatio {
 struct StudyPoint {
   double dose_factor = 0;
   double omega_max = 0;
-  bool printable = false;  // false: no exposure reaches this critical dose at this speed
+  bool printable = false;  // false: no exposure reaches this full-cure dose at this speed
   int extra_slices = 0;
   std::vector<SizeRatio> sizes;  // one per feature height in the part, rising
   double ratio = 0;              // of the summed errors

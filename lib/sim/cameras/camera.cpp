@@ -50,7 +50,7 @@ device::Address with_present_names(const device::Address& address) {
   return renamed;
 }
 
-SimCameraSettings settings_of(const device::Address& address, const device::CameraSettings& asked,
+SimCameraSettings settings_of(const device::Address& address, const device::CameraSettings& requested,
                               const device::CameraBench& room) {
   SimCameraSettings sim;
   SimBench& bench = sim.bench;
@@ -78,8 +78,8 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   sim.sources.angles = address.word("angles", "");
   sim.sources.shown = address.word("flips", "");
   sim.sources.images = room.images;
-  sim.fps = asked.fps.value_or(sim.fps);
-  sim.exposure_us = asked.exposure_us.value_or(sim.exposure_us);
+  sim.fps = requested.fps.value_or(sim.fps);
+  sim.exposure_us = requested.exposure_us.value_or(sim.exposure_us);
   sim.bits = address.integer("bits", 8, 16).value_or(sim.bits);
   sim.lag_s = 1e-3 * address.number("lag", 0, -1000, 1000);
   sim.lose = parse_frames(address.word("lose", ""));
@@ -93,10 +93,11 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
 // Frame k is taken at start + k / fps, the middle of its exposure, and comes half an exposure later.
 class SimCamera final : public device::Camera {
  public:
-  SimCamera(SimCameraSettings sim, const device::CameraSettings& asked, bool in_step, SimLog log, device::Clock& clock)
+  SimCamera(SimCameraSettings sim, const device::CameraSettings& requested, bool in_step, SimLog log,
+            device::Clock& clock)
       : sim_(std::move(sim)),
-        binning_(asked.binning.value_or(1)),
-        triggered_(asked.trigger == "software"),
+        binning_(requested.binning.value_or(1)),
+        triggered_(requested.trigger == "software"),
         in_step_(in_step),
         log_(std::move(log)),
         clock_(clock),
@@ -209,9 +210,10 @@ std::string fingerprint(const GreyImage& levels) {
   return text.data();
 }
 
-std::unique_ptr<device::Camera> open_sim_camera(const device::Address& asked, const device::CameraSettings& settings,
+std::unique_ptr<device::Camera> open_sim_camera(const device::Address& requested,
+                                                const device::CameraSettings& settings,
                                                 const device::CameraBench& bench, device::Clock& clock) {
-  const device::Address address = with_present_names(asked);
+  const device::Address address = with_present_names(requested);
   address.allow(option_names());
   if (!address.place.empty()) throw Error{Fault::usage, "device '" + address.text + "': sim: takes no place"};
   if (settings.trigger != "free" && settings.trigger != "software") {

@@ -158,7 +158,7 @@ struct SimGvCamera::State {
     }
   }
 
-  // The part of the sensor that the client asked for; black beyond it.
+  // The part of the sensor that the client requested; black beyond it.
   [[nodiscard]] GreyImage region(const GreyImage& whole, ArvBuffer* buffer) const {
     const int left = static_cast<int>(get(ARV_FAKE_CAMERA_REGISTER_X_OFFSET));
     const int top = static_cast<int>(get(ARV_FAKE_CAMERA_REGISTER_Y_OFFSET));

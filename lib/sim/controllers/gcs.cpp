@@ -95,7 +95,7 @@ class SimGcs final : public SimController {
   }
 
   // Takes "1 POS? 1" or "POS? 1"; other controllers' commands are not for us. Without an address a command, single
-  // bytes included, is for controller 1; a sender is only told where an address was given (8.3 "Target and sender
+  // bytes included, is for controller 1; a sender is named only where an address was given (8.3 "Target and sender
   // address").
   void handle(const std::string& line) {
     auto words = split(line, ' ');

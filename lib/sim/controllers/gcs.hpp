@@ -15,7 +15,7 @@ namespace vam::sim {
 /// garbage: random bytes instead of the answer · truncated: half the answer and no LF · late: 3 s later · silent: never
 /// wrong-sender: as if controller 7 had answered · error: the command is refused · unplug: the cable is pulled, motion
 /// goes on · power-loss: the controller dies and the stage coasts to a stop · block: the
-/// stage is held fast while the controller talks on · stall: the same, and a Zaber controller says so.
+/// stage is held fast while the controller talks on · stall: the same, and a Zaber controller reports it.
 struct SimFault {
   std::string kind;
   std::string command;

@@ -77,7 +77,7 @@ class SimZaber final : public SimController {
     }
     if (!numbers.empty() && numbers[0] != 0 && numbers[0] != settings_.address) return;
     const int axis = numbers.size() > 1 ? numbers[1] : 0;
-    // Get, set and move are told apart by their second word.
+    // Get, set and move are distinguished by their second word.
     const bool two =
         !words.empty() && (words[0] == "get" || words[0] == "set" || words[0] == "move") && words.size() > 1;
     const std::string command = two ? words[0] + " " + words[1] : words.empty() ? "" : words[0];
@@ -136,7 +136,7 @@ class SimZaber final : public SimController {
   }
 
   void begin_motion() {
-    // Manual, "NI": a motion was asked for while another went on; until one is asked for at rest.
+    // Manual, "NI": a motion was commanded while another went on; until one is commanded at rest.
     if (motor_.moving()) {
       warnings_.insert("NI");
     } else {

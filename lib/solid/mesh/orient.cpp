@@ -124,7 +124,7 @@ class Nesting {
  private:
   const model::TriangleSoup& mesh_;
   const std::vector<Component>& components_;
-  std::vector<std::unique_ptr<WindingNumber>> winding_;  // made when first asked for
+  std::vector<std::unique_ptr<WindingNumber>> winding_;  // made when first needed
 };
 
 // Decides which solid components to turn over. An outermost one must enclose a positive volume; what is inside it
@@ -144,7 +144,7 @@ long turn_outwards(const model::TriangleSoup& mesh, std::vector<Component>& comp
   std::vector<std::size_t> roots;
   for (const std::size_t c : solids) {
     const bool inward = components[c].measure.volume < 0;
-    // The outermost container; only asked for where the answer matters.
+    // The outermost container; sought only where the answer matters.
     const auto root = std::find_if(roots.begin(), roots.end(), [&](std::size_t r) {
       const bool matters = inward || components[r].measure.volume < 0;
       return matters && nesting.holds(r, c);

@@ -17,7 +17,7 @@ namespace vam::solid {
 /// a tenth of a voxel for others; 0 leaves the insert as it is.
 class GrownInsert {
  public:
-  /// `read` gives slice k of the insert's coverage; it is asked in ascending order. stretch_z: of both, so that the
+  /// `read` gives slice k of the insert's coverage; it is called in ascending order. stretch_z: of both, so that the
   /// clearance is that of the print.
   GrownInsert(const model::Grid& grid, const std::function<void(int k, float* out)>& read, double clearance_mm,
               double stretch_z);

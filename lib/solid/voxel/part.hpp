@@ -35,7 +35,7 @@ struct Part {
 enum class FillMode { automatic, exact, vote };
 
 /// The part of a mesh: moved by `map`, then repaired. Automatic fills exactly where the mesh is closed and votes where
-/// it is not. Throws Fault::data when `exact` is asked of an open mesh; filling throws Fault::data when inside is
+/// it is not. Throws Fault::data when `exact` is requested of an open mesh; filling throws Fault::data when inside is
 /// ambiguous: no volume is enclosed, or more than 1 % of it stays undecided.
 [[nodiscard]] Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affine& map, FillMode mode);
 
@@ -44,7 +44,7 @@ struct ImageStack {
   int width = 0;
   int height = 0;
   int count = 0;
-  std::function<Image(int)> read;  // coverage 0...1; asked in ascending order, twice
+  std::function<Image(int)> read;  // coverage 0...1; called in ascending order, twice
 };
 
 /// The part of a stack of images whose pixels and distances are voxel_mm: images centred on the axis, the stack on

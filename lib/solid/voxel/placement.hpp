@@ -85,7 +85,7 @@ struct Lattice {
 struct SizeOption {
   std::string flag = "--scale";
   double value = 1;
-  double stretch_z = 1;  // of the part, undone in the size that is told
+  double stretch_z = 1;  // of the part, undone in the size that is reported
 };
 
 /// Throws Fault::data, with both numbers, also in voxels, and the option that makes it fit, when the part leaves the

@@ -6,7 +6,7 @@
 
 using namespace vam;
 
-TEST_CASE("a shared library's functions are found, and what is missing is said with what to install") {
+TEST_CASE("a shared library's functions are found, and what is missing is reported with what to install") {
   const SharedLibrary mathematics("square roots", "libm.so.6", "libc6");
   double (*root)(double) = nullptr;
   mathematics.find(root, "sqrt");

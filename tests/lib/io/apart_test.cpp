@@ -107,7 +107,7 @@ TEST_CASE("a child's own error, and the parent's, keep their words") {
             },
             Fault::usage) == "enough");
   CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(5));
-  // More is asked for than was sent; less is taken.
+  // More is requested than was sent; less is taken.
   CHECK(has(error_of(
                 [] {
                   read_apart(

@@ -12,7 +12,7 @@ using namespace vam;
 
 namespace {
 
-// Standard output of a shell command, or nothing where `program` is not installed, which is said aloud.
+// Standard output of a shell command, or nothing where `program` is not installed, which is reported.
 std::string output_of(const std::string& program, const std::string& command, const scratch::Folder& folder) {
   if (std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) != 0) {
     MESSAGE("skipped: " << program << " is not installed");

@@ -65,7 +65,7 @@ TEST_CASE("settings that are absent keep their defaults; whole numbers serve as 
   CHECK(printer.projector.columns == 1024);
 }
 
-TEST_CASE("the axis is in the middle of the image as set, unless it is said where") {
+TEST_CASE("the axis is in the middle of the image as set, unless it is given") {
   const auto axis = [](const vam::model::Printer& printer) {
     return std::pair{printer.projector.axis_column, printer.projector.axis_row};
   };

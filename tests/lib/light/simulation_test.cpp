@@ -177,7 +177,7 @@ TEST_CASE("turns and seconds to the critical dose") {
   CHECK(json["part_dose_per_turn_mean_mj_cm3"] == 30);
   CHECK(json["turns_to_critical_mean"] == 4);
   CHECK(json["turns_to_critical_all"] == 5);
-  CHECK(json["seconds_to_critical_all"] == 5 * 36);
+  CHECK(json["duration_to_critical_all_s"] == 5 * 36);
   CHECK(json["dose_per_turn_max_mj_cm3"] == 40);
   CHECK_THROWS_AS(range.add(dose, Image(2, 1)), Error);
   TurnDoses dark;

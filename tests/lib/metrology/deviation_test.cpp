@@ -12,24 +12,24 @@ TEST_CASE("two equal spheres, one shifted: closed form") {
   // R (pi/120)^2 / 4 = 9e-4 inside the sphere, on both; 40,000 samples leave d/sqrt(3)/200 = 1.4e-3 of chance.
   const double radius = 5;
   const double shift = 0.5;
-  const auto reference = test::sphere({0, 0, 0}, radius, 120);
-  const solid::Surface surface(reference);
-  const auto found = metrology::compare(test::sphere({0, 0, shift}, radius, 120), reference, surface, 40000);
-  CHECK(found.print_to_reference.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
-  CHECK(found.print_to_reference.mean_mm == doctest::Approx(shift * shift / (3 * radius)).scale(1).epsilon(0.003));
-  CHECK(found.print_to_reference.max_mm == doctest::Approx(shift).epsilon(0.005));
+  const auto design = test::sphere({0, 0, 0}, radius, 120);
+  const solid::Surface surface(design);
+  const auto found = metrology::compare(test::sphere({0, 0, shift}, radius, 120), design, surface, 40000);
+  CHECK(found.print_to_design.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
+  CHECK(found.print_to_design.mean_mm == doctest::Approx(shift * shift / (3 * radius)).scale(1).epsilon(0.003));
+  CHECK(found.print_to_design.max_mm == doctest::Approx(shift).epsilon(0.005));
   CHECK(found.hausdorff_mm == doctest::Approx(shift).epsilon(0.005));
   CHECK(found.largest_dimension_mm == doctest::Approx(2 * radius));
   // The way back mirrors it: the print stands out where its centre moved to.
-  CHECK(found.reference_to_print.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
-  CHECK(found.reference_to_print.mean_mm == doctest::Approx(-shift * shift / (3 * radius)).scale(1).epsilon(0.003));
+  CHECK(found.design_to_print.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
+  CHECK(found.design_to_print.mean_mm == doctest::Approx(-shift * shift / (3 * radius)).scale(1).epsilon(0.003));
 }
 
 TEST_CASE("distances to an enlarged sphere are positive in both directions") {
-  const auto reference = test::sphere({1, 2, 3}, 5, 120);
-  const solid::Surface surface(reference);
-  const auto found = metrology::compare(test::sphere({1, 2, 3}, 5.2, 120), reference, surface, 10000);
-  for (const auto& d : {found.print_to_reference, found.reference_to_print}) {
+  const auto design = test::sphere({1, 2, 3}, 5, 120);
+  const solid::Surface surface(design);
+  const auto found = metrology::compare(test::sphere({1, 2, 3}, 5.2, 120), design, surface, 10000);
+  for (const auto& d : {found.print_to_design, found.design_to_print}) {
     CHECK(d.mean_mm == doctest::Approx(0.2).epsilon(0.005));  // chord error 1e-3 of 0.2
     CHECK(d.sigma_mm < 1e-3);
     CHECK(d.min_mm > 0.19);

@@ -15,7 +15,7 @@ TEST_CASE("tolerances are read with their units") {
   CHECK(parse_tolerances("psf=0.1mm") == Tolerances{0, 0, 0, 0, 0, 0.1});
 }
 
-TEST_CASE("what is wrong with tolerances is said") {
+TEST_CASE("wrong tolerances are reported") {
   CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("colour=3")), doctest::Contains("there are axis, index"),
                        Error);
   CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("axis")), doctest::Contains("'axis' has no '='"), Error);

@@ -54,10 +54,20 @@ TEST_CASE("A ramp ends at black and at full and its steps are even") {
   CHECK(pattern_frame(plan, projector, 16)(63, 47) == 255);
 }
 
+TEST_CASE("A line is as wide as a sweep's step where neither is given, and as one says") {
+  PatternPlan plan{"sweep"};
+  set_lines(plan, {}, 7);
+  CHECK(plan.pitch_px == sweep_line_px);
+  CHECK(plan.width_px == 7);
+  plan.name = "grid";
+  set_lines(plan, {}, {});
+  CHECK(plan.pitch_px == 16);
+  CHECK(plan.width_px == 1);
+}
+
 TEST_CASE("A sweep lights every column exactly once") {
   PatternPlan plan{"sweep"};
-  plan.pitch_px = 3;
-  plan.width_px = 3;
+  set_lines(plan, {}, {});
   const auto projector = small_projector();
   std::vector<int> times(64);
   for (int n = 0; n < pattern_frames(plan, projector); ++n) {

@@ -136,7 +136,7 @@ TEST_CASE("slopes are the transpose of misses, and the derivative of the losses"
   CHECK(loss == doctest::Approx(half_squares).epsilon(1e-5));
 }
 
-TEST_CASE("a surface is asked only where it is neither free nor constrained otherwise") {
+TEST_CASE("the surface is constrained only where it is neither free nor constrained otherwise") {
   const std::vector<float> volume = ball();
   const auto count = [&](const Demands& demands, const float* weight, bool stacked) {
     return SurfacePoints(problem_of(volume, demands, weight, stacked)).points().size();

@@ -25,7 +25,7 @@ std::vector<double> random_intensities(int count, double low, double high, unsig
 // dose: below 1e-9 for the thickest slice here with 2000 steps; 1e-6 is required.
 void compare(const resin::Process& process, std::uint32_t seed) {
   const resin::CureLimits limits = resin::limits_of(process);
-  const double critical = resin::critical_intensity_mw_cm2(process);
+  const double critical = resin::full_cure_intensity_mw_cm2(process);
   const int slices = 30;
   vam::oracle::Print print{process.slice_um * 1e-3, process.absorbance_height_um * 1e-3, process.speed_mm_h / 3600, {}};
   print.intensity_mw_cm2 = random_intensities(slices, process.min_intensity_mw_cm2, process.max_intensity_mw_cm2, seed);
@@ -38,7 +38,7 @@ void compare(const resin::Process& process, std::uint32_t seed) {
     const double z = n * print.slice_mm;
     const double dose = process.exposure == ExposureMode::continuous ? vam::oracle::continuous_dose_mj_cm3(print, z)
                                                                      : vam::oracle::layered_dose_mj_cm3(print, z);
-    const double expected = dose / process.critical_dose_mj_cm3;
+    const double expected = dose / process.full_cure_dose_mj_cm3;
     CHECK(std::fabs(omega[n] - expected) <= 1e-6 * expected);
   }
 }
@@ -51,7 +51,7 @@ TEST_CASE("the recursion is Beer's law integrated over time") {
       resin::Process process;
       process.exposure = exposure;
       process.absorbance_height_um = absorbance_um;
-      process.critical_dose_mj_cm3 = 173;
+      process.full_cure_dose_mj_cm3 = 173;
       process.speed_mm_h = 800;
       compare(process, static_cast<std::uint32_t>(absorbance_um));
     }
@@ -62,7 +62,7 @@ TEST_CASE("the dose half way through a slice and the cured thickness agree with 
   resin::Process process;
   process.absorbance_height_um = 300;
   const resin::CureLimits limits = resin::limits_of(process);
-  const double critical = resin::critical_intensity_mw_cm2(process);
+  const double critical = resin::full_cure_intensity_mw_cm2(process);
   vam::oracle::Print print{0.05, 0.3, 1000.0 / 3600, random_intensities(12, 1, 110, 5), 2000};
   std::vector<double> phi;
   for (const double value : print.intensity_mw_cm2) phi.push_back(value / critical);
@@ -93,14 +93,14 @@ TEST_CASE("cured fraction of a layer") {
 
 TEST_CASE("the worked example of the paper") {
   const resin::Process process;
-  CHECK(resin::critical_intensity_mw_cm2(process) == doctest::Approx(16.0));  // [physics §9]
+  CHECK(resin::full_cure_intensity_mw_cm2(process) == doctest::Approx(16.0));  // [physics §9]
   const resin::CureLimits limits = resin::limits_of(process);
   CHECK(limits.q == doctest::Approx(std::pow(10, -0.025)));
   CHECK(limits.hold() == 1);
   CHECK(resin::burst_slices(limits) == 3);  // [CURE19 fig 4]: slices 51..53 beyond the 50
 }
 
-TEST_CASE("a burst is the fewest slices that reach the critical dose") {
+TEST_CASE("a burst is the fewest slices that reach the full-cure dose") {
   for (const double phi_max : {1.001, 1.1, 2.0, 6.3, 17.0, 100.0}) {
     resin::CureLimits limits = resin::limits_of({});
     limits.phi_max = phi_max;

@@ -222,7 +222,7 @@ TEST_CASE("an intensity range that cannot print is refused with a remedy") {
   resin::CureLimits limits = limits_for(ExposureMode::continuous);
   limits.phi_max = 0.5;
   CHECK_THROWS_WITH_AS(resin::require_printable(limits),
-                       "intensity range: the maximum settles at 0.5 critical doses, so nothing cures; increase "
+                       "intensity range: the maximum settles at 0.5 full-cure doses, so nothing cures; increase "
                        "the intensity, or print at 0.5 times this speed or slower",
                        Error);
   limits.phi_max = 9;

@@ -15,10 +15,10 @@ TEST_CASE("a graded ladder") {
   CHECK(resin::graded_ladder({1, 2}) == std::vector<std::uint8_t>{0, 1, 0, 0, 1, 1, 0, 0});
 }
 
-TEST_CASE("the error is gone where the assumed critical dose is the real one, and grows away from it") {
+TEST_CASE("the error is gone where the assumed full-cure dose is the real one, and grows away from it") {
   resin::Study study;
-  study.process.speed_mm_h = 750;  // [CURE19]: h_a = 2000 um, 750 mm/h, D_c = 5 D_gel = 748 mJ/cm3
-  study.process.critical_dose_mj_cm3 = 748;
+  study.process.speed_mm_h = 750;  // [CURE19]: h_a = 2000 um, 750 mm/h, D_f = 5 D_gel = 748 mJ/cm3
+  study.process.full_cure_dose_mj_cm3 = 748;
   study.gel_dose_mj_cm3 = 149.6;
   study.dose_factors = {1, 2, 3, 4, 5, 6, 7, 8};
   study.omega_max = {1, 2, 5, std::numeric_limits<double>::infinity()};
@@ -104,7 +104,7 @@ TEST_CASE("gaps of a part: what must fuse, what is tight, what is fine") {
 
 TEST_CASE("faster means wider gaps, up to the speed limit") {
   resin::Process process;
-  CHECK(resin::speed_limit_mm_h(process) == doctest::Approx(110 / 576.0 * 36000));  // I_max / D_c, cm/s to mm/h
+  CHECK(resin::speed_limit_mm_h(process) == doctest::Approx(110 / 576.0 * 36000));  // I_max / D_f, cm/s to mm/h
   int before = 0;
   for (const double fraction : {0.1, 0.4, 0.7, 0.95}) {
     process.speed_mm_h = fraction * resin::speed_limit_mm_h(process);

@@ -53,7 +53,8 @@ class DlpLink {
   void tell(DlpCommand command, const DlpBytes& data) { (void)exchange(0x40, command, data); }
   [[nodiscard]] DlpBytes ask(DlpCommand command, std::size_t bytes);
   [[nodiscard]] int ask(DlpCommand command) { return ask(command, 1).front(); }
-  /// Writes a setting and reads it back: what shines must be what was asked for. patience_s: until it has taken effect.
+  /// Writes a setting and reads it back: the current in force must be the requested one. patience_s: until it has taken
+  /// effect.
   void set(DlpCommand command, const DlpBytes& data, const std::string& what, double patience_s = 0);
   /// False when it is not done in time.
   [[nodiscard]] bool within(double patience_s, const std::function<bool()>& done);

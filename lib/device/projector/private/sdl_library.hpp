@@ -1,5 +1,5 @@
-// SDL, loaded when a desktop is asked for its screens: with X11, Wayland and sound it is 40 libraries. Its header says
-// what the functions are; nothing is linked.
+// SDL, loaded when the screens of a desktop are queried: with X11, Wayland and sound it is 40 libraries. Its header
+// says what the functions are; nothing is linked.
 #pragma once
 
 #include <SDL.h>

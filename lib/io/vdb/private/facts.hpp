@@ -9,7 +9,7 @@ namespace vam::io {
 
 inline constexpr const char* history_key = "vam:history";
 inline constexpr const char* units_key = "vam:units";
-inline constexpr const char* shape_key = "vam:shape";  // voxels along x, y, z: the box asked for, padding included
+inline constexpr const char* shape_key = "vam:shape";  // voxels along x, y, z: the requested box, padding included
 inline constexpr const char* first_key = "vam:first_index";  // of that box, where it is not 0
 
 /// Name, box, place and metadata of a grid whose topology has been read; its voxels need not be. `first` becomes the

@@ -46,7 +46,7 @@ class VoxelRows {
  public:
   void reset(int rows, int voxels);
   [[nodiscard]] bool touched(int row) const { return touched_[row] != 0; }
-  /// Entries of a row, cleared when first asked for.
+  /// Entries of a row, cleared when first needed.
   double* operator[](int row);
   /// Enters a piece: its voxel by its share, the next by the rest; the prefix sum carries that on.
   static void enter(double* row, int index, const Moment& m) {
