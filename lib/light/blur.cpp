@@ -2,57 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "light/private/smear.hpp"
 
 namespace vam::light {
-
-namespace {
-
-// Rows of a tile that share the passes along x and y.
-constexpr int tile_rows = 32;
-
-// to += weight * from, whole row.
-void add_row(float* to, const float* from, float weight, int count) {
-  for (int i = 0; i < count; ++i) to[i] += weight * from[i];
-}
-
-// Row blurred along x; outside it is dark.
-void blur_row(const float* from, const std::vector<float>& weights, int width, std::vector<float>& padded, float* to) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  padded.assign(static_cast<std::size_t>(width) + 2 * (weights.size() - 1), 0.0F);
-  std::copy_n(from, width, padded.data() + reach);
-  std::fill_n(to, width, 0.0F);
-  for (int n = -reach; n <= reach; ++n) {
-    add_row(to, padded.data() + reach + n, weights[std::abs(n)], width);
-  }
-}
-
-Image blur_across(const Image& slice, const std::vector<float>& weights) {
-  const int reach = static_cast<int>(weights.size()) - 1;
-  Image along(slice.width, slice.height);
-  Image result(slice.width, slice.height);
-  const int tiles = (slice.height + tile_rows - 1) / tile_rows;
-  const auto each_row = [&](auto&& work) {
-    parallel_for(tiles, [&](int tile) {
-      for (int y = tile * tile_rows; y < std::min((tile + 1) * tile_rows, slice.height); ++y) work(y);
-    });
-  };
-  each_row([&](int y) {
-    thread_local std::vector<float> padded;
-    blur_row(slice.row(y), weights, slice.width, padded, along.row(y));
-  });
-  each_row([&](int y) {
-    for (int n = std::max(-reach, -y); n <= std::min(reach, slice.height - 1 - y); ++n) {
-      add_row(result.row(y), along.row(y + n), weights[std::abs(n)], slice.width);
-    }
-  });
-  return result;
-}
-
-}  // namespace
 
 std::vector<double> gaussian_weights(double sigma_px) {
   const double t = sigma_px * sigma_px;
@@ -74,15 +32,16 @@ double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds) {
   return std::sqrt(psf_mm * psf_mm + 2 * diffusion_mm2_s * seconds);
 }
 
-VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out) : out_(std::move(out)) {
-  for (const double weight : gaussian_weights(sigma_px)) weights_.push_back(static_cast<float>(weight));
-}
+VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out)
+    : smear_(std::make_unique<Smear>(sigma_px)), out_(std::move(out)) {}
+VolumeBlur::~VolumeBlur() = default;
 
-void VolumeBlur::push(const Image& slice) {
-  const int reach = static_cast<int>(weights_.size()) - 1;
-  held_.push_back(blur_across(slice, weights_));
+void VolumeBlur::push(Image slice) {
+  float* const plane = slice.values.data();
+  smear_->across(std::span(&plane, 1), slice.width, slice.height, 1);
+  held_.push_back(std::move(slice));
   ++pushed_;
-  if (pushed_ - emitted_ > reach) emit(emitted_);
+  if (pushed_ - emitted_ > smear_->reach()) emit(emitted_);
 }
 
 void VolumeBlur::finish() {
@@ -90,18 +49,19 @@ void VolumeBlur::finish() {
 }
 
 void VolumeBlur::emit(int centre) {
-  const int reach = static_cast<int>(weights_.size()) - 1;
   Image result(held_.front().width, held_.front().height);
-  const int low = std::max(centre - reach, 0);
-  const int high = std::min(centre + reach, pushed_ - 1);
+  const int low = std::max(centre - smear_->reach(), 0);
+  const int high = std::min(centre + smear_->reach(), pushed_ - 1);
   parallel_for(result.height, [&](int y) {
+    float* to = result.row(y);
     for (int k = low; k <= high; ++k) {
-      const Image& slice = held_[k - first_];
-      add_row(result.row(y), slice.row(y), weights_[std::abs(k - centre)], result.width);
+      const float weight = smear_->weight(std::abs(k - centre));
+      const float* from = held_[k - first_].row(y);
+      for (int x = 0; x < result.width; ++x) to[x] += weight * from[x];
     }
   });
   ++emitted_;
-  while (first_ < emitted_ - reach) {
+  while (first_ < emitted_ - smear_->reach()) {
     held_.pop_front();
     ++first_;
   }

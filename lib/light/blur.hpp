@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "base/image.hpp"
@@ -17,18 +18,21 @@ namespace vam::light {
 /// Standard deviation that a point spread psf (mm) and diffusion for a time have together: sqrt(psf^2 + 2 D t).
 [[nodiscard]] double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds);
 
+class Smear;
+
 /// Gaussian blur of a volume with the same sigma along x, y and z, in a stream: slices in, slices out in order, as soon
 /// as those above them are known. Outside the volume is 0. Holds as many slices as the kernel is high.
 class VolumeBlur {
  public:
   VolumeBlur(double sigma_px, std::function<void(Image)> out);
-  void push(const Image& slice);
+  ~VolumeBlur();
+  void push(Image slice);
   /// After the last slice.
   void finish();
 
  private:
   void emit(int centre);
-  std::vector<float> weights_;
+  std::unique_ptr<Smear> smear_;
   std::function<void(Image)> out_;
   std::deque<Image> held_;  // blurred across, slices first_ ... pushed_ - 1
   int first_ = 0;

@@ -1,9 +1,13 @@
 // The blur of beam and resin, inside the operator: the projections then compensate for it.
 #pragma once
 
+#include <memory>
+
 #include "light/operator.hpp"
 
 namespace vam::light {
+
+class Smear;
 
 /// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4],
 /// that of light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other.
@@ -12,6 +16,7 @@ class BlurredOperator final : public Operator {
  public:
   /// `sharp` must outlive this. sigma in voxels; `slices` are in use.
   BlurredOperator(const Operator& sharp, double sigma_px, int slices);
+  ~BlurredOperator() override;
 
   [[nodiscard]] Shape object() const override { return sharp_.object(); }
   [[nodiscard]] Shape sinogram() const override { return sharp_.sinogram(); }
@@ -35,13 +40,11 @@ class BlurredOperator final : public Operator {
 
  private:
   void blur(std::span<Slab> objects) const;
-  void blur_row(float* row, int width) const;
-  void blur_columns(Slab& slab, int first, int count) const;
   void blur_stack(std::span<Slab> objects, int y) const;
 
   const Operator& sharp_;
   int slices_;
-  std::vector<float> weights_;  // middle, first neighbours, ...
+  std::unique_ptr<Smear> smear_;
 };
 
 /// Slices on either side that a slice must know: three sigma, at most 16.

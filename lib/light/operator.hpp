@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "base/slab.hpp"
 
@@ -82,5 +83,8 @@ class Operator {
   /// The way back; collapse(expand(g)) = g.
   virtual void collapse(const Slab& image, Slab& sinogram) const;
 };
+
+/// The dose of so many slabs where every pixel is lit at every angle, by fluence 1.
+[[nodiscard]] std::vector<Slab> dose_of_even_light(const Operator& light, std::size_t count);
 
 }  // namespace vam::light

@@ -17,10 +17,7 @@ void exclude(Problem& problem, std::span<const Slab> inserts) {
 }
 
 std::vector<std::int64_t> exclude_dark(Problem& problem, const light::Operator& light) {
-  std::vector<Slab> all = slabs(problem.target.size(), light.sinogram().width, light.sinogram().height);
-  for (Slab& slab : all) std::fill(slab.values.begin(), slab.values.end(), 1.0F);
-  std::vector<Slab> dose = slabs(problem.target.size(), light.object().width, light.object().height);
-  light.adjoint(all, dose);
+  const std::vector<Slab> dose = light::dose_of_even_light(light, problem.target.size());
   float most = 0;
   for (const auto& lane : largest(dose)) most = std::max(most, *std::max_element(lane.begin(), lane.end()));
   std::vector<std::int64_t> dark(dose.size() * lanes, 0);
