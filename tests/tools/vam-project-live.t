@@ -38,7 +38,7 @@ for pattern in star axis grid grey ramp sweep row; do ok "pattern $pattern" vam-
 is 'a ramp has 17 levels' "$(ls ramp | grep -c png)" 17
 ok 'a dry run reports the pattern it shows' vam-project --pattern row --width 3 --hold 0.05 -o null: --log rows
 is 'in its log' "$(grep '"event":"pattern"' rows | grep -c '"name":"row"')" 1
-is 'a sweep has 64 / 16 places' "$(ls sweep | grep -c png)" 4
+is 'a sweep has 64 / 4 places' "$(ls sweep | grep -c png)" 16
 ok 'patterns can be shown' vam-project --pattern ramp --steps 3 --hold 0.1 -o null: --log ramps --light sim:
 is 'each in its turn' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' ')" '"frame":0 "frame":1 "frame":2 "frame":-1 '
 

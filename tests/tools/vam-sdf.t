@@ -41,7 +41,7 @@ fails 64 'outside the image' vam-sdf height seen.vdb badge.vdb --pixel 0.08 --li
 fails 65 'flat' vam-sdf height box.off badge.vdb --pixel 0.08
 fails 66 'missing' vam-sdf height missing.png badge.vdb
 
-fails 64 'REFERENCE' vam-sdf box.off
+fails 64 'DESIGN' vam-sdf box.off
 fails 64 'give the isovalue' vam-sdf sphere.vdb box.off
 fails 64 'rmse' vam-sdf box.off box.off --require 'rmse<=1'
 cp moved.ply self.ply
