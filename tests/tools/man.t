@@ -32,6 +32,12 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   is "$tool: the examples use no former spelling" "$(grep ' is now ' .log/example)" ""
 done
 
+if command -v groff >/dev/null; then  # what man(1) of most Linux systems formats with
+  for page in "$VAM_SOURCE"/man/*.[1-9]; do
+    is "$(basename "$page"): groff is silent" "$(groff -mdoc -Tutf8 -Kutf8 "$page" 2>&1 >/dev/null | head -n 3)" ""
+  done
+fi
+
 # "Default: none" is the value none; an option that has no default states none.
 undue=$(awk '/^Default: none/ && last !~ /^One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { last = $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
