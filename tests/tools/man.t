@@ -39,7 +39,7 @@ if command -v groff >/dev/null; then  # what man(1) of most Linux systems format
 fi
 
 # "Default: none" is the value none; an option that has no default states none.
-undue=$(awk '/^Default: none/ && last !~ /^One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { last = $0 }' "$VAM_SOURCE"/man/*.1)
+undue=$(awk '/^\./ { body = "" } /^Default: none/ && body !~ /One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { body = body " " $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
 
 # Their other examples name real devices.
