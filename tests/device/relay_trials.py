@@ -13,7 +13,7 @@ import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
-from trials import NEVER, SIGNALS, Log, end_by  # noqa: E402
+from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, end_by, load, report  # noqa: E402
 
 STATED_S = 0.3  # of the relay, after the last heartbeat
 TICK_S = 0.02   # of the simulator and of this machine
@@ -46,9 +46,19 @@ def trial(cause, log, command, environment):
     return opened["t_monotonic_s"] - start, opened["reason"]
 
 
+def table(count, log, command, environment, what, limit_s):
+    failed = 0
+    for cause in [signal.SIGKILL, signal.SIGTERM, "hang", "alone"]:
+        by_itself = cause in ("hang", "alone")
+        done = [trial(cause, log, command, environment) for _ in range(count)]
+        name = "stopped" if cause == "hang" else cause  # the relay does not wait for a guardian
+        failed += report(name, [seconds for seconds, _ in done], what, STATED_S + TICK_S if by_itself else limit_s)
+        failed += {why for _, why in done} != {"heartbeat" if by_itself else "order"}
+    return failed
+
+
 def main():
     shim = subprocess.run(["vam-sim-stage", "--shim"], check=True, capture_output=True, text=True).stdout.strip()
-    failed = 0
     with tempfile.TemporaryDirectory() as folder:
         truth = os.path.join(folder, "truth")
         open(truth, "w").close()
@@ -57,17 +67,9 @@ def main():
         command = [*COMMAND, f"projector.relay=relay:{relay.stdout.readline().strip()}"]
         environment = dict(os.environ, LD_PRELOAD=shim, VAM_LOCK_DIR=folder)
         log = Log(truth)
-        for cause in [signal.SIGKILL, signal.SIGTERM, "hang", "alone"]:
-            done = [trial(cause, log, command, environment) for _ in range(int(sys.argv[1]))]
-            times = sorted(seconds for seconds, _ in done)
-            reasons = sorted({why for _, why in done})
-            limit = STATED_S + TICK_S if cause in ("hang", "alone") else 0.1
-            late = sum(1 for seconds in times if not seconds <= limit)
-            wanted = ["heartbeat"] if cause in ("hang", "alone") else ["order"]
-            failed += late + (reasons != wanted)
-            name = cause.name if cause in SIGNALS else cause
-            print(f"# {name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, "
-                  f"worst {1e3 * times[-1]:.1f} ms, {late} past {1e3 * limit:.0f} ms, opened by {reasons}", flush=True)
+        failed = table(int(sys.argv[1]), log, command, environment, "", LIMIT_S)
+        with load(LOOPS):
+            failed += table(int(sys.argv[1]), log, command, environment, "busy ", LOADED_LIMIT_S)
         relay.kill()
         relay.wait()
     sys.exit(failed > 0)

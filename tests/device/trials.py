@@ -1,5 +1,6 @@
 """Common parts of the safety trials [devices guarantee 1]: ways to end a program, simulator logs, table of results."""
 
+import contextlib
 import json
 import os
 import signal
@@ -7,12 +8,26 @@ import subprocess
 import time
 
 LIMIT_S = 0.1
+LOADED_LIMIT_S = 0.25  # beside LOOPS programs that compute without end
+LOOPS = 6
 STALL_S = 0.5  # until the guardian takes a tool without progress for hung
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSEGV, signal.SIGABRT, signal.SIGKILL]
 NEVER = float("inf")
 
 # Of a tool built with AddressSanitizer: it dies of a signal as any other.
 os.environ["ASAN_OPTIONS"] += ":handle_segv=0:detect_leaks=0"
+
+
+@contextlib.contextmanager
+def load(loops):
+    """So many programs that compute without end, beside what is tried."""
+    busy = [subprocess.Popen(["sh", "-c", "while :; do :; done"]) for _ in range(loops)]
+    try:
+        yield
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
 
 
 class Log:
@@ -59,10 +74,10 @@ def ended_by(cause, process):
     return cause not in SIGNALS or status == -cause
 
 
-def report(cause, times, what=""):
+def report(cause, times, what="", limit=LIMIT_S):
     """Prints a line of the table, which begins with what; returns how many trials took too long."""
     name = cause.name if isinstance(cause, signal.Signals) else cause
-    limit = LIMIT_S + (STALL_S if cause == "hang" else 0)
+    limit += STALL_S if cause == "hang" else 0
     late = sum(1 for t in times if not t <= limit)
     times = sorted(times)
     print(f"# {what}{name}: {len(times)} trials, median {1e3 * times[len(times) // 2]:.1f} ms, worst {1e3 * times[-1]:.1f} ms, "
