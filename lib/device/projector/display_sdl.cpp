@@ -31,6 +31,9 @@ struct Library {
     if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) {
       throw Error{Fault::absent, "sdl: cannot reach a desktop; set DISPLAY or WAYLAND_DISPLAY, or use drm:"};
     }
+    // A program that is killed ends with its last thread, and its window only then: Mesa's for the cache goes behind
+    // all others (SCHED_BATCH, nice 19), on a busy machine by seconds.
+    setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
     sdl::api().SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");            // signals are ours
     sdl::api().SDL_SetHint(SDL_HINT_VIDEO_MINIMIZE_ON_FOCUS_LOSS, "0");  // a print must not vanish at a click elsewhere
     if (sdl::api().SDL_Init(SDL_INIT_VIDEO) != 0) throw refused("reach a desktop; set DISPLAY or WAYLAND_DISPLAY");
