@@ -16,7 +16,7 @@ cli::Manual manual() {
       "vam-calibrate",
       "measure the instrument and write calibration records",
       {"Each command reads frames that vam-capture took while vam-project showed a test pattern, measures one property "
-       "of the instrument and writes a calibration record. --flips names the log of vam-project, which tells which "
+       "of the instrument and writes a calibration record. --flips names the log of vam-project, which records which "
        "pattern frame was on and when. check reports which records are in force. vam-calibrate-all(1) shows the "
        "patterns, captures the frames and runs lag, latency, response, axis and edges in order; flat and beam on "
        "request.",

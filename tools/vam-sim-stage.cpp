@@ -61,7 +61,7 @@ cli::Manual manual() {
        "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
        "With --protocol relay it is the dead-man relay of vam-devices(7), which opens 0.3 s after the last heartbeat; "
        "the "
-       "log says when and why.",
+       "log records when and why.",
        "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded, whose path "
        "--shim prints."},
       {{"Identify a simulated stage",

@@ -191,7 +191,7 @@ void declare(cli::App& app, Options& options) {
              "For parts taller than the image: the vial is lifted (below 0: lowered) by so much a turn, in as many "
              "turns as the whole part takes to pass the image.");
   app.option("--wobble", "RECORD", options.wobble,
-             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis tells.")
+             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis states.")
       .reads();
   declare_constraints(app, options);
   declare_stopping(app, options);
