@@ -22,6 +22,22 @@ std::string cells(const std::vector<std::string>& texts) {
   return line + "\n";
 }
 
+Json entry_of(const std::string& name, const resin::Process& process, double limit_mm_h, int gap,
+              const resin::GapReport& judged) {
+  Json entry{{"name", name},
+             {"absorbance_height_um", process.absorbance_height_um},
+             {"full_cure_dose_mj_cm3", process.full_cure_dose_mj_cm3},
+             {"speed_limit_mm_h", limit_mm_h},
+             {"speed_mm_h", process.speed_mm_h},
+             {"phi_max", resin::limits_of(process).phi_max},
+             {"prints", process.speed_mm_h < limit_mm_h},
+             {"narrowest_gap_um", nullptr},
+             {"tight_gaps", judged.tight_gaps},
+             {"fused_gaps", judged.infeasible_gaps}};
+  if (gap > 0) entry["narrowest_gap_um"] = gap * process.slice_um;
+  return entry;
+}
+
 }  // namespace
 
 Json compare(const CorrectOptions& options, const Print& print, const resin::PartColumns& part) {
@@ -48,18 +64,7 @@ Json compare(const CorrectOptions& options, const Print& print, const resin::Par
                      format_number(limits.phi_max, 4), gap > 0 ? format_number(gap * process.slice_um) : "-",
                      prints ? std::to_string(judged.tight_gaps) : "-",
                      prints ? std::to_string(judged.infeasible_gaps) : "-"});
-      Json entry{{"name", table.rows[row][0]},
-                 {"absorbance_height_um", process.absorbance_height_um},
-                 {"full_cure_dose_mj_cm3", process.full_cure_dose_mj_cm3},
-                 {"speed_limit_mm_h", limit},
-                 {"speed_mm_h", speed},
-                 {"phi_max", limits.phi_max},
-                 {"prints", prints},
-                 {"narrowest_gap_um", nullptr},
-                 {"tight_gaps", judged.tight_gaps},
-                 {"fused_gaps", judged.infeasible_gaps}};
-      if (gap > 0) entry["narrowest_gap_um"] = gap * process.slice_um;
-      report.push_back(entry);
+      report.push_back(entry_of(table.rows[row][0], process, limit, gap, judged));
     }
   }
   io::write_text("-", text);

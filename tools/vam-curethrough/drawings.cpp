@@ -89,6 +89,30 @@ void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure&
   canvas.text({frame.right, frame.top - 14}, "grey 0..1", plot::label_size, paint::blue, plot::Align::end);
 }
 
+/// The line and its confidence interval.
+struct LineBand {
+  std::vector<double> at, line, low, high;
+};
+
+LineBand band_of(const std::vector<resin::CuredSample>& samples, const resin::WorkingCurve& curve, double most) {
+  double mean = 0;
+  for (const auto& sample : samples) mean += std::log10(sample.exposure_mj_cm2) / static_cast<double>(samples.size());
+  double spread = 0;
+  for (const auto& sample : samples) spread += std::pow(std::log10(sample.exposure_mj_cm2) - mean, 2);
+  const double count = curve.samples;
+  const double t = stats::student_quantile(1 - curve.confidence, count - 2);
+  LineBand band;
+  for (const double power : sequence(std::log10(0.8 * curve.critical_exposure_mj_cm2), std::log10(1.3 * most), 200)) {
+    const double value = curve.absorbance_height_um * (power - std::log10(curve.critical_exposure_mj_cm2));
+    const double error = t * curve.residual_sd_um * std::sqrt(1 / count + std::pow(power - mean, 2) / spread);
+    band.at.push_back(std::pow(10, power));
+    band.line.push_back(value);
+    band.low.push_back(value - error);
+    band.high.push_back(value + error);
+  }
+  return band;
+}
+
 }  // namespace
 
 void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& print) {
@@ -124,40 +148,23 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
   std::array<std::vector<double>, 2> y;
   double most = 0;
   double highest = 0;
-  double mean = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     x[curve.outlier[i]].push_back(samples[i].exposure_mj_cm2);
     y[curve.outlier[i]].push_back(samples[i].thickness_um);
     most = std::max(most, samples[i].exposure_mj_cm2);
     highest = std::max(highest, samples[i].thickness_um);
-    mean += std::log10(samples[i].exposure_mj_cm2) / static_cast<double>(samples.size());
   }
-  double spread = 0;
-  for (const auto& sample : samples) spread += std::pow(std::log10(sample.exposure_mj_cm2) - mean, 2);
-  const double count = curve.samples;
-  const double t = stats::student_quantile(1 - curve.confidence, count - 2);
-  std::vector<double> at;
-  std::vector<double> line;
-  std::vector<double> low;
-  std::vector<double> high;
-  for (const double power : sequence(std::log10(0.8 * curve.critical_exposure_mj_cm2), std::log10(1.3 * most), 200)) {
-    const double value = curve.absorbance_height_um * (power - std::log10(curve.critical_exposure_mj_cm2));
-    const double error = t * curve.residual_sd_um * std::sqrt(1 / count + std::pow(power - mean, 2) / spread);
-    at.push_back(std::pow(10, power));
-    line.push_back(value);
-    low.push_back(value - error);
-    high.push_back(value + error);
-  }
+  const LineBand band = band_of(samples, curve, most);
   plot::Plot plot;
   plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
                " um per decade (log10), D_gel = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
-  plot.x = {"exposure E / mJ cm-2", at.front(), at.back(), true};
+  plot.x = {"exposure E / mJ cm-2", band.at.front(), band.at.back(), true};
   plot.y = {"cured thickness / um", 0, 1.12 * highest};
-  plot.series = {
-      {"least squares", at, line, paint::blue, plot::SeriesStyle::line},
-      {format_number(100 * curve.confidence) + " % of the line", at, low, paint::grey, plot::SeriesStyle::line},
-      {"", at, high, paint::grey, plot::SeriesStyle::line},
-      {"samples", x[0], y[0], paint::black, plot::SeriesStyle::points}};
+  plot.series = {{"least squares", band.at, band.line, paint::blue, plot::SeriesStyle::line},
+                 {format_number(100 * curve.confidence) + " % of the line", band.at, band.low, paint::grey,
+                  plot::SeriesStyle::line},
+                 {"", band.at, band.high, paint::grey, plot::SeriesStyle::line},
+                 {"samples", x[0], y[0], paint::black, plot::SeriesStyle::points}};
   if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, plot::SeriesStyle::points});
   io::write_png(path, plot::draw(plot));
 }

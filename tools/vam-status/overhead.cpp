@@ -72,16 +72,14 @@ std::string colour_bar(double high, const std::string& unit) {
          format_number(high, 3) + " " + page_text(unit) + "</span></div>";
 }
 
-}  // namespace
-
-std::string overhead_figure(const RunFolder& run, const LightView& light, bool lit) {
+/// The vial and the dose in it, up to `high`, from above; with the light, where it is on.
+std::string drawing_of(const RunFolder& run, const LightView& light, bool lit, double high) {
   const Progress& progress = run.progress();
   const model::Printer& printer = run.printer();
   const double resin = light.resin_mm();
   const double vial = printer.vial.radius_mm;
   const double half = 1.35 * vial;
   const double size = 0.11 * vial;  // of letters
-  const double high = light.full_dose() * std::max(1.0, progress.turns);
   const Image dose = light.dose(run.shown());
   const std::string png = base64(io::encode_png(plot::coloured(dose, plot::ColourMap::viridis, 0, high)));
   // The stage turns the vial clockwise, seen from above, which is what a positive angle is to SVG.
@@ -102,19 +100,25 @@ std::string overhead_figure(const RunFolder& run, const LightView& light, bool l
   }
   drawing += text_at(0, -half + 1.2 * size, "text-anchor=\"middle\"", lit ? "light comes from below" : "no light");
   const double left = half + 4 * size;
-  const std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"" + mm(-left) + " " +
-                          mm(-half - 0.5 * size) + " " + mm(left + half + 0.5 * size) + " " + mm(2 * half + 4 * size) +
-                          "\" role=\"img\" aria-label=\"vial from above\"><style>.line{fill:none;"
-                          "stroke:#333;stroke-width:" +
-                          mm(0.09 * size) +
-                          "}.ray{stroke:#c60}.beam{fill:#f90;"
-                          "fill-opacity:.55}.mark{fill:#c00}text{font-size:" +
-                          mm(size) + "px}</style>" + drawing + "</svg>";
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"" + mm(-left) + " " + mm(-half - 0.5 * size) + " " +
+         mm(left + half + 0.5 * size) + " " + mm(2 * half + 4 * size) +
+         "\" role=\"img\" aria-label=\"vial from above\"><style>.line{fill:none;"
+         "stroke:#333;stroke-width:" +
+         mm(0.09 * size) +
+         "}.ray{stroke:#c60}.beam{fill:#f90;"
+         "fill-opacity:.55}.mark{fill:#c00}text{font-size:" +
+         mm(size) + "px}</style>" + drawing + "</svg>";
+}
+
+}  // namespace
+
+std::string overhead_figure(const RunFolder& run, const LightView& light, bool lit) {
+  const double high = light.full_dose() * std::max(1.0, run.progress().turns);
   const std::string unit = light.absolute() ? "mJ/cm3" : "times the largest dose of a turn";
-  const auto& critical = printer.resin.critical_dose_mj_cm3;
+  const auto& critical = run.printer().resin.critical_dose_mj_cm3;
   const std::string gels =
       light.absolute() && critical ? " The resin gels at " + format_number(*critical, 3) + " mJ/cm3." : "";
-  return "<figure><h2>Vial from above: dose so far</h2>" + svg + colour_bar(high, unit) +
+  return "<figure><h2>Vial from above: dose so far</h2>" + drawing_of(run, light, lit, high) + colour_bar(high, unit) +
          "<figcaption>Slice at z = " + format_number(light.middle_mm(), 3) + " mm." + gels +
          " The red mark is stage angle 0 and turns with the vial; the profile below is the brightness of the light "
          "there.</figcaption></figure>\n";

@@ -116,37 +116,6 @@ Vector hc3(const Vector& j, std::size_t n, const Vector& residual, const Cholesk
   return covariance;
 }
 
-}  // namespace
-
-Vector linear_fit(const Vector& rows, std::size_t n, const Vector& values) {
-  Vector matrix = normal_matrix(rows, n, Vector(values.size(), 1.0));
-  for (std::size_t a = 0; a < n; ++a) matrix[a * n + a] *= 1 + 1e-10;  // two columns may be the same
-  Vector parts = Cholesky(matrix, n).solve(gradient(rows, n, values));
-  for (double& part : parts) part = -part;
-  return parts;
-}
-
-Measured CurveFit::combined(const Vector& weight) const {
-  Measured out{0, 0, n};
-  double variance = 0;
-  for (std::size_t a = 0; a < value.size(); ++a) {
-    out.value += weight[a] * value[a];
-    for (std::size_t b = 0; b < value.size(); ++b) {
-      variance += weight[a] * weight[b] * covariance[a * value.size() + b];
-    }
-  }
-  out.sigma = std::sqrt(std::max(variance, 0.0));
-  return out;
-}
-
-Measured CurveFit::measured(std::size_t i) const {
-  Vector weight(value.size());
-  weight[i] = 1;
-  return combined(weight);
-}
-
-namespace {
-
 /// The parameters at which the sum of squares no longer falls, from `start` with its residuals [MAR63].
 void descend(const Residuals& residuals, const Vector& step, Vector& start, Vector& residual) {
   const std::size_t n = start.size();
@@ -175,6 +144,33 @@ void descend(const Residuals& residuals, const Vector& step, Vector& start, Vect
 }
 
 }  // namespace
+
+Vector linear_fit(const Vector& rows, std::size_t n, const Vector& values) {
+  Vector matrix = normal_matrix(rows, n, Vector(values.size(), 1.0));
+  for (std::size_t a = 0; a < n; ++a) matrix[a * n + a] *= 1 + 1e-10;  // two columns may be the same
+  Vector parts = Cholesky(matrix, n).solve(gradient(rows, n, values));
+  for (double& part : parts) part = -part;
+  return parts;
+}
+
+Measured CurveFit::combined(const Vector& weight) const {
+  Measured out{0, 0, n};
+  double variance = 0;
+  for (std::size_t a = 0; a < value.size(); ++a) {
+    out.value += weight[a] * value[a];
+    for (std::size_t b = 0; b < value.size(); ++b) {
+      variance += weight[a] * weight[b] * covariance[a * value.size() + b];
+    }
+  }
+  out.sigma = std::sqrt(std::max(variance, 0.0));
+  return out;
+}
+
+Measured CurveFit::measured(std::size_t i) const {
+  Vector weight(value.size());
+  weight[i] = 1;
+  return combined(weight);
+}
 
 CurveFit fit_curve(const Residuals& residuals, Vector start, const Vector& step, const std::string& subject) {
   const std::size_t n = start.size();

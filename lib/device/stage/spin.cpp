@@ -74,6 +74,12 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
   }
 }
 
+void require_moving(const Course& course, const AngleSample& now, double passed_s) {
+  if (passed_s <= course.cruise_s) return;
+  throw Error{Fault::protocol, "stage: moved only " + format_number(now.angle_deg - course.start_deg, 4) + " deg in " +
+                                   format_number(course.cruise_s, 3) + " s; it is blocked or its drive is off"};
+}
+
 }  // namespace
 
 SpinCourse plan_spin(Stage& stage, const SpinPlan& plan, bool after_homing) {
@@ -117,10 +123,8 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
     if (now.angle_deg >= course.cruise_deg) {
       require_on_line(fit, now);
       fit.add(now);
-    } else if (clock.now_s() - start_s > course.cruise_s) {
-      throw Error{Fault::protocol, "stage: moved only " + format_number(now.angle_deg - course.start_deg, 4) +
-                                       " deg in " + format_number(course.cruise_s, 3) +
-                                       " s; it is blocked or its drive is off"};
+    } else {
+      require_moving(course, now, clock.now_s() - start_s);
     }
     const bool ended = now.angle_deg >= 360.0 * plan.turns;
     if (ended || look++ % std::lround(looks) == 0) report(now);

@@ -48,6 +48,26 @@ stats::Measured gaussian_width(const std::vector<double>& profile, const std::st
   return {std::abs(width.value) * fwhm_per_sigma, width.sigma * fwhm_per_sigma, width.n};
 }
 
+/// Columns of the resin's middle, in the light's direction or against it, and where along the light each looks.
+struct MiddleColumns {
+  std::vector<int> column;
+  std::vector<double> plane_mm;
+};
+
+MiddleColumns middle_columns(const SideView& view, int width, const model::Printer& printer) {
+  const optics::View rays = optics::camera_view(printer);
+  const double along = std::sin(printer.camera.azimuth_deg * rad_per_deg) > 0 ? 1 : -1;
+  const double radius_mm = optics::resin_radius_mm(rays);
+  MiddleColumns middle;
+  for (int c = 0; c < width; ++c) {
+    const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
+    if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
+    middle.column.push_back(c);
+    middle.plane_mm.push_back(along * ray.x_v_mm * std::cos(ray.delta_rad));
+  }
+  return middle;
+}
+
 }  // namespace
 
 stats::Measured line_width_px(const Image& image, const std::string& subject) {
@@ -71,30 +91,6 @@ stats::Measured line_width_px(const Image& image, const std::string& subject) {
   const double error = std::sqrt(square / (groups - 1) / groups) * stats::few_readings_factor(groups - 1);
   return {mean, std::hypot(error, interpolation_px), groups};
 }
-
-namespace {
-
-/// Columns of the resin's middle, in the light's direction or against it, and where along the light each looks.
-struct MiddleColumns {
-  std::vector<int> column;
-  std::vector<double> plane_mm;
-};
-
-MiddleColumns middle_columns(const SideView& view, int width, const model::Printer& printer) {
-  const optics::View rays = optics::camera_view(printer);
-  const double along = std::sin(printer.camera.azimuth_deg * rad_per_deg) > 0 ? 1 : -1;
-  const double radius_mm = optics::resin_radius_mm(rays);
-  MiddleColumns middle;
-  for (int c = 0; c < width; ++c) {
-    const auto ray = optics::chief_ray(rays, (c - view.axis_column) * view.pixel_mm);
-    if (!ray.hits || std::abs(ray.x_v_mm) > middle_part * radius_mm) continue;
-    middle.column.push_back(c);
-    middle.plane_mm.push_back(along * ray.x_v_mm * std::cos(ray.delta_rad));
-  }
-  return middle;
-}
-
-}  // namespace
 
 BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer, int planes) {
   if (std::abs(std::cos(printer.camera.azimuth_deg * rad_per_deg)) > std::sin(10 * rad_per_deg)) {
