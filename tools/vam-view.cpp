@@ -1,5 +1,8 @@
 // vam-view: images of volumes, stacks, videos and folders, for inspection.
+#include <algorithm>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "io/image/image_file.hpp"
@@ -27,9 +30,31 @@ io::SparseVolume target_for(const Options& options) {
   return io::read_volume(options.target.empty() ? options.input : options.target, "target");
 }
 
+bool has_grid(const std::string& path, const std::string& name) {
+  if (path == "-") return false;  // comes but once
+  const std::vector<io::VolumeFacts> grids = io::check_volumes(path, true);
+  return std::any_of(grids.begin(), grids.end(), [&](const io::VolumeFacts& facts) { return facts.name == name; });
+}
+
+/// A target is shown with its insert.
+std::string grid_of(const Options& options) {
+  if (!options.grid.empty()) return options.grid;
+  if (options.histogram) return "dose";
+  return has_grid(options.input, "target") && has_grid(options.input, "insert") ? "target" : "";
+}
+
+void show_sections(const Options& options, const io::SparseVolume& volume, const io::ImageText& text) {
+  std::optional<io::SparseVolume> target;
+  std::optional<io::SparseVolume> insert;
+  if (!options.target.empty()) target.emplace(target_for(options));
+  const std::string& with = options.target.empty() ? options.input : options.target;
+  if (volume.name() != "insert" && has_grid(with, "insert")) insert.emplace(io::read_volume(with, "insert"));
+  write_figure(options,
+               plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr), text);
+}
+
 void show_volume(const Options& options, const io::ImageText& text) {
-  const std::string grid = options.histogram && options.grid.empty() ? "dose" : options.grid;
-  const io::SparseVolume volume = io::read_volume(options.input, grid);
+  const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const model::Printer printer = tool::load_printer(options.printer);
@@ -38,9 +63,7 @@ void show_volume(const Options& options, const io::ImageText& text) {
     const auto circle = model::writable_circle(volume.grid(), optics::judged_radius_mm(printer, farthest_mm));
     return io::write_png(options.output, plot::draw(plot::dose_histogram(volume, target, circle, options.view)), text);
   }
-  if (options.target.empty()) return write_figure(options, plot::view_volume(volume, nullptr, options.view), text);
-  const io::SparseVolume target = target_for(options);
-  write_figure(options, plot::view_volume(volume, &target, options.view), text);
+  show_sections(options, volume, text);
 }
 
 void show_images(const Options& options, io::FileType type, const io::ImageText& text) {

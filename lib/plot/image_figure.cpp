@@ -89,8 +89,44 @@ double colour_bar_room(const ImageFigure& figure) {
   return bar_gap + bar_width + widest + 46;
 }
 
+Rgb mixed(const Rgb& under, const Rgb& over, double opacity) {
+  Rgb result;
+  for (std::size_t n = 0; n < result.size(); ++n) {
+    result[n] = static_cast<std::uint8_t>(std::lround(under[n] + opacity * (over[n] - under[n])));
+  }
+  return result;
+}
+
+/// The hatching of an insert and its shadow, over the image as it stands on the canvas.
+void cover(RgbImage& image, const Panel& panel) {
+  constexpr double darkest = 0.75;
+  constexpr int period = 8;
+  constexpr int stroke = 3;
+  if (panel.hatched.size() == 0) return;
+  for (int y = 0; y < image.height; ++y) {
+    const int row = std::min(y * panel.hatched.height / image.height, panel.hatched.height - 1);
+    for (int x = 0; x < image.width; ++x) {
+      const int column = std::min(x * panel.hatched.width / image.width, panel.hatched.width - 1);
+      Rgb& pixel = image.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                                static_cast<std::size_t>(x)];
+      if (panel.hatched(column, row) >= 0.5F) {
+        pixel = (x + y) % period < stroke ? paint::black : paint::light_grey;
+      } else {
+        pixel = mixed(pixel, paint::orange, darkest * static_cast<double>(panel.shaded(column, row)));
+      }
+    }
+  }
+}
+
+std::string legend(const ImageFigure& figure) {
+  const std::string line = figure.outline_name.empty() ? "" : "line: " + figure.outline_name;
+  if (figure.hatched_name.empty()) return line;
+  return line + (line.empty() ? "" : "; ") + "hatched: " + figure.hatched_name;
+}
+
 void draw_panel(Canvas& canvas, const ImageFigure& figure, const Panel& panel, Spot corner, Scale scale) {
-  const RgbImage image = scaled(coloured(panel.values, figure.colours, figure.low, figure.high), scale);
+  RgbImage image = scaled(coloured(panel.values, figure.colours, figure.low, figure.high), scale);
+  cover(image, panel);
   canvas.paste(image, static_cast<int>(corner.x), static_cast<int>(corner.y));
   draw_outline(canvas, panel, corner, scale);
 }
@@ -102,7 +138,7 @@ RgbImage draw_single(const ImageFigure& figure) {
   const double height = std::round(panel.values.height * scale.y);
   constexpr double left = 92;
   const double top = figure.title.empty() ? 20 : 52;
-  const double foot = figure.outline_name.empty() ? 62 : 86;
+  const double foot = legend(figure).empty() ? 62 : 86;
   const double title = Canvas::text_width(figure.title, title_size) + 40;
   const double total = std::max(left + width + colour_bar_room(figure), title);
   Canvas canvas(static_cast<int>(total), static_cast<int>(top + height + foot));
@@ -113,9 +149,8 @@ RgbImage draw_single(const ImageFigure& figure) {
   const double bar_height = std::max(height, 120.0);
   draw_colour_bar(canvas, figure, left + width + bar_gap, top, top + std::min(bar_height, height));
   canvas.text({0.5 * total, 26}, figure.title, title_size, paint::black, Align::middle);
-  if (!figure.outline_name.empty()) {
-    canvas.text({left + 0.5 * width, top + height + 68}, "line: " + figure.outline_name, label_size, paint::black,
-                Align::middle);
+  if (!legend(figure).empty()) {
+    canvas.text({left + 0.5 * width, top + height + 68}, legend(figure), label_size, paint::black, Align::middle);
   }
   return canvas.image();
 }
@@ -139,7 +174,7 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   const double width = std::round(figure.panels.front().values.width * scale.x);
   const double height = std::round(figure.panels.front().values.height * scale.y);
   const double top = figure.title.empty() ? 12 : 48;
-  const double foot = figure.outline_name.empty() ? 16 : 44;
+  const double foot = legend(figure).empty() ? 16 : 44;
   double cell = width;  // a caption may be wider than its image
   for (const Panel& panel : figure.panels)
     cell = std::max(cell, std::ceil(Canvas::text_width(panel.caption, label_size)));
@@ -161,9 +196,9 @@ RgbImage draw_sheet(const ImageFigure& figure) {
   }
   draw_colour_bar(canvas, figure, 20 + body_width - gap + bar_gap, top + caption, top + body_height - gap);
   canvas.text({0.5 * total, 24}, figure.title, title_size, paint::black, Align::middle);
-  if (!figure.outline_name.empty()) {
-    canvas.text({20 + 0.5 * body_width, top + body_height + 20}, "line: " + figure.outline_name, label_size,
-                paint::black, Align::middle);
+  if (!legend(figure).empty()) {
+    canvas.text({20 + 0.5 * body_width, top + body_height + 20}, legend(figure), label_size, paint::black,
+                Align::middle);
   }
   return canvas.image();
 }

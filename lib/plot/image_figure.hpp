@@ -16,6 +16,8 @@ struct Panel {
   Image values;         // row 0 at the top
   std::string caption;  // above the image, on a sheet
   std::vector<ContourPiece> outline;
+  Image hatched = {};  // hatched from 1/2 on; none when empty
+  Image shaded = {};   // 0...1: mixed with orange; none when empty
 };
 
 struct ImageFigure {
@@ -29,6 +31,7 @@ struct ImageFigure {
   double high = 1;
   std::string value_label;   // beside the colour bar: "dose / mJ cm-3"
   std::string outline_name;  // below the image; none when empty
+  std::string hatched_name;  // beside it
   double pixel_mm = 0;       // for a scale bar; none when 0
   int columns = 0;           // of a sheet; 0: as many as make it about 4 : 3
   int size = 720;            // pixels of the longer side of the image, about

@@ -24,9 +24,10 @@ struct ViewOptions {
   int size = 720;
 };
 
-/// Sections of a volume: the middle one, the one at `at`, or a sheet. With a target its outline is drawn.
+/// Sections of a volume: the middle one, the one at `at`, or a sheet. With a target its outline is drawn, and
+/// an insert is hatched, with its shadow. Throws Fault::data where the insert's voxels are others.
 [[nodiscard]] ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target,
-                                      const ViewOptions& options);
+                                      const ViewOptions& options, io::SparseVolume* insert = nullptr);
 
 /// Images of a stack: the middle slice of sinograms, the first frame of frames, the nearest to `at`, or a sheet. Throws
 /// Fault::data when `at` is given and the images have no such coordinate.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "plot/insert_sections.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 
@@ -21,7 +22,8 @@ const char* plane_name(Plane plane) {
 
 }  // namespace
 
-ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target, const ViewOptions& options) {
+ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target, const ViewOptions& options,
+                        io::SparseVolume* insert) {
   const model::Grid& grid = volume.grid();
   const int count = plane_count(grid, options.plane);
   std::vector<int> indices = views::spread(count, options.sheet);
@@ -45,6 +47,15 @@ ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* 
     const auto lines = outlines(*target, grid, options.plane, places);
     for (std::size_t n = 0; n < lines.size(); ++n) figure.panels[n].outline = lines[n];
     figure.outline_name = "surface of the target";
+  }
+  if (insert != nullptr) {
+    insert->extend_to(grid);
+    std::vector<InsertSection> hidden = insert_sections(*insert, options.plane, indices);
+    for (std::size_t n = 0; n < hidden.size(); ++n) {
+      figure.panels[n].hatched = std::move(hidden[n].coverage);
+      figure.panels[n].shaded = std::move(hidden[n].shadow);
+    }
+    figure.hatched_name = "insert; orange: its shadow, the fuller the more angles are hidden";
   }
   if (is_coverage(volume.name())) found.high = std::max(found.high, 1.0);
   views::choose_colours(figure, options, found, is_coverage(volume.name()));

@@ -17,6 +17,8 @@ cli::Manual manual() {
        "distributions of dose inside and outside the part, each as a percentage of its voxels: if they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
+       "An insert in the volume, or in that of --target, is hatched, and resin that it hides from some stage angles is "
+       "orange, the fuller the more angles (parallel light that stays level).",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "
        "signed values in blue, white and red, with zero in the middle. --export writes the values as NRRD for "
        "ParaView, 3D Slicer or numpy."},

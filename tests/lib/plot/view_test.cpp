@@ -7,12 +7,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
 #include "io/image/image_file.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
+#include "plot/insert_sections.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;
@@ -247,4 +249,35 @@ TEST_CASE("file types are determined by content") {
   CHECK(file_type(folder.path.string()) == FileType::images);
   CHECK(has(error_of([&] { (void)file_type(written("solid part")); }, vam::Fault::data), "neither a volume (VDB)"));
   CHECK(has(error_of([&] { (void)file_type(written("")); }, vam::Fault::data), "is empty"));
+}
+
+TEST_CASE("an insert is hatched, and hides what is behind it from the angles that its width subtends") {
+  const vam::model::Grid grid = vam::model::centred_grid(81, 81, 3, 0.1);
+  SparseVolume insert("insert", grid);
+  std::vector<float> slices(grid.size(), 0.0F);
+  for (int j = 0; j < 81; ++j) {
+    for (int i = 0; i < 81; ++i) {
+      if (std::hypot(i - 40, j - 40) <= 8) slices[81 * 81 + static_cast<std::size_t>(j) * 81 + i] = 1;
+    }
+  }
+  insert.write_slices(0, 3, slices.data());
+  const auto axial = insert_sections(insert, Plane::axial, {0, 1});
+  CHECK(axial[0].shadow(60, 40) == 0);  // the insert is in the slice above
+  CHECK(axial[1].coverage(40, 40) == 1);
+  CHECK(axial[1].shadow(40, 40) == 0);
+  for (const int far : {14, 20, 32}) {  // sampled every 7.5 degrees, the rim rough by half a voxel of `far`
+    const double want = std::asin(8.0 / far) / std::numbers::pi;
+    CHECK(std::abs(static_cast<double>(axial[1].shadow(40 + far, 40)) - want) <
+          1.0 / 48 + 0.5 / far / std::numbers::pi);
+    CHECK(std::abs(axial[1].shadow(40, 40 - far) - axial[1].shadow(40 + far, 40)) < 0.03F);
+  }
+  const auto upright = insert_sections(insert, Plane::coronal, {40});
+  CHECK(upright[0].shadow(60, 1) == axial[1].shadow(60, 40));
+  CHECK(upright[0].shadow(60, 0) == 0);
+
+  SparseVolume target = ball(grid);
+  const ImageFigure figure = view_volume(target, nullptr, {}, &insert);
+  CHECK(figure.panels[0].hatched(40, 40) == 1);
+  CHECK(!figure.hatched_name.empty());
+  keep(draw(figure), "insert.png");
 }
