@@ -8,16 +8,16 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/app.hpp"
+#include "io/inspect/provenance.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
-#include "vam-check/inspect.hpp"
 
 namespace {
 
 using namespace vam;
-using check_tool::Finding;
+using io::Finding;
 
 struct Options {
   std::vector<std::string> files{"-"};
@@ -72,7 +72,7 @@ void check(const Options& options) {
   std::vector<Error> damaged;
   for (const std::string& path : options.files) {
     try {
-      found[path] = check_tool::inspect(path, options.fast);
+      found[path] = io::inspect(path, options.fast);
     } catch (const Error& error) {  // the others are checked, too
       damaged.push_back(error);
       continue;

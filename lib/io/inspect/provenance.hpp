@@ -1,10 +1,10 @@
-// What a file says of itself, and whether it holds.
+// What a file was made by, and whether it is still what was written.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace vam::check_tool {
+namespace vam::io {
 
 /// One image stack, grid, video or text.
 struct Finding {
@@ -25,4 +25,4 @@ struct Step {
 };
 [[nodiscard]] std::vector<Step> chain_of(const Finding& finding);
 
-}  // namespace vam::check_tool
+}  // namespace vam::io

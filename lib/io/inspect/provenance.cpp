@@ -1,4 +1,4 @@
-#include "vam-check/inspect.hpp"
+#include "io/inspect/provenance.hpp"
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -12,13 +12,13 @@
 #include "io/stream/stream.hpp"
 #include "io/vdb/vdb.hpp"
 
-namespace vam::check_tool {
+namespace vam::io {
 
 namespace {
 
 std::vector<Finding> inspect_stacks(const std::string& path, bool fast) {
   std::vector<Finding> findings;
-  io::StackReader reader(path);
+  StackReader reader(path);
   do {
     Image image;
     model::ImageInfo about;
@@ -31,44 +31,44 @@ std::vector<Finding> inspect_stacks(const std::string& path, bool fast) {
 
 std::vector<Finding> inspect_volumes(const std::string& path, bool fast) {
   std::vector<Finding> findings;
-  for (const auto& facts : io::check_volumes(path, fast)) {
+  for (const auto& facts : check_volumes(path, fast)) {
     findings.push_back({"grid '" + facts.name + "'", !facts.seal.empty(), facts.seal, facts.history});
   }
   return findings;
 }
 
 // A lossless video has checksums throughout, which opening it and reading its frames hold it to.
-std::vector<Finding> inspect_images(const std::string& path, io::FileType type, bool fast) {
-  const auto source = io::open_images(path, type);
+std::vector<Finding> inspect_images(const std::string& path, FileType type, bool fast) {
+  const auto source = open_images(path, type);
   Image image;
   model::ImageInfo about;
   while (!fast && source->next(image, about)) continue;
-  const bool lossless = type == io::FileType::video && path.ends_with(".mkv");
-  return {{type == io::FileType::video ? "video" : "folder of images", lossless, "", source->info().history}};
+  const bool lossless = type == FileType::video && path.ends_with(".mkv");
+  return {{type == FileType::video ? "video" : "folder of images", lossless, "", source->info().history}};
 }
 
 std::vector<Finding> inspect_text(const std::string& path) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
-  const std::string name = io::input_name(path);
-  const std::string text = io::read_all(path, io::Content::text, most_bytes);
+  const std::string name = input_name(path);
+  const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   if (const Json json = Json::parse(text, nullptr, false); json.is_object()) {
-    Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", io::require_seal(json, name), "", {}};
+    Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
   }
-  return {{"file of another kind", io::require_text_seal(text, name), "", {}}};
+  return {{"file of another kind", require_text_seal(text, name), "", {}}};
 }
 
 }  // namespace
 
 std::vector<Finding> inspect(const std::string& path, bool fast) {
-  const auto type = io::known_file_type(path);
+  const auto type = known_file_type(path);
   if (!type) return inspect_text(path);
   switch (*type) {
-    case io::FileType::volume:
+    case FileType::volume:
       return inspect_volumes(path, fast);
-    case io::FileType::stack:
+    case FileType::stack:
       return inspect_stacks(path, fast);
     default:
       return inspect_images(path, *type, fast);
@@ -78,7 +78,7 @@ std::vector<Finding> inspect(const std::string& path, bool fast) {
 std::vector<Step> chain_of(const Finding& finding) {
   std::vector<Step> chain;
   for (const std::string& line : finding.history) {
-    const std::string seal = io::chained_seal(line);
+    const std::string seal = chained_seal(line);
     if (seal.empty()) {
       chain.push_back({line, ""});
     } else if (!chain.empty()) {
@@ -89,4 +89,4 @@ std::vector<Step> chain_of(const Finding& finding) {
   return chain;
 }
 
-}  // namespace vam::check_tool
+}  // namespace vam::io
