@@ -7,13 +7,13 @@
 #include <ctime>
 #include <filesystem>
 
-#include "base/base64.hpp"
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/image/capture_folder.hpp"
 #include "io/image/image_file.hpp"
 #include "plot/image_figure.hpp"
+#include "plot/page.hpp"
 #include "vam-status/overhead.hpp"
 
 namespace vam::status_tool {
@@ -26,15 +26,6 @@ std::string fixed(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   return text;
-}
-
-std::string figure(const std::string& title, const std::string& content, const std::string& caption) {
-  return "<figure><h2>" + page_text(title) + "</h2>" + content + "<figcaption>" + page_text(caption) +
-         "</figcaption></figure>\n";
-}
-
-std::string img(const RgbImage& image, const std::string& alt) {
-  return "<img src=\"data:image/png;base64," + base64(io::encode_png(image)) + "\" alt=\"" + page_text(alt) + "\">";
 }
 
 // Mean of blocks, so that no more than `most` columns are left.
@@ -56,7 +47,8 @@ Image reduced(const GreyImage& image, int most) {
 std::string camera_figure(const RunFolder& run) {
   const auto newest = newest_image(run);
   if (!newest) {
-    return figure("Camera", "<p class=\"none\">no image</p>", "vam-print --views DEG takes images during a print.");
+    return plot::page_figure("Camera", "<p class=\"none\">no image</p>",
+                             "vam-print --views DEG takes images during a print.");
   }
   const GreyImage levels = io::read_image(newest->path);
   const model::PrinterCamera& camera = run.printer().camera;
@@ -74,7 +66,8 @@ std::string camera_figure(const RunFolder& run) {
   view.size = 480;
   const std::string when =
       newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
-  return figure("Camera", img(plot::draw(view), "camera image"), "The newest image" + when + ".");
+  return plot::page_figure("Camera", plot::page_image(plot::draw(view), "camera image"),
+                           "The newest image" + when + ".");
 }
 
 std::string screen_figure(const RunFolder& run, const LightView& light, double angle_deg, bool lit) {
@@ -88,10 +81,11 @@ std::string screen_figure(const RunFolder& run, const LightView& light, double a
   view.value_label = "fraction";
   view.size = 480;
   const double peak = run.printer().projector.max_intensity_mw_cm2;
-  return figure("Projected image", img(plot::draw(view), "image of the projector"),
-                lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
-                          " deg; 1 is the brightest pixel of the print, " + format_number(peak, 3) + " mW/cm2."
-                    : "Dark: no light is given now.");
+  return plot::page_figure("Projected image", plot::page_image(plot::draw(view), "image of the projector"),
+                           lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
+                                     " deg; 1 is the brightest pixel of the print, " + format_number(peak, 3) +
+                                     " mW/cm2."
+                               : "Dark: no light is given now.");
 }
 
 std::string time_text(const std::string& utc) {
@@ -128,19 +122,12 @@ std::string figures_table(const RunFolder& run) {
   return rows + "</table>\n";
 }
 
-constexpr const char* style =
-    "body{font:15px/1.4 sans-serif;margin:1.2em;color:#111;background:#fff}h1{font-size:1.3em;margin:0}"
-    "h2{font-size:1em;margin:0 0 .4em}p{margin:.3em 0 .8em}.images{display:flex;flex-wrap:wrap;gap:1.2em}"
-    "figure{margin:0 0 1.2em;width:30em;max-width:100%}figure img,figure svg{width:100%;height:auto}"
-    "figcaption{color:#444}table{border-collapse:collapse;margin:.4em 0 1em}"
-    "th,td{text-align:left;padding:.15em 1em .15em 0;font-variant-numeric:tabular-nums}th{font-weight:600}"
-    ".none{color:#666}#old{background:#b00;color:#fff;padding:.4em .8em;display:none}";
+constexpr const char* style = "#old{background:#b00;color:#fff;padding:.4em .8em;display:none}";
 
-// Without a renewal the page would look alive for ever. Bound by its hash; nothing else can run.
+// Without a renewal the page would look alive for ever.
 constexpr const char* script =
     "setInterval(function(){var b=document.body;if(b.dataset.live&&Date.now()/1000-b.dataset.written>15)"
     "document.getElementById('old').style.display='block'},1000)";
-constexpr const char* script_hash = "IMvL7mhReVqrMSJcQbGUckXauCJKPWcu6DMz5ZqVVy8=";
 
 }  // namespace
 
@@ -165,21 +152,22 @@ std::string page(const std::string& name, const RunFolder& run, const LightView*
   const std::time_t now = std::time(nullptr);
   char utc[32];
   std::strftime(utc, sizeof utc, "%Y-%m-%d %H:%M:%S UTC", std::gmtime(&now));
-  std::string html = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
-  html += std::string(
-              "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
-              "style-src 'unsafe-inline'; script-src 'sha256-") +
-          script_hash + "'\">\n";
-  if (live) html += "<meta http-equiv=\"refresh\" content=\"" + format_number(std::max(1.0, period_s), 3) + "\">\n";
-  html += "<title>" + page_text(state_of(progress) + " - " + name) + "</title>\n<style>" + style + "</style></head>\n";
-  html += "<body data-written=\"" + std::to_string(now) + "\"" + (live ? " data-live=\"1\"" : "") + ">\n";
-  html += "<p id=\"old\">This page is no longer refreshed: the print, or the program that shows it, has ended.</p>\n";
-  html += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
-  html += figures_table(run) + "<div class=\"images\">\n<div>" + camera_figure(run);
-  if (light != nullptr) html += screen_figure(run, *light, progress.angle_deg, lit);
-  html += "</div>\n" + (light != nullptr ? overhead_figure(run, *light, lit) : "");
-  html += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);
-  return html + "<script>" + script + "</script></body></html>\n";
+  plot::Page made;
+  made.title = state_of(progress) + " - " + name;
+  if (live) {
+    made.head = "<meta http-equiv=\"refresh\" content=\"" + format_number(std::max(1.0, period_s), 3) + "\">\n";
+  }
+  made.body_attributes = "data-written=\"" + std::to_string(now) + "\"" + (live ? " data-live=\"1\"" : "");
+  made.style = style;
+  made.script = script;
+  std::string& body = made.body;
+  body = "<p id=\"old\">This page is no longer refreshed: the print, or the program that shows it, has ended.</p>\n";
+  body += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
+  body += figures_table(run) + "<div class=\"images\">\n<div>" + camera_figure(run);
+  if (light != nullptr) body += screen_figure(run, *light, progress.angle_deg, lit);
+  body += "</div>\n" + (light != nullptr ? overhead_figure(run, *light, lit) : "");
+  body += "</div>\n<h2>Calibration records</h2>\n" + records_table(progress);
+  return plot::html(made);
 }
 
 }  // namespace vam::status_tool

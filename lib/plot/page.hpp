@@ -1,0 +1,29 @@
+// A page for a browser: one file with its images within, readable without a network. Text from outside is escaped.
+#pragma once
+
+#include <string>
+
+#include "base/pixels.hpp"
+
+namespace vam::plot {
+
+/// <img> with the PNG within.
+[[nodiscard]] std::string page_image(const RgbImage& image, const std::string& alt);
+
+/// <figure> with heading and caption around `content`, which is HTML; the other two are text.
+[[nodiscard]] std::string page_figure(const std::string& title, const std::string& content, const std::string& caption);
+
+struct Page {
+  std::string title;            // text
+  std::string head;             // HTML: further elements of the head
+  std::string body_attributes;  // HTML: `data-live="1"`
+  std::string body;             // HTML
+  std::string style;            // CSS beside that of all pages
+  std::string script;           // JavaScript, at the end of the body: nothing else can run
+};
+
+/// UTF-8. The content security policy allows images within the page, styles and this script, which is bound by its
+/// hash; there is no access to any network.
+[[nodiscard]] std::string html(const Page& page);
+
+}  // namespace vam::plot
