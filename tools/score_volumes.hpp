@@ -1,0 +1,55 @@
+// A dose in a file scored against the target in another.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "base/log.hpp"
+#include "base/memory.hpp"
+#include "base/text.hpp"
+#include "io/vdb/vdb.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
+#include "model/printer.hpp"
+#include "optics/writable.hpp"
+#include "score/score.hpp"
+
+namespace vam::tool {
+
+/// The circle that is judged, the threshold that the light was made for, and for a dose in mJ/cm3 of a resin with a
+/// critical dose that threshold and the exposure.
+inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
+                            const model::Printer& printer) {
+  const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
+  how.circle = model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
+  const auto made_for = dose.metadata.find("vam:threshold_dose");
+  if (made_for != dose.metadata.end()) how.aimed_at = parse_number(made_for->second);
+  if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
+  if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
+  const auto turns = dose.metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan
+  how.exposure = {printer, turns == dose.metadata.end() ? 1.0 : std::stod(turns->second)};
+}
+
+/// Both on the same grid.
+inline score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                  const score::ScoreOptions& how) {
+  constexpr int slab = 16;
+  const model::Grid& grid = target.grid();
+  require_memory(2.0 * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
+                 target.name() + ": " + model::size_text(grid), "use larger voxels");
+  score::Score result(how, grid.nx, grid.ny);
+  std::vector<float> doses(grid.slice_size() * slab);
+  std::vector<float> coverage(grid.slice_size() * slab);
+  Progress progress("scoring", grid.nz);
+  for (int k = 0; k < grid.nz; k += slab) {
+    const int count = std::min(slab, grid.nz - k);
+    dose.read_slices(k, count, doses.data());
+    target.read_slices(k, count, coverage.data());
+    result.add(doses.data(), coverage.data(), count);
+    progress.tick(count);
+  }
+  return result;
+}
+
+}  // namespace vam::tool
