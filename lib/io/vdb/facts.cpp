@@ -40,7 +40,7 @@ void set_transform(const FloatGrid& sparse, const Coord& first, model::Grid& gri
     }
   }
   const openvdb::Vec3d origin = sparse.indexToWorld(first);
-  grid.voxel_mm = sparse.voxelSize().x();  // as it was written, to the last bit
+  grid.voxel_mm = voxel;  // not the map's voxelSize(), which files hold once more and no seal covers
   grid.origin_mm = {origin.x(), origin.y(), origin.z()};
   if (!std::isfinite(origin.lengthSqr())) throw std::runtime_error(name + " lies at infinity");
 }

@@ -8,12 +8,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <functional>
 #include <map>
 #include <random>
 #include <string>
 
+#include "base/printable.hpp"
 #include "lib/io/exr_stacks.hpp"
 #include "lib/io/vdb_volumes.hpp"
 
@@ -97,7 +99,8 @@ void no_flip_unseen(const std::string& path, const std::string& whole,
     refused += ended == 65 ? 1 : 0;
     if (ended != 0 || seen == wanted) continue;
     ++different;
-    MESSAGE("unseen: bit " << bit % 8 << " of byte " << bit / 8);
+    const std::size_t from = std::max<std::size_t>(bit / 8, 24) - 24;
+    MESSAGE("unseen: bit " << bit % 8 << " of byte " << bit / 8 << ", in " << printable(whole.substr(from, 48)));
   }
   CHECK(different == 0);
   CHECK(refused > trials / 2);
