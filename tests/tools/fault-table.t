@@ -57,11 +57,13 @@ judge() {  # judge STATUS CALL: prints what is wrong
     if is_new "$file"; then changed=$((changed + 1)); elif [ "$(cat "$file")" != old ]; then spoilt=$file; fi
   done
   [ -z "$spoilt" ] || echo "$spoilt is neither the old file nor the new one"
+  cmp -s .log/out .log/printed; printed=$?
   [ "$1" -ne 0 ] || [ $changed -eq "$count" ] || echo 'status 0, but not all is new'
+  [ "$1" -ne 0 ] || [ $printed -eq 0 ] || echo 'status 0, but not all is printed'
   [ "$1" -ne 137 ] || return
   [ -z "$(ls -A | grep '^\.vam-')" ] || echo "left behind: $(ls -A | grep '^\.vam-' | tr '\n' ' ')"
   case $1 in 0 | 129 | 130 | 143) return ;; esac
-  [ $changed -lt "$count" ] || echo "status $1, but all is new"
+  [ $changed -lt "$count" ] || [ $printed -ne 0 ] || echo "status $1, but all is new"
   if [ "$2" = write ] && [ ! -s .log/err ]; then return; fi  # the fault hit the message, too
   [ "$(grep -c "^$tool: " .log/err)" -eq 1 ] || echo "not said in a line: $(head -n 3 .log/err | tr '\n' ' ')"
 }
@@ -75,6 +77,7 @@ while IFS='|' read -r outputs command; do
   count=$(echo "$outputs" | wc -w)
   rm -f out.*
   if ! $command >.log/out 2>.log/err </dev/null; then report 1 "$command"; sed 's/^/# /' .log/err; continue; fi
+  mv .log/out .log/printed
   rm -f .log/want/*
   for file in $outputs; do mv "$file" .log/want/; done
   old; $command >.log/out 2>.log/err </dev/null  # a second time, over older files: what is written does not depend on it
