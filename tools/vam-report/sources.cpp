@@ -1,0 +1,88 @@
+#include "vam-report/sources.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "io/stream/file_type.hpp"
+#include "io/stream/stream.hpp"
+
+namespace vam::report_tool {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t most_text = std::uint64_t{16} << 20;
+
+bool is_report(const std::string& path) {
+  return Json::parse(io::read_all(path, io::Content::text, most_text), nullptr, false).is_object();
+}
+
+bool is_trace(const std::string& path) {
+  return io::read_all(path, io::Content::text, most_text).starts_with("iteration,");
+}
+
+bool is_png(const std::string& path) {
+  return io::read_all(path, io::Content::binary, most_text).starts_with("\x89PNG\r\n\x1a\n");
+}
+
+/// False where the file is nothing that a report shows.
+bool add(Sources& sources, const std::string& path) {
+  if (const auto type = io::known_file_type(path)) {
+    switch (*type) {
+      case io::FileType::volume:
+        sources.volumes.push_back(path);
+        return true;
+      case io::FileType::stack:
+        sources.stacks.push_back(path);
+        return true;
+      case io::FileType::video:
+        sources.videos.push_back(path);
+        return true;
+      case io::FileType::images:
+        return false;
+    }
+  }
+  const std::string ending = fs::path(path).extension();
+  if (ending == ".json" && is_report(path)) return sources.reports.push_back(path), true;
+  if (ending == ".csv" && is_trace(path)) return sources.traces.push_back(path), true;
+  if (ending == ".png" && is_png(path)) return sources.images.push_back(path), true;
+  return false;
+}
+
+void add_folder(Sources& sources, const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code problem;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, problem)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  if (problem) throw Error{Fault::no_input, folder + ": " + problem.message()};
+  std::sort(files.begin(), files.end());
+  long shown = 0;
+  for (const std::string& file : files) shown += add(sources, file) ? 1 : 0;
+  if (shown == 0) {
+    throw Error{Fault::data, folder + ": holds no volume, stack, video, report (JSON), trace (CSV) or image (PNG)"};
+  }
+}
+
+}  // namespace
+
+Sources gather(const std::vector<std::string>& paths) {
+  Sources sources;
+  for (const std::string& path : paths) {
+    if (path == "-") throw Error{Fault::usage, "FILE: a report reads its files more than once; name files, not -"};
+    if (fs::is_directory(path)) {
+      add_folder(sources, path);
+    } else if (!add(sources, path)) {
+      throw Error{Fault::data, path +
+                                   ": is no volume, stack, video, report (JSON), trace (CSV of vam-optimize "
+                                   "--trace) or image (PNG)"};
+    }
+  }
+  return sources;
+}
+
+}  // namespace vam::report_tool

@@ -1,0 +1,104 @@
+#include "vam-report/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "io/inspect/provenance.hpp"
+#include "io/settings/csv_table.hpp"
+#include "io/settings/sealed_text.hpp"
+#include "io/stream/stream.hpp"
+#include "plot/page.hpp"
+#include "plot/plot.hpp"
+#include "vam-report/names.hpp"
+
+namespace vam::report_tool {
+
+namespace {
+
+constexpr std::size_t most_values = 24;  // of a list that is written out
+
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return format_number(value.get<double>(), 5);
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string list_of(const Json& values) {
+  std::vector<std::string> parts;
+  for (const Json& value : values) {
+    if (parts.size() == most_values) {
+      parts.push_back("... (" + std::to_string(values.size()) + " values)");
+      break;
+    }
+    parts.push_back(text_of(value));
+  }
+  return join(parts, ", ");
+}
+
+void add_rows(std::string& rows, const std::string& prefix, const Json& object) {
+  for (const auto& [key, value] : object.items()) {
+    if (value.is_object()) {
+      add_rows(rows, prefix + key + ".", value);
+      continue;
+    }
+    if (key == "schema" || key == "seal") continue;
+    rows += "<tr><th>" + page_text(prefix + key) + "</th><td>" +
+            page_text(value.is_array() ? list_of(value) : text_of(value)) + "</td></tr>\n";
+  }
+}
+
+}  // namespace
+
+std::string figures_table(const Json& figures) {
+  std::string rows;
+  add_rows(rows, "", figures);
+  return "<div class=\"wrapped\"><table>" + rows + "</table></div>\n";
+}
+
+std::string report_table(const std::string& path) {
+  const Json report = Json::parse(io::read_all(path), nullptr, false);
+  if (!report.is_object()) throw Error{Fault::data, path + ": is no JSON object"};
+  (void)io::require_seal(report, path);
+  const std::string schema = report.contains("schema") ? ", " + text_of(report["schema"]) : "";
+  return "<details><summary>" + page_text(file_name(path) + schema) + "</summary>" + figures_table(report) +
+         "</details>\n";
+}
+
+std::string convergence(const std::string& path) {
+  const io::CsvTable table = io::read_csv(path, {"iteration", "ver", "pw"});
+  plot::Series window{"process window", {}, {}, plot::paint::blue};
+  plot::Series errors{"VER", {}, {}, plot::paint::vermilion};
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    for (plot::Series* series : {&window, &errors}) series->x.push_back(table.number(row, 0));
+    errors.y.push_back(table.number(row, 1));
+    window.y.push_back(table.number(row, 2));
+  }
+  plot::Plot curves;
+  curves.x.label = "iteration";
+  curves.y.label = "VER, process window (of the largest dose)";
+  curves.series = {window, errors};
+  return plot::page_figure("Convergence", plot::page_image(plot::draw(curves), "figures over the iterations"),
+                           file_name(path) + ": the part prints from a process window of 0 on.");
+}
+
+std::string provenance(const std::vector<std::string>& paths) {
+  std::string made;
+  for (const std::string& path : paths) {
+    for (const io::Finding& finding : io::inspect(path, true)) {
+      made += "<details><summary>" + page_text(file_name(path) + ": " + finding.what) + "</summary><table>";
+      made += "<tr><th>command</th><th>seal of its file</th></tr>\n";
+      for (const auto& [command, seal] : io::chain_of(finding)) {
+        made += "<tr><td><code>" + page_text(command) + "</code></td><td><code>" +
+                page_text(seal.empty() ? "not sealed" : seal) + "</code></td></tr>\n";
+      }
+      made += "</table></details>\n";
+    }
+  }
+  return made;
+}
+
+}  // namespace vam::report_tool

@@ -1,0 +1,31 @@
+// Sections of volumes, and a dose judged against its target.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/vdb/vdb.hpp"
+#include "model/printer.hpp"
+#include "score/score.hpp"
+
+namespace vam::report_tool {
+
+/// All grids of the report's files. The first target and the first dose are the ones that are judged.
+struct Volumes {
+  std::vector<std::string> files;  // of each grid
+  std::vector<io::SparseVolume> grids;
+  [[nodiscard]] const io::SparseVolume* find(const std::string& name) const;
+};
+
+/// The target takes the dose's grid, with void around. Throws what read_volumes throws; Fault::data where the voxels
+/// of target and dose lie elsewhere.
+[[nodiscard]] Volumes read_volumes(const std::vector<std::string>& paths);
+
+/// HTML: axial, coronal and sagittal sections of every grid, the dose with the target's outline.
+[[nodiscard]] std::string section_views(const Volumes& volumes, int count);
+
+/// HTML: the shares of part and void over the dose.
+[[nodiscard]] std::string histogram(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                    const score::ScoreOptions& how);
+
+}  // namespace vam::report_tool
