@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/text.hpp"
+#include "io/vdb/covered.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
@@ -25,6 +26,7 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
   how.circle = model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
   const auto made_for = dose.metadata.find("vam:threshold_dose");
   if (made_for != dose.metadata.end()) how.aimed_at = parse_number(made_for->second);
+  how.part = io::covered_box(target, model::coverage_rounding);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
   const auto turns = dose.metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan

@@ -77,7 +77,7 @@ void run(const cli::App& app, Options& options) {
   sink.finish();
   std::optional<optimize::Trials> trials;
   if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
-  publish(outcome, trials, printer, info, options);
+  publish(outcome, trials, scene, in.target.front(), info, options);
   sink.commit();
   if (checkpoint) checkpoint->remove();
 }

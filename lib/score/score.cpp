@@ -35,6 +35,9 @@ const std::vector<Figure>& figure_list() {
       {"max_part", "maximum dose in the part"},
       {"max_void", "maximum dose in the void"},
       {"max_dose", "maximum dose"},
+      {"outside_voxels", "void voxels outside the box around the part"},
+      {"outside_gelled_voxels", "those of them that gel in the print"},
+      {"outside_max_dose", "maximum dose in them"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -52,7 +55,7 @@ const std::vector<Figure>& figure_list() {
 }  // namespace
 
 Score::Score(const ScoreOptions& options, int width, int height)
-    : options_(options), whole_(options.threshold), with_cut_(options.threshold) {
+    : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
   inside_.reserve(width * static_cast<std::size_t>(height));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -68,6 +71,7 @@ void Score::add(const float* dose, const float* target, int count) {
     slices.emplace_back(options_.threshold);
     cut.emplace_back(options_.threshold);
   }
+  std::vector<model::OutsideDoses> outside(slices.size());
   std::vector<std::int64_t> surface(static_cast<std::size_t>(count), 0);
   parallel_for(count, [&](int s) {
     const std::size_t first = static_cast<std::size_t>(s) * inside_.size();
@@ -82,14 +86,24 @@ void Score::add(const float* dose, const float* target, int count) {
         cut[s].add(d, f >= 0.5F ? model::Label::part : model::Label::void_);
       }
       slices[s].add(d, label);
+      if (options_.part && label == model::Label::void_ && !in_box(i, slices_ + s)) outside[s].add(d);
     }
   });
   for (int s = 0; s < count; ++s) {
     whole_.merge(slices[s]);
     with_cut_.merge(slices[s]);
     with_cut_.merge(cut[s]);
+    outside_.merge(outside[s]);
     surface_ += surface[s];
   }
+  slices_ += count;
+}
+
+double Score::outside(const std::string& name) const {
+  if (!options_.part) return none;
+  const model::Outside all = outside_.at(print_threshold());
+  if (name == "outside_voxels") return static_cast<double>(all.voxels);
+  return name == "outside_max_dose" ? all.max_dose : static_cast<double>(all.gelled_voxels);
 }
 
 const std::vector<std::string>& Score::names() {
@@ -115,6 +129,7 @@ double Score::figure(const std::string& name) const {
     if (name == "duration_s") return plan.seconds;
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
   }
+  if (name.starts_with("outside_")) return outside(name);
   if (name.starts_with("cured_")) {
     const auto at = judged().at_threshold();
     if (!at) return none;
@@ -160,7 +175,7 @@ std::string Score::table() const {
   for (const auto& [name, meaning] : figure_list()) {
     if (!values.contains(name)) continue;
     char line[200];
-    std::snprintf(line, sizeof line, "%-12s %12s  %s\n", name.c_str(),
+    std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
                   format_number(values[name].get<double>()).c_str(), meaning.c_str());
     text += line;
   }

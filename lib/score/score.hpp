@@ -8,6 +8,7 @@
 #include "base/json_fwd.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/outside.hpp"
 #include "model/printer.hpp"
 #include "score/verdict.hpp"
 
@@ -20,13 +21,14 @@ struct Exposure {
 };
 
 struct ScoreOptions {
-  model::Circle circle;              // the writable one; void outside it is not judged
-  bool surface = false;              // surface voxels count too: part when at least half covered, else void
-  bool absolute = false;             // PW and IPDR in the dose's unit instead of fractions of the largest dose
-  double trim = 0.02;                // alpha: extremes are also given at the alpha/2 percentiles
-  std::optional<double> threshold;   // the resin's critical dose, in the dose's unit
-  std::optional<double> aimed_at;    // the threshold that its light was made for, in the dose's unit
-  std::optional<Exposure> exposure;  // known when the dose is in mJ/cm3
+  model::Circle circle;                 // the writable one; void outside it is not judged
+  bool surface = false;                 // surface voxels count too: part when at least half covered, else void
+  bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
+  double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
+  std::optional<double> threshold;      // the resin's critical dose, in the dose's unit
+  std::optional<double> aimed_at;       // the threshold that its light was made for, in the dose's unit
+  std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
+  std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
 };
 
 /// Gathers slices in ascending order; each is judged on a thread of its own.
@@ -55,11 +57,20 @@ class Score {
  private:
   [[nodiscard]] const model::DoseStatistics& judged() const { return options_.surface ? with_cut_ : whole_; }
 
+  [[nodiscard]] bool in_box(std::size_t pixel, int slice) const {
+    const auto width = static_cast<std::size_t>(width_);
+    return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
+  }
+  [[nodiscard]] double outside(const std::string& name) const;
+
   ScoreOptions options_;
+  int width_;
   std::vector<bool> inside_;                // of a slice, whether the circle has it
   model::DoseStatistics whole_, with_cut_;  // without and with the voxels that the surface cuts
   model::LightEfficiency light_;
   std::int64_t surface_ = 0;
+  int slices_ = 0;               // seen
+  model::OutsideDoses outside_;  // void outside the part's box
 };
 
 }  // namespace vam::score

@@ -58,6 +58,24 @@ for how in vial resampled; do
   vam-dose $how.exr --like boat.vdb -o dose.vdb && vam-score dose.vdb --target boat.vdb --report judged-$how.json >table
 done
 is "its print has no error" "$(value judged-vial.json ver)" 0.0
+vam-dose vial.exr --like boat.vdb -o dose.vdb --report dosed.json
+holds "all tools see the same voxels outside the part's box" "$(value vial.json outside_voxels) > 10000 &&
+  $(value vial.json outside_voxels) == $(value dosed.json outside_voxels) &&
+  $(value vial.json outside_voxels) == $(value judged-vial.json outside_voxels)"
+holds "none of which gels" "$(value vial.json outside_gelled_voxels) == 0 && $(value dosed.json outside_gelled_voxels) == 0 &&
+  $(value judged-vial.json outside_gelled_voxels) == 0 && $(value vial.json outside_max_dose) < 0.8"
+holds "the largest dose there is the same to the judges and that of the optimiser within 1 %" \
+  "$(value dosed.json outside_max_dose) == $(value judged-vial.json outside_max_dose) &&
+  ($(value dosed.json outside_max_dose) / $(value vial.json outside_max_dose) - 1)^2 < 1e-4"
+is "no face is hard where nothing is wrong" "$(value vial.json hard_faces)" '[]'
+
+# A wide lid far above a short lens, with little time
+vam-slice --shape cylinder:diameter=14,height=20 --voxel 0.4 --set projector.throw_ratio=0.6 -o lid.vdb
+vam-optimize --angles 60 --method dose-norm --set projector.throw_ratio=0.6 lid.vdb -o lid.exr --report lid.json 2>lid.txt
+is "a warning names hard faces, their width and the tilt that helps" \
+  "$(grep -c 'warning: lid.vdb: climbing rays blur 2 level faces of the part, .* 12.4 mm wide, over .* voxels .*--rotate [0-9]*,0,0' lid.txt)" 1
+holds "the report has them" "$(value lid.json hard_faces.0.smear_voxels) > 2 && $(value lid.json hard_faces.0.wrong_voxels) > 0 &&
+  $(value lid.json hard_faces_remedy.tilt_deg) >= 2"
 holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(value vial.json pw) - 0.001"
 holds "which is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*omit vam-resample' vam-resample vial.exr -o twice.exr

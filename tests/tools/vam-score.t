@@ -12,7 +12,7 @@ ok "its own target, given by name" vam-score --grid target part.vdb --target par
 ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
 ok "JSON on stdout is the report's figures" sh -c 'vam-score --json --grid target part.vdb >out.json'
 is "same numbers" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
-is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 14
+is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 17
 ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0, of [0-9]+ voxels; with the [0-9]+ that the surface cuts [-+0-9.e]+, VER "'
 is "which counts what it says" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))

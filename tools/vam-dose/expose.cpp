@@ -128,7 +128,7 @@ Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options&
                                   printer.projector.min_intensity_mw_cm2 / printer.projector.max_intensity_mw_cm2};
   const std::vector<double> turns = shown_turns(options, info, printer);
   std::optional<model::Circle> judged;
-  if (options.exposure_plan) judged = model::writable_circle(place.grid, place.judged_mm);
+  if (place.target != nullptr) judged = model::writable_circle(place.grid, place.judged_mm);
   Insert insert(place.insert, place.target, place.grid, info);
   Sink sink(volume, place, insert, first, judged);
 
@@ -144,6 +144,7 @@ Exposed expose(io::StackReader& in, const model::StackInfo& info, const Options&
                                  : expose_slices(in, simulation, light, turns, first, insert, blurred);
   exposed.doses = sink.range();
   exposed.metrics = sink.judged();
+  if (judged) exposed.outside = sink.outside();
   if (insert.there() && place.target != nullptr) exposed.dark_part_voxels = insert.dark_part_voxels();
   warn_about(options, exposed.light, projector);
   if (insert.dark_part_voxels() > 0) {

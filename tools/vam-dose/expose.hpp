@@ -8,6 +8,7 @@
 #include "io/vdb/vdb.hpp"
 #include "light/display.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/outside.hpp"
 #include "model/printer.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/options.hpp"
@@ -22,7 +23,8 @@ struct Exposed {
   bool climbs = false;     // rays that climb were followed
   double blur_mm = 0;      // standard deviation of the blur by beam and resin; 0 if neglected
   score::TurnDoses doses;
-  model::DoseMetrics metrics;                    // of part and void, when an exposure is to be planned
+  model::DoseMetrics metrics;                    // of part and void, with a target
+  std::optional<model::OutsideDoses> outside;    // of the part's box, with a target
   std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
 };
 

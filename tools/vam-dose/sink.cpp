@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "io/vdb/covered.hpp"
 #include "light/insert.hpp"
 
 namespace vam::dose_tool {
@@ -10,6 +11,7 @@ Sink::Sink(io::SparseVolume& volume, const Place& place, const Insert& insert, i
            std::optional<model::Circle> judged)
     : volume_(volume), target_(place.target), insert_(insert), next_(first), judged_(judged) {
   buffer_.reserve(8 * volume.grid().slice_size());
+  if (target_ != nullptr) part_ = io::covered_box(*target_, model::coverage_rounding);
 }
 
 void Sink::add(Image& dose) {
@@ -37,7 +39,9 @@ void Sink::judge(const Image& dose, const Image& part) {
   for (int y = 0; y < dose.height; ++y) {
     for (int x = 0; x < dose.width; ++x) {
       const auto label = model::label_of(part(x, y));
-      if (label == model::Label::part || judged_->contains(x, y)) statistics_.add(dose(x, y), label);
+      if (label != model::Label::part && !judged_->contains(x, y)) continue;
+      statistics_.add(dose(x, y), label);
+      if (label == model::Label::void_ && !part_.contains(x, y, next_ + pending_)) outside_.add(dose(x, y));
     }
   }
 }

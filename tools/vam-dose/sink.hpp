@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "io/vdb/vdb.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
+#include "model/outside.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/insert.hpp"
 #include "vam-dose/place.hpp"
@@ -25,6 +27,7 @@ class Sink {
   void flush();
   [[nodiscard]] const score::TurnDoses& range() const { return range_; }
   [[nodiscard]] model::DoseMetrics judged() const { return statistics_.metrics(false); }
+  [[nodiscard]] model::OutsideDoses outside() { return std::move(outside_); }
 
  private:
   void judge(const Image& dose, const Image& part);
@@ -38,6 +41,8 @@ class Sink {
   score::TurnDoses range_;
   std::optional<model::Circle> judged_;
   model::DoseStatistics statistics_;
+  model::VoxelBox part_;
+  model::OutsideDoses outside_;  // void outside the part's box
 };
 
 /// Multiplies the whole volume.

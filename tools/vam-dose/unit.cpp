@@ -79,6 +79,14 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
   }
   report["negative_fraction"] = seen.values > 0 ? seen.negative / seen.values : 0;
   if (exposed.dark_part_voxels) report["dark_part_voxels"] = *exposed.dark_part_voxels;
+  if (exposed.outside) {
+    const bool of_print = of_run && unit.absolute;
+    model::Outside outside =
+        exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / unit.turn
+                                     : score::aimed_dose(exposed.metrics, threshold_of(light.extra)));
+    outside.max_dose *= unit.turn;
+    add_to(report, outside);
+  }
   report["blur_sigma_mm"] = exposed.blur_mm;
   report["absorption_per_mm"] = printer.resin.absorption_per_mm;
   // [CAL19]: at given power, exposure is shortest when light falls to 1/e over the radius.

@@ -13,6 +13,7 @@
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
+#include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -48,8 +49,9 @@ std::optional<score::ExposurePlan> exposure(const optimize::VolumeOutcome& outco
 
 }  // namespace
 
-void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials,
-             const model::Printer& printer, const model::StackInfo& info, const Options& options) {
+void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials, const Scene& scene,
+             const io::SparseVolume& target, const model::StackInfo& info, const Options& options) {
+  const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
   if (!options.tradeoff.empty()) io::write_text(options.tradeoff, front_csv(outcome.front, printer, info, options));
@@ -62,6 +64,7 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
+    add_hard_faces(report, outcome, scene, target, options);
   }
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
   io::write_report(options.report, "vam-optimize/1", report);

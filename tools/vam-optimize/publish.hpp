@@ -3,16 +3,17 @@
 
 #include <optional>
 
-#include "model/printer.hpp"
+#include "io/vdb/vdb.hpp"
 #include "model/stack.hpp"
 #include "optimize/run/volume.hpp"
 #include "optimize/run/yield.hpp"
+#include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
 
 /// Warnings on stderr; the files of --trace and --report where they are requested.
-void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials,
-             const model::Printer& printer, const model::StackInfo& info, const Options& options);
+void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials, const Scene& scene,
+             const io::SparseVolume& target, const model::StackInfo& info, const Options& options);
 
 }  // namespace vam::optimize_tool

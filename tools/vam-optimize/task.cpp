@@ -1,10 +1,12 @@
 #include "vam-optimize/task.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "io/settings/printer_file.hpp"
+#include "io/vdb/covered.hpp"
 #include "score/exposure.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -89,10 +91,26 @@ optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
 
 }  // namespace
 
+namespace {
+
+/// In the grid of all that the light reaches.
+model::VoxelBox part_box(const Scene& scene, const io::SparseVolume& target) {
+  model::VoxelBox box = io::covered_box(target, model::coverage_rounding);
+  const std::array<int, 3> margin{scene.margin.side, scene.margin.side, scene.margin.below};
+  for (std::size_t a = 0; a < 3; ++a) {
+    box.low[a] += margin[a];
+    box.high[a] += margin[a];
+  }
+  return box;
+}
+
+}  // namespace
+
 optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options) {
   optimize::VolumeTask task;
   task.source = make_source(scene, in, options);
   task.circle = scene.circle;
+  task.part = part_box(scene, in.target.front());
   task.demands = options.demands;
   task.limits = options.limits;
   task.limit = limit(scene, options);

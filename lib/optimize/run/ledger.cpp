@@ -39,6 +39,9 @@ void Ledger::exchange(Archive& archive) {
   archive(seen_);
   total_.exchange(archive);
   cut_.exchange(archive);
+  archive(outside_.voxels);
+  archive(outside_.gelled_voxels);
+  archive(outside_.max_dose);
   figures_.exchange(archive);
   archive(reason_);
   archive(iterations_);
@@ -59,6 +62,7 @@ VolumeOutcome Ledger::outcome(bool grey) const {
   with_cut.merge(total_);
   with_cut.merge(cut_);
   if (!grey) outcome.with_cut = with_cut.metrics();
+  if (!grey) outcome.outside = outside_;
   outcome.iterations = iterations_;
   outcome.reason = reason_;
   outcome.dark_part_voxels = dark_part_voxels_;

@@ -11,6 +11,7 @@
 #include "optimize/run/private/even_dose.hpp"
 #include "optimize/run/private/finished.hpp"
 #include "optimize/run/private/ledger.hpp"
+#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/run/private/pass_light.hpp"
 #include "optimize/run/private/threshold.hpp"
@@ -70,6 +71,7 @@ class Run {
     }
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
     outcome.front = std::move(front_);
+    outcome.wrong = std::move(wrong_);
     outcome.jobs = jobs();
     outcome.efficiency = finished_.efficiency();
     outcome.peak_intensity = finished_.peak();
@@ -190,7 +192,22 @@ class Run {
       ledger_.add(doses[i], figures[i], times_[job]);
       ledger_.add_cut(cut[i], times_[job]);
     }
+    if (!task_.demands.grey) {
+      add_outside(problem, state.dose, pass);
+      if (light_.couples_slices()) wrong_ = wrong_voxels(state.dose, problem);  // the one pass there is
+    }
     hand_out(state, pass, light);
+  }
+
+  /// Slices that are alike stand beside the part, and above or below it.
+  void add_outside(const Problem& problem, std::span<const Slab> dose, const Pass& pass) {
+    const OutsideSlices found = outside_part(dose, problem, task_.part);
+    for (int k = 0; k < task_.source.slices; ++k) {
+      const int job = schedule_.job_of_slice[k];
+      if (job < pass.first || job >= pass.last) continue;
+      const bool beside = k >= task_.part.low[2] && k <= task_.part.high[2];
+      ledger_.add_outside((beside ? found.beside : found.whole)[static_cast<std::size_t>(job - pass.low)]);
+    }
   }
 
   /// Slab by slab: images are several times as large as the light in them.
@@ -242,6 +259,7 @@ class Run {
   std::vector<int> times_;  // slices that a job stands for
   Ledger ledger_;
   std::vector<FrontPoint> front_;
+  std::vector<std::int64_t> wrong_;
   Finished finished_{schedule_, task_.write};
 };
 

@@ -9,6 +9,7 @@
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
+#include "model/outside.hpp"
 #include "optimize/run/front.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
@@ -25,6 +26,7 @@ struct IntensityLimit {
 struct VolumeTask {
   VolumeSource source;
   Circle circle;
+  model::VoxelBox part;  // its box
   Demands demands;
   Limits limits;
   IntensityLimit limit;
@@ -50,6 +52,8 @@ struct VolumeOutcome {
   std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
   model::DoseMetrics metrics;             // of the result, at the common threshold
   model::DoseMetrics with_cut;            // with the voxels that the surface cuts: part from half coverage on
+  std::optional<model::Outside> outside;  // of the part's box, at that threshold; none of a grey target
+  std::vector<std::int64_t> wrong;        // where slices share light: of each slice, voxels on the wrong side of it
   double efficiency = 0;
   double max_intensity = 0;           // the limit, as raised; 0: none
   double even_intensity = 0;          // 0: not asked for

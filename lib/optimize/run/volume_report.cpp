@@ -18,6 +18,7 @@ Json report(const VolumeOutcome& outcome) {
   json["peak_intensity"] = outcome.peak_intensity;
   if (outcome.max_intensity > 0) json["max_intensity"] = outcome.max_intensity;
   if (outcome.even_intensity > 0) json["even_intensity"] = outcome.even_intensity;
+  if (outcome.outside) add_to(json, *outcome.outside);
   json["dark_part_voxels"] = outcome.dark_part_voxels;
   return json;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "io/vdb/covered.hpp"
 #include "lib/io/vdb_volumes.hpp"
 
 using namespace vam;
@@ -91,6 +92,11 @@ TEST_CASE("the farthest voxel is found whether it is active or not, in leaves an
   CHECK(farthest() == doctest::Approx(10));
   grid->tree().addTile(1, {8, 8, 0}, 1.0F, false);  // 8 x 8 x 8 voxels, inactive
   CHECK(farthest() == doctest::Approx(std::hypot(15, 15)));
+  const SparseVolume read = read_volume(folder / "a.vdb", "");
+  const auto box = vam::io::covered_box(read, 0);  // of a grid that begins at (-20, 0, 0)
+  CHECK(box.low == std::array<int, 3>{26, 8, 0});
+  CHECK(box.high == std::array<int, 3>{35, 15, 7});
+  CHECK(vam::io::covered_box(read, 1).high[0] < 0);
 }
 
 TEST_CASE("unusable grids are status 65 with the reason") {

@@ -21,6 +21,8 @@ class Ledger {
   void add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times);
   /// Its voxels that the surface cuts.
   void add_cut(const model::DoseStatistics& statistics, int times) { cut_.merge(statistics, times); }
+  /// What a slice leaves outside the part's box.
+  void add_outside(const model::Outside& slice) { outside_.merge(slice); }
   void exchange(Archive& archive);
   /// Everything but efficiency and jobs.
   [[nodiscard]] VolumeOutcome outcome(bool grey) const;
@@ -30,6 +32,7 @@ class Ledger {
   SliceFigures last_;
   int seen_ = -1;
   model::DoseStatistics total_, cut_;
+  model::Outside outside_;
   SliceFigures figures_;
   std::string reason_;
   int iterations_ = 0;

@@ -1,0 +1,33 @@
+// Level faces that rays do not let print: which, by how much, and where the part would print better.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "light/flat_faces.hpp"
+
+namespace vam::light {
+
+struct HardFace {
+  FlatFace face;
+  double smear_voxels = 0;        // smear_voxels()
+  std::int64_t wrong_voxels = 0;  // on the wrong side of the threshold, in the slices that it is smeared over
+};
+
+/// The faces that are smeared by a voxel or more with wrong voxels nearby. wrong: how many each slice of the grid has.
+[[nodiscard]] std::vector<HardFace> hard_faces(const model::Printer& printer, const model::Grid& grid,
+                                               std::span<const std::int64_t> wrong, const std::vector<FlatFace>& faces);
+
+/// What would make the most smeared of them sharper.
+struct FaceRemedy {
+  double lift_mm = 0;       // of the part from where it is, in slices' millimetres; 0: it is best where it is
+  double smear_voxels = 0;  // of the worst face then
+  double tilt_deg = 0;      // about a level axis: then a ray climbs by less than a slice until it has left the face
+};
+/// With the lift between these bounds.
+[[nodiscard]] FaceRemedy face_remedy(const model::Printer& printer, const std::vector<FlatFace>& faces,
+                                     const std::vector<HardFace>& hard, double voxel_mm, double least_mm,
+                                     double most_mm);
+
+}  // namespace vam::light

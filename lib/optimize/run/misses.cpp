@@ -1,0 +1,46 @@
+#include "optimize/run/private/misses.hpp"
+
+#include "base/parallel.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// visit(slice, pixel, dose, label) for every voxel of the slices in use, each slice by one thread.
+template <class Visit>
+void for_each_voxel(std::span<const Slab> dose, const Problem& problem, const Visit& visit) {
+  parallel_for(problem.slices, [&](int slice) {
+    const auto s = static_cast<std::size_t>(slice) / lanes;
+    for (std::size_t i = static_cast<std::size_t>(slice) % lanes; i < dose[s].values.size(); i += lanes) {
+      visit(static_cast<std::size_t>(slice), i / lanes, dose[s].values[i], problem.labels[s][i]);
+    }
+  });
+}
+
+}  // namespace
+
+OutsideSlices outside_part(std::span<const Slab> dose, const Problem& problem, const model::VoxelBox& box) {
+  const auto count = static_cast<std::size_t>(problem.slices);
+  OutsideSlices slices{std::vector<model::Outside>(count), std::vector<model::Outside>(count)};
+  const double threshold = problem.demands.window.threshold();
+  const auto width = static_cast<std::size_t>(dose.empty() ? 1 : dose[0].width);
+  for_each_voxel(dose, problem, [&](std::size_t slice, std::size_t pixel, float value, Label label) {
+    if (label != Label::void_) return;
+    const auto x = static_cast<int>(pixel % width);
+    const auto y = static_cast<int>(pixel / width);
+    slices.whole[slice].add(value, threshold);
+    if (!box.contains(x, y, box.low[2])) slices.beside[slice].add(value, threshold);
+  });
+  return slices;
+}
+
+std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem) {
+  std::vector<std::int64_t> slices(static_cast<std::size_t>(problem.slices), 0);
+  const auto threshold = static_cast<float>(problem.demands.window.threshold());
+  for_each_voxel(dose, problem, [&](std::size_t slice, std::size_t, float value, Label label) {
+    if (is_constrained(label) && (value >= threshold) != (label == Label::part)) ++slices[slice];
+  });
+  return slices;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,23 @@
+// Where a finished print goes wrong: outside the part's box, and slice by slice.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/outside.hpp"
+#include "optimize/target/problem.hpp"
+
+namespace vam::optimize {
+
+/// Of each slice in use: its void voxels if it lies above or below the box, and those beside the box if it does not.
+struct OutsideSlices {
+  std::vector<model::Outside> whole, beside;
+};
+[[nodiscard]] OutsideSlices outside_part(std::span<const Slab> dose, const Problem& problem,
+                                         const model::VoxelBox& box);
+
+/// How many voxels of each slice in use are on the wrong side of the threshold.
+[[nodiscard]] std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem);
+
+}  // namespace vam::optimize

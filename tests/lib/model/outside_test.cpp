@@ -1,0 +1,42 @@
+#include "model/outside.hpp"
+
+#include <doctest/doctest.h>
+
+#include "base/json.hpp"
+
+using namespace vam::model;
+
+TEST_CASE("what lies outside the box is counted against the threshold") {
+  OutsideDoses doses;
+  for (const float dose : {0.1F, 0.5F, 0.79F, 0.81F, 0.9F}) doses.add(dose);
+  const Outside all = doses.at(0.8);
+  CHECK(all.voxels == 5);
+  CHECK(all.gelled_voxels == 2);
+  CHECK(all.max_dose == doctest::Approx(0.9));
+  CHECK(doses.at(0.9001).gelled_voxels == 0);  // above the largest: none, although in its bin
+  CHECK(OutsideDoses{}.at(0.8).gelled_voxels == 0);
+  OutsideDoses twice;
+  twice.merge(doses);
+  twice.merge(doses);
+  CHECK(twice.at(0.8).gelled_voxels == 4);
+  Outside known;  // the threshold is
+  known.add(0.7F, 0.8);
+  known.add(0.9F, 0.8);
+  known.merge(all);
+  CHECK(known.voxels == 7);
+  CHECK(known.gelled_voxels == 3);
+  CHECK(known.max_dose == doctest::Approx(0.9));
+  vam::Json report;
+  add_to(report, all);
+  CHECK(report["outside_gelled_voxels"] == 2);
+}
+
+TEST_CASE("a box of voxels has its corners and no more") {
+  const VoxelBox box{{1, 2, 3}, {4, 5, 6}};
+  CHECK(box.contains(1, 2, 3));
+  CHECK(box.contains(4, 5, 6));
+  CHECK_FALSE(box.contains(0, 2, 3));
+  CHECK_FALSE(box.contains(4, 6, 6));
+  CHECK_FALSE(box.contains(4, 5, 7));
+  CHECK_FALSE(VoxelBox{}.contains(0, 0, 0));
+}

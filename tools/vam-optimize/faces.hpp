@@ -1,0 +1,17 @@
+// Level faces that rays that climb cannot print sharply.
+#pragma once
+
+#include "base/json_fwd.hpp"
+#include "io/vdb/vdb.hpp"
+#include "optimize/run/volume.hpp"
+#include "vam-optimize/light.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// The field hard_faces of the report, and a warning where there are any. Nothing where rays stay level or the part
+/// moves.
+void add_hard_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
+                    const io::SparseVolume& target, const Options& options);
+
+}  // namespace vam::optimize_tool
