@@ -64,53 +64,58 @@ struct InsertShadow::Body {
   }
 };
 
+PixelRay PixelRay::seen_from(double x_mm, double y_mm, double slices) const {
+  const double cosine = std::cos(delta_rad);
+  const double sine = std::sin(delta_rad);
+  const double along = y_mm * cosine - x_mm * sine;
+  return {hits, offset_mm - x_mm * cosine - y_mm * sine, delta_rad, slice - slices + climb_per_mm * along,
+          climb_per_mm};
+}
+
 InsertShadow::InsertShadow(const model::Grid& grid, std::span<const Slab> inserts,
-                           std::span<const double> part_angles_rad, int columns, int row_slabs,
-                           const std::function<PixelRay(int column, int row)>& ray)
-    : grid_(grid) {
-  for (const double theta : part_angles_rad) parts_.push_back({std::cos(theta), std::sin(theta)});
-  for (int c = 0; c < columns; ++c) {
-    const double delta = ray(c, row_slabs * lanes / 2).delta_rad;
-    columns_.push_back({std::cos(delta), std::sin(delta)});
-  }
+                           std::span<const double> part_angles_rad, int columns, int row_slabs, bool same_at_all_angles,
+                           const Rays& ray)
+    : grid_(grid), angles_(part_angles_rad.size()) {
   const Body body(inserts);
-  const int angles = static_cast<int>(parts_.size());
+  const int angles = static_cast<int>(angles_);
+  rays_.resize(static_cast<std::size_t>(columns) * angles_);
   ends_.assign(row_slabs, Slab(columns, angles));
   parallel_for(row_slabs * columns, [&](int item) {
     Slab& slab = ends_[item / columns];
     const int column = item % columns;
     for (int lane = 0; lane < lanes; ++lane) {
-      const PixelRay way = ray(column, item / columns * lanes + lane);
-      for (int a = 0; a < angles; ++a) slab.at(column, a)[lane] = follow(body, way, a);
+      const int row = item / columns * lanes + lane;
+      PixelRay way;
+      for (int a = 0; a < angles; ++a) {
+        if (a == 0 || !same_at_all_angles) way = ray(column, row, a);
+        slab.at(column, a)[lane] = follow(body, way, part_angles_rad[a]);
+        if (row != row_slabs * lanes / 2) continue;
+        const double angle = part_angles_rad[a] + way.delta_rad;
+        rays_[at(column, a)] = {std::cos(angle), std::sin(angle)};
+      }
     }
   });
-  note_hindered();
+  note_hindered(columns);
 }
 
-void InsertShadow::note_hindered() {
-  const int columns = static_cast<int>(columns_.size());
-  const int angles = static_cast<int>(parts_.size());
-  occludes_.assign(columns_.size() * parts_.size(), 0);
+void InsertShadow::note_hindered(int columns) {
+  const int angles = static_cast<int>(angles_);
+  occludes_.assign(rays_.size(), 0);
   parallel_for(columns, [&](int c) {
     for (int a = 0; a < angles; ++a) {
       for (const Slab& slab : ends_) {
         const float* ends = slab.at(c, a);
-        if (std::any_of(ends, ends + lanes, [](float u) { return u < unhindered; })) {
-          occludes_[static_cast<std::size_t>(c) * parts_.size() + static_cast<std::size_t>(a)] = 1;
-        }
+        if (std::any_of(ends, ends + lanes, [](float u) { return u < unhindered; })) occludes_[at(c, a)] = 1;
       }
     }
   });
 }
 
 /// Voxel by voxel [AW87].
-float InsertShadow::follow(const Body& body, const PixelRay& ray, int angle) const {
+float InsertShadow::follow(const Body& body, const PixelRay& ray, double part_angle_rad) const {
   if (!ray.hits || body.high[0] == 0) return unhindered;
-  const Direction& part = parts_[angle];
-  const double cosine = std::cos(ray.delta_rad);
-  const double sine = std::sin(ray.delta_rad);
-  const double c = part.cosine * cosine - part.sine * sine;
-  const double s = part.sine * cosine + part.cosine * sine;
+  const double c = std::cos(part_angle_rad + ray.delta_rad);
+  const double s = std::sin(part_angle_rad + ray.delta_rad);
   const double voxel = grid_.voxel_mm;  // u in voxels on the way
   const std::array<Axis, 3> axes{Axis{(ray.offset_mm * c - grid_.origin_mm[0]) / voxel + 0.5, -s},
                                  Axis{(ray.offset_mm * s - grid_.origin_mm[1]) / voxel + 0.5, c},

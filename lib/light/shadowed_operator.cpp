@@ -25,10 +25,10 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
     directions_.push_back({std::cos(angles.back()), std::sin(angles.back())});
   }
   const model::Grid grid{turn.nx, turn.ny, 0, 1, {-turn.axis_x, -turn.axis_y, 0}};  // in voxels
-  const auto ray = [&](int column, int row) -> PixelRay {
+  const auto ray = [&](int column, int row, int) -> PixelRay {
     return {true, offset(column), 0, static_cast<double>(row), 0};
   };
-  shadow_ = InsertShadow(grid, inserts, angles, turn.columns, static_cast<int>(inserts.size()), ray);
+  shadow_ = InsertShadow(grid, inserts, angles, turn.columns, static_cast<int>(inserts.size()), true, ray);
 }
 
 ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle) const {

@@ -54,25 +54,27 @@ std::vector<std::pair<int, int>> angle_blocks(int angles) {
 
 InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
   if (inserts.empty()) return {};
-  if (rays.posed()) {
-    throw Error{Fault::data, "poses: an insert in the light cannot be combined with a vial or part that is displaced"};
-  }
   const VialSetup& setup = rays.setup();
   std::vector<double> angles;
   for (int a = 0; a < setup.turn.rows; ++a) {
     angles.push_back(setup.part_angle_rad(a));
   }
   const double slice_mm = setup.z_scale * setup.grid.voxel_mm;
-  const auto ray = [&](int column, int row) -> PixelRay {
+  const auto ray = [&](int column, int row, int angle) -> PixelRay {
     const double x_p = setup.projector.x_mm(rays.first_column() + column);
     const double z_p = rays.climbs() ? rays.row_mm(row) : 0;
-    const optics::SkewRay way = optics::skew_ray(setup.view, x_p, z_p);
+    const model::Pose pose = rays.posed() ? setup.poses[angle] : model::Pose{};
+    const bool vial = pose.moves == model::Moves::vial;
+    const optics::SkewRay way = optics::skew_ray(
+        setup.view, x_p, z_p, vial ? optics::Displacement{pose.dx_mm, pose.dy_mm} : optics::Displacement{});
     if (!rays.climbs()) return {way.hits, way.offset_mm, way.delta_rad, static_cast<double>(row), 0};
-    return {way.hits, way.offset_mm, way.delta_rad,
-            way.height_mm / slice_mm - setup.grid.origin_mm[2] / setup.grid.voxel_mm, way.climb / slice_mm};
+    const PixelRay still{way.hits, way.offset_mm, way.delta_rad,
+                         way.height_mm / slice_mm - setup.grid.origin_mm[2] / setup.grid.voxel_mm,
+                         way.climb / slice_mm};
+    return still.seen_from(vial ? 0 : pose.dx_mm, vial ? 0 : pose.dy_mm, pose.dz_mm / slice_mm);
   };
   const int row_slabs = rays.climbs() ? (setup.rows + lanes - 1) / lanes : static_cast<int>(inserts.size());
-  return {setup.grid, inserts, angles, rays.columns(), row_slabs, ray};
+  return {setup.grid, inserts, angles, rays.columns(), row_slabs, !rays.posed(), ray};
 }
 
 }  // namespace

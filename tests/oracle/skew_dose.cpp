@@ -29,7 +29,7 @@ std::optional<Way> way_of(const Bench& bench, double x, double z) {
   return way;
 }
 
-/// Leaves the light of a ray in the voxels; the part stands turned and displaced.
+/// Leaves the light of a ray in the voxels, up to an opaque one; the part stands turned and displaced.
 void deposit(const SkewDose& setup, const Way& way, double light, double angle, const SkewPose& pose,
              std::vector<double>& dose) {
   const double step = 0.2 * setup.voxel;
@@ -49,6 +49,7 @@ void deposit(const SkewDose& setup, const Way& way, double light, double angle, 
     const int j = static_cast<int>(std::floor((x * sine + y * cosine) / setup.voxel + 0.5 * setup.size));
     const int slice = static_cast<int>(std::floor((z - setup.first_slice) / setup.height + 0.5));
     if (i < 0 || j < 0 || slice < 0 || i >= setup.size || j >= setup.size || slice >= setup.slices) continue;
+    if (setup.opaque && setup.opaque(i, j, slice)) return;
     const auto at = (static_cast<std::size_t>(slice) * setup.size + static_cast<std::size_t>(j)) *
                         static_cast<std::size_t>(setup.size) +
                     static_cast<std::size_t>(i);

@@ -25,10 +25,11 @@ struct SkewDose {
   double absorption = 0;      // per length
   int angles = 0;             // over `turns` turns, from 0
   double turns = 1;
-  std::vector<SkewPose> poses;   // one an angle, or none
-  int size = 0, slices = 0;      // voxels: size x size around the axis
-  double voxel = 0, height = 0;  // edge, and height of a voxel
-  double first_slice = 0;        // z of the lowest voxel centres, from the lens's axis
+  std::vector<SkewPose> poses;                          // one an angle, or none
+  int size = 0, slices = 0;                             // voxels: size x size around the axis
+  double voxel = 0, height = 0;                         // edge, and height of a voxel
+  double first_slice = 0;                               // z of the lowest voxel centres, from the lens's axis
+  std::function<bool(int i, int j, int slice)> opaque;  // voxels that end a ray; none: nothing does
 };
 
 struct SkewResult {

@@ -125,6 +125,11 @@ fails 64 'no vial to move' vam-optimize --angles 60 --geometry parallel --poses 
 fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb
 fails 64 'do not return' vam-optimize --angles 60 --poses sink.csv --turns 3 --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 part.vdb -o none.exr
-ok "a shaft" vam-slice --shape cylinder:diameter=6,height=3 --insert-shape cylinder:diameter=2,height=3 --voxel 0.5 -o shaft.vdb
-fails 65 'insert' vam-optimize --angles 60 --poses wobble.csv shaft.vdb -o none.exr
+
+# A sleeve around a shaft that wobbles with the vial
+ok "a shaft" vam-slice --shape cylinder:diameter=6,height=3 --insert-shape cylinder:diameter=2,height=3 --cut-insert 0 \
+  --voxel 0.5 -o shaft.vdb
+ok "light around it" vam-optimize --angles 60 --poses wobble.csv shaft.vdb -o shaft.exr
+vam-dose shaft.exr --like shaft.vdb -o shaft-dose.vdb && vam-score shaft-dose.vdb --target shaft.vdb --report shaft.json >table
+is "prints the sleeve" "$(json shaft.json ver)" 0.0
 done_testing

@@ -56,9 +56,9 @@ std::vector<std::string> description() {
        "vial off the rotation axis from a calibration record; --helix lifts a part that is taller than the image "
        "past "
        "it (vam-slice --any-height). Such projections are valid only with their poses: the table is part of the stack. "
-       "It is computed frame by frame, which takes three to five times as long. Inserts cannot be combined with it, "
-       "nor "
-       "a displaced vial with a part beyond the writable radius.",
+       "It is computed frame by frame, which takes three to five times as long. A displaced vial cannot be combined "
+       "with "
+       "a part beyond the writable radius.",
        "A grid 'insert' in the same file is an opaque object to print around (overprinting): it casts a "
        "shadow. Part voxels in its shadow from all sides are reported and excluded.",
        "Absorption by the resin (resin.absorption_per_mm) attenuates the beam: e^(-mu s), s the path length from the "

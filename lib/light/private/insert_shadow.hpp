@@ -11,7 +11,7 @@
 
 namespace vam::light {
 
-/// The way of a pixel's ray through the grid: at part angle theta its plan view is L(offset, theta + delta) =
+/// The way of a pixel's ray through the vial at one part angle theta: its plan view is L(offset, theta + delta) =
 /// { offset (cos, sin) + u (-sin, cos) } [physics §1], its height in slices slice + climb * u. Without `hits` there is
 /// no ray.
 struct PixelRay {
@@ -20,6 +20,9 @@ struct PixelRay {
   double delta_rad = 0;
   double slice = 0;
   double climb_per_mm = 0;
+
+  /// As a part sees it that stands off by (x, y) and `slices` up, before it is turned by theta.
+  [[nodiscard]] PixelRay seen_from(double x_mm, double y_mm, double slices) const;
 };
 
 /// Every ray is followed voxel by voxel through the insert, up to the first voxel that is at least half covered: there
@@ -29,25 +32,22 @@ class InsertShadow {
   static constexpr float unhindered = std::numeric_limits<float>::infinity();
 
   InsertShadow() = default;
-  /// `inserts`: coverage, a slab for every slab of slices. `ray(column, row)`: rows as many as `row_slabs` hold.
+  /// Of a pixel: rays that are the same at all angles are given for angle 0 only.
+  using Rays = std::function<PixelRay(int column, int row, int angle)>;
+  /// `inserts`: coverage, a slab for every slab of slices. Rows as many as `row_slabs` hold.
   InsertShadow(const model::Grid& grid, std::span<const Slab> inserts, std::span<const double> part_angles_rad,
-               int columns, int row_slabs, const std::function<PixelRay(int column, int row)>& ray);
+               int columns, int row_slabs, bool same_at_all_angles, const Rays& ray);
 
   [[nodiscard]] bool empty() const { return ends_.empty(); }
 
   /// u in mm of a point of the part on the ray of that column and angle; the ray's plan view taken as level.
   [[nodiscard]] float depth_mm(double x_mm, double y_mm, int angle, int column) const {
-    const Direction& part = parts_[angle];
-    const Direction& ray = columns_[column];
-    const double x = x_mm * part.cosine + y_mm * part.sine;
-    const double y = y_mm * part.cosine - x_mm * part.sine;
-    return static_cast<float>(y * ray.cosine - x * ray.sine);
+    const Direction& ray = rays_[at(column, angle)];
+    return static_cast<float>(y_mm * ray.cosine - x_mm * ray.sine);
   }
 
   /// Whether any row's ray of that column and angle meets the insert.
-  [[nodiscard]] bool occludes(int column, int angle) const {
-    return occludes_[static_cast<std::size_t>(column) * parts_.size() + static_cast<std::size_t>(angle)] != 0;
-  }
+  [[nodiscard]] bool occludes(int column, int angle) const { return occludes_[at(column, angle)] != 0; }
 
   /// u in mm at which rays meet the insert, or `unhindered`: a slab of columns x angles for 16 rows each.
   [[nodiscard]] std::span<const Slab> ends() const { return ends_; }
@@ -57,11 +57,15 @@ class InsertShadow {
     double cosine, sine;
   };
   struct Body;
-  void note_hindered();
-  [[nodiscard]] float follow(const Body& body, const PixelRay& ray, int angle) const;
+  [[nodiscard]] std::size_t at(int column, int angle) const {
+    return static_cast<std::size_t>(column) * angles_ + static_cast<std::size_t>(angle);
+  }
+  void note_hindered(int columns);
+  [[nodiscard]] float follow(const Body& body, const PixelRay& ray, double part_angle_rad) const;
 
   model::Grid grid_;
-  std::vector<Direction> parts_, columns_;
+  std::size_t angles_ = 0;
+  std::vector<Direction> rays_;          // in plan, of a row in the middle: [column][angle]
   std::vector<Slab> ends_;               // columns x angles, 16 rows
   std::vector<unsigned char> occludes_;  // [column][angle]
 };

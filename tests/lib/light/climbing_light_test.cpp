@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "lib/light/operator_checks.hpp"
 #include "lib/light/vial_dose.hpp"
 #include "oracle/skew_dose.hpp"
 
@@ -58,8 +59,22 @@ struct Difference {
   double mean;  // of all, relative
 };
 
+/// Opaque, off the axis and not symmetric.
+bool opaque(int i, int j, int slice) { return i >= 6 && i < 12 && j >= 8 && j < 10 && slice >= 4 && slice < 8; }
+
+std::vector<Slab> insert_of(const Bench& b) {
+  Slab insert(b.slow.size, b.slow.size);
+  for (int j = 0; j < b.slow.size; ++j) {
+    for (int i = 0; i < b.slow.size; ++i) {
+      for (int k = 0; k < b.slow.slices; ++k) insert.at(i, j)[k] = opaque(i, j, k) ? 1.0F : 0.0F;
+    }
+  }
+  return {insert};
+}
+
 /// Where every voxel sees rows above and below: four slices away from the light's ends.
-Difference compare(const Bench& b, const std::function<double(int, int, int)>& intensity) {
+Difference compare(const Bench& b, const std::function<double(int, int, int)>& intensity,
+                   std::span<const Slab> inserts = {}) {
   std::vector<Image> rows(static_cast<std::size_t>(b.slow.rows), Image(b.slow.columns, b.slow.angles));
   for (int r = 0; r < b.slow.rows; ++r) {
     for (int a = 0; a < b.slow.angles; ++a) {
@@ -69,7 +84,7 @@ Difference compare(const Bench& b, const std::function<double(int, int, int)>& i
     }
   }
   const auto slices = static_cast<std::size_t>(b.slow.slices);
-  const std::vector<Image> fast = parts::doses_of(VialOperator(b.setup), rows, slices);
+  const std::vector<Image> fast = parts::doses_of(VialOperator(b.setup, inserts), rows, slices);
   const auto slow = vam::oracle::skew_dose(b.slow, intensity);
   const double reach = optics::reach_mm(b.setup.view);
   double error = 0, square = 0, sum = 0, want = 0;
@@ -83,6 +98,7 @@ Difference compare(const Bench& b, const std::function<double(int, int, int)>& i
     for (int j = 0; j < b.slow.size; j += 2) {
       for (int i = 0; i < b.slow.size; i += 2) {
         if (std::hypot(b.setup.grid.x_mm(i + 0.5), b.setup.grid.y_mm(j + 0.5)) > 0.9 * reach) continue;
+        if (!inserts.empty() && opaque(i, j, static_cast<int>(k))) continue;
         double here = 0, there = 0;
         for (int v = 0; v < 8; ++v) {
           const std::size_t slice = k + static_cast<std::size_t>(v / 4);
@@ -154,6 +170,45 @@ TEST_CASE("in every pose of vial and part the dose is that deposited ray by ray"
     const Difference d = compare(b, smooth);
     CHECK(d.rms < 7e-3);               // the oracle's own grain, as without poses
     CHECK(std::abs(d.mean) < 2.5e-3);  // 2.0e-3 of them are there without poses, too
+  }
+}
+
+namespace {
+
+/// Of ten slices and twenty rows.
+double adjoint_error(const VialOperator& light) {
+  std::vector<Slab> f{parts::noise(light.object(), 1)};
+  for (std::size_t i = 0; i < f[0].values.size(); ++i) f[0].values[i] *= i % lanes < 10 ? 1.0F : 0.0F;
+  const std::vector<Slab> g{parts::noise(light.sinogram(), 2), parts::noise(light.sinogram(), 3)};
+  std::vector<Slab> projected = slabs(2, light.sinogram().width, light.sinogram().height);
+  std::vector<Slab> dose = slabs(1, light.object().width, light.object().height);
+  light.forward(f, projected);
+  light.adjoint(g, dose);
+  double given = 0, size = 0, light_size = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    given += parts::dot(projected[s], g[s]);
+    size += parts::dot(projected[s], projected[s]);
+    light_size += parts::dot(g[s], g[s]);
+  }
+  return std::abs(given - parts::dot(f[0], dose[0])) / std::sqrt(size * light_size);
+}
+
+}  // namespace
+
+// Rays of the operator have no width: a column's shadow begins and ends as a whole, in 20 x 20 voxels around an insert
+// of 6 x 2. That costs up to 0.017 RMS and 0.006 in the mean, at the shadow's edges.
+TEST_CASE("an insert's shadow is that of rays walked one by one, where rays climb and in every pose") {
+  const Bench still = bench(90, -1.8, 0.05, 1, 0);
+  const Bench short_lens = bench(60, 6, 0.08, 1, 0);
+  for (Bench b : {still, short_lens, posed(still, model::Moves::part, 0.6, 0.8),
+                  posed(short_lens, model::Moves::vial, 0.9, -0.4), posed(still, model::Moves::vial, 0.9, 0.8)}) {
+    b.slow.opaque = opaque;
+    const std::vector<Slab> inserts = insert_of(b);
+    const Difference d = compare(b, smooth, inserts);
+    CHECK(d.rms < 2e-2);
+    CHECK(std::abs(d.mean) < 1e-2);
+    CHECK(adjoint_error(VialOperator(b.setup, inserts)) < 1e-5);
+    CHECK(compare(b, smooth).rms > 0.1);  // without it there is light
   }
 }
 
