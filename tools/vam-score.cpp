@@ -29,6 +29,26 @@ void add_light(score::Score& result, const std::string& sinogram) {
   for (model::ImageInfo about; light.next(image, about);) result.add_projection(image.values);
 }
 
+/// Conditions on figures that nothing here tells.
+void require_known(const std::vector<model::Condition>& conditions, const Options& options) {
+  const score::ScoreOptions& how = options.how;
+  for (const model::Condition& condition : conditions) {
+    const std::string subject = "--require " + condition.name + ": ";
+    if (condition.name.starts_with("cured_") && !how.threshold) {
+      throw Error{Fault::usage, subject +
+                                    "the critical dose is not known; give --critical-dose, or set "
+                                    "resin.critical_dose_mj_cm3 and score a dose in mJ/cm3"};
+    }
+    if (score::is_of_exposure(condition.name) && !how.exposure) {
+      throw Error{Fault::usage,
+                  subject + "the exposure is not known; set resin.critical_dose_mj_cm3 and score a dose in mJ/cm3"};
+    }
+    if (condition.name == "efficiency" && options.sinogram.empty()) {
+      throw Error{Fault::usage, subject + "requires the projections; give --sinogram"};
+    }
+  }
+}
+
 void require_files_for_outputs(const Options& options) {
   for (const auto& output : {options.print, options.report, options.reach}) {
     if (output != "-") continue;
@@ -45,6 +65,7 @@ void run(const cli::App& app, Options& options) {
   require_files_for_outputs(options);
   const Inputs in = read(options);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
+  require_known(conditions, options);
   score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();

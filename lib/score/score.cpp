@@ -54,6 +54,10 @@ const std::vector<Figure>& figure_list() {
 
 }  // namespace
 
+bool is_of_exposure(const std::string& figure) {
+  return figure == "turns" || figure == "duration_s" || figure == "multiplier" || figure == "peak_intensity_mw_cm2";
+}
+
 Score::Score(const ScoreOptions& options, int width, int height)
     : options_(options), width_(width), whole_(options.threshold), with_cut_(options.threshold) {
   inside_.reserve(width * static_cast<std::size_t>(height));
@@ -119,7 +123,7 @@ double Score::figure(const std::string& name) const {
   if (name == "efficiency") return light_.count > 0 ? light_.value() : none;
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
-  if (name == "turns" || name == "duration_s" || name == "multiplier" || name == "peak_intensity_mw_cm2") {
+  if (is_of_exposure(name)) {
     if (!options_.exposure) return none;
     const model::DoseMetrics doses = judged().metrics(false);
     if (!(window_middle(doses) > 0)) return none;

@@ -31,6 +31,9 @@ struct ScoreOptions {
   std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
 };
 
+/// Of the figures by name those that only an exposure has.
+[[nodiscard]] bool is_of_exposure(const std::string& figure);
+
 /// Gathers slices in ascending order; each is judged on a thread of its own.
 class Score {
  public:

@@ -33,6 +33,11 @@ quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply -
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
 fails 64 "no figure is called 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
+fails 64 'cured_wrong: the critical dose is not known; give --critical-dose' \
+  vam-score --grid target part.vdb --require 'ver<=1,cured_wrong<=1'
+quiet "known, it is judged" vam-score --grid target part.vdb --critical-dose 0.5 --require 'cured_wrong<=0'
+fails 64 'duration_s: the exposure is not known' vam-score --grid target part.vdb --critical-dose 0.5 --require 'duration_s<9'
+fails 64 'efficiency: requires the projections' vam-score --grid target part.vdb --require 'efficiency>0'
 fails 64 "is not a number" vam-score --grid target part.vdb --require 'ver<=x'
 fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'isovalue' vam-score --grid target part.vdb --isovalue -1

@@ -24,7 +24,9 @@ cli::Manual manual() {
        "There light comes from some stage angles only; --reach writes the fraction for every voxel.",
        "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
        "With --require the exit status is 1 if a condition does not hold, so that a Makefile can reject a part that "
-       "will not print."},
+       "will not print, and 64 if it is on a figure that is not known: cured_ without a critical dose, turns, "
+       "duration_s, "
+       "multiplier and peak_intensity_mw_cm2 without one in mJ/cm3, efficiency without --sinogram."},
       {{"Score a simulated print:",
         "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose --like part.vdb -o "
         "dose.vdb && vam-score dose.vdb --target part.vdb"},
