@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "io/image/view_source.hpp"
 #include "io/stream/stream.hpp"
@@ -45,7 +46,7 @@ std::vector<Showing> read_flips(const std::string& path) {
   for (const auto& line : split(io::read_all(path), '\n')) {
     ++number;
     if (line.empty()) continue;
-    const Json event = Json::parse(line, nullptr, false);
+    const Json event = parse_json(line);
     if (!event.is_object()) {
       throw Error{Fault::data, path + ":" + std::to_string(number) + ": not a line of a vam-project log"};
     }

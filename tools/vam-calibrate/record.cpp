@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "base/sha256.hpp"
 #include "base/text.hpp"
@@ -46,7 +47,7 @@ Json hashes(const ScanOptions& options) {
 
 // {"camera": {"serial": ...}, "stage": {...}}: the output of the tools' identify.
 Json read_devices(const std::string& path) {
-  Json devices = Json::parse(io::read_all(path), nullptr, false);
+  Json devices = parse_json(io::read_all(path));
   if (!devices.is_object()) throw Error{Fault::data, path + ": not a JSON object of devices"};
   for (const auto& [name, device] : devices.items()) {
     if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is not a JSON object"};

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/printable.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/stream/stream.hpp"
@@ -36,7 +37,7 @@ void each_line(const std::string& file, bool only_tail, const std::function<void
     stream.seekg(0);
   }
   while (std::getline(stream, text) && !stream.eof()) {
-    const Json line = Json::parse(text, nullptr, false);
+    const Json line = parse_json(text);
     if (line.is_object()) take(line);
   }
 }
@@ -99,7 +100,7 @@ void RunFolder::read_events() {
     std::ifstream stream(file(log));
     std::string text;
     for (int first = 0; first < 8 && std::getline(stream, text); ++first) {
-      const Json line = Json::parse(text, nullptr, false);
+      const Json line = parse_json(text);
       if (!line.is_object() || line.value("event", Json()) != event) continue;
       simulated = simulated || text.find("\"simulated\":true") != std::string::npos;
     }
@@ -132,7 +133,7 @@ void RunFolder::read_flips() {
 void RunFolder::read_records() {
   progress_.records.clear();
   if (!fs::exists(file("calibration.json"))) return;
-  const Json records = Json::parse(io::read_all(file("calibration.json")), nullptr, false);
+  const Json records = parse_json(io::read_all(file("calibration.json")));
   if (!records.is_object()) return;
   for (const auto& [scan, record] : records.items()) {
     if (!record.is_object()) continue;

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 
 namespace vam::device {
 
@@ -27,7 +28,7 @@ std::string to_line(const AngleSample& sample) {
 }
 
 AngleSample parse_angle_line(const std::string& line, long number) {
-  const Json parsed = Json::parse(line, nullptr, false);
+  const Json parsed = parse_json(line);
   AngleSample sample;
   const auto read = [&](const char* key, double& target) {
     if (!parsed.is_object() || !parsed.contains(key) || !parsed[key].is_number()) {

@@ -11,6 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
 
@@ -84,7 +85,7 @@ std::string difference(const Json& there, const Json& wanted) {
 }
 
 void add_line(CaptureManifest& manifest, const std::string& text, const std::string& where) {
-  const Json line = Json::parse(text, nullptr, false);
+  const Json line = parse_json(text);
   try {
     if (manifest.head.empty()) {
       manifest.head = text;

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
@@ -52,7 +53,7 @@ std::vector<Finding> inspect_text(const std::string& path) {
   const std::string name = input_name(path);
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
-  if (const Json json = Json::parse(text, nullptr, false); json.is_object()) {
+  if (const Json json = parse_json(text); json.is_object()) {
     Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};

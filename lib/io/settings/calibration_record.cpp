@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "base/utc.hpp"
@@ -176,8 +177,7 @@ double CalibrationRecord::sigma(const std::string& name) const { return json->at
 
 CalibrationRecord read_record(const std::string& path) {
   constexpr std::uint64_t limit = 1U << 20U;
-  CalibrationRecord record{
-      path, std::make_shared<const Json>(Json::parse(read_all(path, Content::text, limit), nullptr, false))};
+  CalibrationRecord record{path, std::make_shared<const Json>(parse_json(read_all(path, Content::text, limit)))};
   const Json& json = *record.json;
   const auto is_text = [&](const char* key) { return !json.contains(key) || json[key].is_string(); };
   const bool whole = json.is_object() && json.contains("scan") && json.contains("values") &&

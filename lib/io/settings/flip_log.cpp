@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 
 namespace vam::io {
 
@@ -34,7 +35,7 @@ void FlipLog::read() {
       return;
     }
     ++line_;
-    const Json event = Json::parse(text, nullptr, false);
+    const Json event = parse_json(text);
     try {
       if (event.at("event") == "display" && !flips_.empty()) flips_.back().last = true;  // another run begins
       if (event.at("event") != "flip") continue;
@@ -71,7 +72,7 @@ std::string armed_sinogram(const std::string& run) {
   if (!std::filesystem::is_directory(run)) return "";
   std::ifstream events((std::filesystem::path(run) / "events.jsonl").string());
   for (std::string text; std::getline(events, text);) {
-    const Json event = Json::parse(text, nullptr, false);
+    const Json event = parse_json(text);
     if (!event.is_object() || !event.contains("sinogram_sha256")) continue;
     if (event["sinogram_sha256"].is_string()) return event["sinogram_sha256"];
   }

@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/text.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
@@ -17,7 +18,7 @@ constexpr std::uint64_t most_bytes = std::uint64_t{1} << 20;
 double gelation_isovalue(const std::string& path) {
   double isovalue = 0;
   try {
-    const Json record = Json::parse(read_all(path, Content::text, most_bytes), nullptr, false);
+    const Json record = parse_json(read_all(path, Content::text, most_bytes));
     if (record.is_discarded()) throw Error{Fault::data, path + ": not a record of vam-calibrate resin, nor other JSON"};
     if (record.at("schema") != "vam-resin/1")
       throw Error{Fault::data,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 
 namespace vam::sim {
 
@@ -22,7 +23,7 @@ std::vector<Json> LogTail::fresh() {
   for (std::string line; std::getline(file_, line);) {
     rest_ += line;
     if (file_.eof()) break;  // no line end yet
-    Json event = Json::parse(rest_, nullptr, false);
+    Json event = parse_json(rest_);
     if (event.is_object()) lines.push_back(std::move(event));
     rest_.clear();
   }
