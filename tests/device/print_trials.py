@@ -13,7 +13,7 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from screen import Screen  # noqa: E402
-from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report  # noqa: E402
+from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report, wait  # noqa: E402
 
 COMMAND = ["vam-print", "frames.exr", "--screen", "sdl:0", "--uncalibrated", "--missed", "0.9", "--missed-lit", "0.9",
            "--run-up", "0.05", "--turns", "40", "--run"]
@@ -27,16 +27,6 @@ def tool_of(pid, name):
         for child in open(path).read().split():
             if open(f"/proc/{child}/comm").read().strip() == name:
                 return int(child)
-    return None
-
-
-def wait(condition, limit_s):
-    """The time when the condition came true, or None."""
-    deadline = time.monotonic() + limit_s
-    while time.monotonic() < deadline:
-        if condition():
-            return time.monotonic()
-        time.sleep(0.0005)
     return None
 
 

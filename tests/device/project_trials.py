@@ -13,7 +13,7 @@ import time
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 sys.dont_write_bytecode = True
 from screen import Screen  # noqa: E402
-from trials import NEVER, SIGNALS, end_by, ended_by, report  # noqa: E402
+from trials import NEVER, SIGNALS, end_by, ended_by, report, wait  # noqa: E402
 
 LANES = 9  # of trials: a cause each; every lane must have as many as the others
 
@@ -22,16 +22,6 @@ def black(screen):
     """True when no grey byte is above 0; the fourth byte of a pixel is not shown."""
     image = screen.memory[screen.offset:screen.offset + screen.line * screen.height]
     return not any(image[0::4]) and not any(image[1::4]) and not any(image[2::4])
-
-
-def wait(condition, limit_s):
-    """The time when the condition came true, or None."""
-    deadline = time.monotonic() + limit_s
-    while time.monotonic() < deadline:
-        if condition():
-            return time.monotonic()
-        time.sleep(0.0005)
-    return None
 
 
 def angles(table):

@@ -18,6 +18,16 @@ NEVER = float("inf")
 os.environ["ASAN_OPTIONS"] += ":handle_segv=0:detect_leaks=0"
 
 
+def wait(condition, limit_s):
+    """The time when the condition came true, or None."""
+    deadline = time.monotonic() + limit_s
+    while time.monotonic() < deadline:
+        if condition():
+            return time.monotonic()
+        time.sleep(0.0005)
+    return None
+
+
 @contextlib.contextmanager
 def load(loops):
     """So many programs that compute without end, beside what is tried."""
