@@ -10,7 +10,8 @@ void declare(cli::App& app, Options& options) {
   app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes({".png"});
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
-  app.option("--grid", "NAME", options.grid, "Grid of the volume. Required if the volume has more than one.");
+  app.option("--grid", "NAME", options.grid,
+             "Grid of the volume. Required if the volume has more than one, but for a target with its insert.");
   app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
   app.option("--at", "PLACE", options.view.at, cli::any,
              "Show the section or sinogram slice nearest to PLACE in mm, or the frame nearest to PLACE in degrees.");
