@@ -28,6 +28,7 @@ out.vdb|vam-dose sinogram.exr --like part.vdb -o out.vdb
 out.ply out.json|vam-score dose.vdb --target part.vdb --mesh out.ply --report out.json
 out.ply out.csv out.json|vam-sdf box.off part.vdb --design-isovalue 0.5 --samples 2000 -o out.ply --histogram out.csv --report out.json
 out.png|vam-view part.vdb -o out.png
+out.html|vam-report part.vdb dose.vdb sinogram.exr -o out.html
 out.nrrd|vam-view part.vdb --export out.nrrd
 out.exr|vam-project small.exr --printer small.toml -o out.exr
 out.mkv|vam-project small.exr --printer small.toml -o out.mkv
