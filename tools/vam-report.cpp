@@ -1,32 +1,21 @@
 // vam-report: a print, from part to dose, as one page.
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/base64.hpp"
 #include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/printable.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/page.hpp"
 #include "printer.hpp"
-#include "score_volumes.hpp"
-#include "vam-report/body.hpp"
-#include "vam-report/light.hpp"
+#include "vam-report/content.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/page_data.hpp"
 #include "vam-report/sources.hpp"
-#include "vam-report/tables.hpp"
-#include "vam-report/volumes.hpp"
 
 namespace {
 
 using namespace vam;
-using report_tool::Sources;
-using report_tool::Volumes;
 
 struct Options {
   std::vector<std::string> files;
@@ -81,73 +70,6 @@ void declare(cli::App& app, Options& o) {
   cli::add_threads(app);
 }
 
-/// A dose with its target, and what it is worth.
-struct Judged {
-  score::ScoreOptions how;
-  score::Score score;
-};
-
-std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printer) {
-  const io::SparseVolume* dose = volumes.find("dose");
-  const io::SparseVolume* target = volumes.find("target");
-  if (dose == nullptr || target == nullptr) return std::nullopt;
-  score::ScoreOptions how;
-  tool::settle_exposure(how, *dose, *target, printer);
-  return Judged{how, tool::score_volumes(*dose, *target, how)};
-}
-
-std::string verdict(const Judged& judged) {
-  const score::Verdict verdict = judged.score.verdict();
-  return "<p class=\"verdict " + std::string(score::prints(verdict) ? "good" : "bad") + "\">" +
-         page_text(score::words(verdict)) + "</p>\n";
-}
-
-std::string heading(const std::string& text) { return "<h1>" + text + "</h1>\n"; }
-
-std::string images(const std::vector<std::string>& paths) {
-  std::string views;
-  for (const std::string& path : paths) {
-    const std::string png = base64(io::read_all(path, io::Content::binary));
-    views += plot::page_figure(
-        report_tool::file_name(path),
-        "<img src=\"data:image/png;base64," + png + "\" alt=\"" + page_text(report_tool::file_name(path)) + "\">", "");
-  }
-  return views;
-}
-
-std::string views(const Sources& sources, const Volumes& volumes, const std::optional<Judged>& judged,
-                  const Options& o) {
-  std::string made = "<div class=\"images\">\n";
-  if (const io::SparseVolume* target = volumes.find("target")) {
-    std::optional<report_tool::PrintedDose> print;
-    if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
-    made += report_tool::body_view(*target, print);
-  }
-  made += report_tool::section_views(volumes, o.sections);
-  for (const auto& stack : sources.stacks) made += report_tool::light_view(stack, io::FileType::stack, o.projections);
-  for (const auto& video : sources.videos) made += report_tool::light_view(video, io::FileType::video, o.projections);
-  if (judged) made += report_tool::histogram(*volumes.find("dose"), *volumes.find("target"), judged->how);
-  for (const std::string& trace : sources.traces) made += report_tool::convergence(trace);
-  return made + images(sources.images) + "</div>\n";
-}
-
-std::string body(const Sources& sources, const Options& o, const model::Printer& printer, const cli::App& app) {
-  const Volumes volumes = report_tool::read_volumes(sources.volumes);
-  const std::optional<Judged> judged = judge(volumes, printer);
-  std::string made = heading(page_text(o.title));
-  if (judged) made += verdict(*judged);
-  made += views(sources, volumes, judged, o);
-  if (judged) {
-    made += "<h2>Figures of merit</h2>\n" + report_tool::figures_table(judged->score.figures());
-  }
-  if (!sources.reports.empty()) made += "<h2>Reports</h2>\n";
-  for (const std::string& report : sources.reports) made += report_tool::report_table(report);
-  std::vector<std::string> made_by = sources.volumes;
-  made_by.insert(made_by.end(), sources.stacks.begin(), sources.stacks.end());
-  if (!made_by.empty()) made += "<h2>Provenance</h2>\n" + report_tool::provenance(made_by);
-  return made + "<p class=\"none\">" + page_text(app.history()) + "</p>\n";
-}
-
 void run(const cli::App& app, Options& o) {
   const model::Printer printer = tool::load_printer(o.printer);
   if (tool::print_printer(o.printer, printer, o.output)) return;
@@ -157,7 +79,8 @@ void run(const cli::App& app, Options& o) {
   page.title = o.title;
   page.style = report_tool::page_style;
   page.script = report_tool::page_script;
-  page.body = body(report_tool::gather(o.files), o, printer, app);
+  page.body =
+      report_tool::content(report_tool::gather(o.files), printer, {o.title, app.history(), o.sections, o.projections});
   io::write_text(o.output, plot::html(page));
 }
 

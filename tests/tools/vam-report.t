@@ -43,6 +43,14 @@ sed 's/"ver": [^,]*/"ver": 0.5/' score.json >edited.json
 fails 65 'edited.json' vam-report part.vdb edited.json -o x.html
 head -c 3000 part.vdb >cut.vdb
 fails 65 'cut.vdb' vam-report cut.vdb -o x.html
+printf '\211PNG\r\n\032\n' >cut.png
+fails 65 'cut.png' vam-report cut.png
+head -c 3000 light.exr >cut.exr
+fails 65 'cut.exr: is cut off' vam-report cut.exr
+printf 'iteration,ver,pw\n0,nan,1\n' >nan.csv
+fails 65 "ver 'nan' is not a number" vam-report nan.csv
+python3 -c 'print("{\"seal\":\"xxh3:00\",\"a\":" + "[" * 100000 + "]" * 100000 + "}")' >deep.json
+fails 65 'deep.json: is no volume' vam-report deep.json
 vam-slice part.off --voxel 0.3 -o other.vdb
 fails 65 'voxel' vam-report other.vdb dose.vdb -o x.html
 fails 64 '--sections' vam-report part.vdb --sections 0

@@ -6,6 +6,8 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
+#include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t most_text = std::uint64_t{16} << 20;
 
 bool is_report(const std::string& path) {
-  return Json::parse(io::read_all(path, io::Content::text, most_text), nullptr, false).is_object();
+  return parse_json(io::read_all(path, io::Content::text, most_text)).is_object();
 }
 
 bool is_trace(const std::string& path) {
@@ -49,7 +51,10 @@ bool add(Sources& sources, const std::string& path) {
   const std::string ending = fs::path(path).extension();
   if (ending == ".json" && is_report(path)) return sources.reports.push_back(path), true;
   if (ending == ".csv" && is_trace(path)) return sources.traces.push_back(path), true;
-  if (ending == ".png" && is_png(path)) return sources.images.push_back(path), true;
+  if (ending == ".png" && is_png(path)) {
+    (void)io::read_image(path);  // whole, or an error that names it
+    return sources.images.push_back(path), true;
+  }
   return false;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/json_text.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "io/inspect/provenance.hpp"
@@ -60,7 +61,7 @@ std::string figures_table(const Json& figures) {
 }
 
 std::string report_table(const std::string& path) {
-  const Json report = Json::parse(io::read_all(path), nullptr, false);
+  const Json report = parse_json(io::read_all(path));
   if (!report.is_object()) throw Error{Fault::data, path + ": is no JSON object"};
   (void)io::require_seal(report, path);
   const std::string schema = report.contains("schema") ? ", " + text_of(report["schema"]) : "";

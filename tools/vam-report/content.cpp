@@ -1,0 +1,90 @@
+#include "vam-report/content.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "base/base64.hpp"
+#include "base/json.hpp"
+#include "base/printable.hpp"
+#include "io/stream/file_type.hpp"
+#include "io/stream/stream.hpp"
+#include "plot/page.hpp"
+#include "score_volumes.hpp"
+#include "vam-report/body.hpp"
+#include "vam-report/light.hpp"
+#include "vam-report/names.hpp"
+#include "vam-report/tables.hpp"
+#include "vam-report/volumes.hpp"
+
+namespace vam::report_tool {
+
+namespace {
+
+/// A dose with its target, and what it is worth.
+struct Judged {
+  score::ScoreOptions how;
+  score::Score score;
+};
+
+std::optional<Judged> judge(const Volumes& volumes, const model::Printer& printer) {
+  const io::SparseVolume* dose = volumes.find("dose");
+  const io::SparseVolume* target = volumes.find("target");
+  if (dose == nullptr || target == nullptr) return std::nullopt;
+  score::ScoreOptions how;
+  tool::settle_exposure(how, *dose, *target, printer);
+  return Judged{how, tool::score_volumes(*dose, *target, how)};
+}
+
+std::string verdict(const Judged& judged) {
+  const score::Verdict verdict = judged.score.verdict();
+  return "<p class=\"verdict " + std::string(score::prints(verdict) ? "good" : "bad") + "\">" +
+         page_text(score::words(verdict)) + "</p>\n";
+}
+
+std::string images(const std::vector<std::string>& paths) {
+  std::string views;
+  for (const std::string& path : paths) {
+    const std::string png = base64(io::read_all(path, io::Content::binary));
+    views += plot::page_figure(
+        file_name(path), "<img src=\"data:image/png;base64," + png + "\" alt=\"" + page_text(file_name(path)) + "\">",
+        "");
+  }
+  return views;
+}
+
+std::string views(const Sources& sources, const Volumes& volumes, const std::optional<Judged>& judged,
+                  const Wanted& wanted) {
+  std::string made = "<div class=\"images\">\n";
+  if (const io::SparseVolume* target = volumes.find("target")) {
+    std::optional<PrintedDose> print;
+    if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
+    made += body_view(*target, print);
+  }
+  made += section_views(volumes, wanted.sections);
+  for (const auto& stack : sources.stacks) made += light_view(stack, io::FileType::stack, wanted.projections);
+  for (const auto& video : sources.videos) made += light_view(video, io::FileType::video, wanted.projections);
+  if (judged) made += histogram(*volumes.find("dose"), *volumes.find("target"), judged->how);
+  for (const std::string& trace : sources.traces) made += convergence(trace);
+  return made + images(sources.images) + "</div>\n";
+}
+
+}  // namespace
+
+std::string content(const Sources& sources, const model::Printer& printer, const Wanted& wanted) {
+  const Volumes volumes = read_volumes(sources.volumes);
+  const std::optional<Judged> judged = judge(volumes, printer);
+  std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
+  if (judged) made += verdict(*judged);
+  made += views(sources, volumes, judged, wanted);
+  if (judged) {
+    made += "<h2>Figures of merit</h2>\n" + figures_table(judged->score.figures());
+  }
+  if (!sources.reports.empty()) made += "<h2>Reports</h2>\n";
+  for (const std::string& report : sources.reports) made += report_table(report);
+  std::vector<std::string> made_by = sources.volumes;
+  made_by.insert(made_by.end(), sources.stacks.begin(), sources.stacks.end());
+  if (!made_by.empty()) made += "<h2>Provenance</h2>\n" + provenance(made_by);
+  return made + "<p class=\"none\">" + page_text(wanted.history) + "</p>\n";
+}
+
+}  // namespace vam::report_tool
