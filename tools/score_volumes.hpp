@@ -7,13 +7,13 @@
 
 #include "base/log.hpp"
 #include "base/memory.hpp"
-#include "base/text.hpp"
+#include "facts.hpp"
 #include "io/vdb/covered.hpp"
 #include "io/vdb/vdb.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 #include "score/score.hpp"
 
 namespace vam::tool {
@@ -24,13 +24,12 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
                             const model::Printer& printer) {
   const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
   how.circle = model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
-  const auto made_for = dose.metadata.find("vam:threshold_dose");
-  if (made_for != dose.metadata.end()) how.aimed_at = parse_number(made_for->second);
+  how.aimed_at = threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
   if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
-  const auto turns = dose.metadata.find("vam:full_light_turns");  // of vam-dose --exposure-plan
-  how.exposure = {printer, turns == dose.metadata.end() ? 1.0 : std::stod(turns->second)};
+  const auto turns = stated_number(dose.metadata, "vam:full_intensity_turns");  // of vam-dose --exposure-plan
+  how.exposure = {printer, turns.value_or(1.0)};
 }
 
 /// Both on the same grid.

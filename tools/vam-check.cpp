@@ -17,7 +17,7 @@
 namespace {
 
 using namespace vam;
-using io::Finding;
+using io::ProvenanceEntry;
 
 struct Options {
   std::vector<std::string> files{"-"};
@@ -26,35 +26,34 @@ struct Options {
 };
 
 cli::Manual manual() {
-  return {
-      "vam-check",
-      "verify the integrity of files and show their provenance",
-      {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these tools "
-       "write into "
-       "stacks, volumes, calibration records, reports and the printer file of a print (vam-formats(7), SEALS), and the "
-       "checksums of lossless videos. A file that differs ends it with status 65, after the others have been read.",
-       "For each file it prints whether it is sealed, and the chain of commands that led to it: the seal of the file "
-       "that each command wrote, the command, and, where that file is among those that are checked, its name. A dash "
-       "stands for a file that was not sealed or came through a pipe.",
-       "The tools themselves verify every file that they read against its seals; this check is for archives, and for "
-       "files that others pass on. A file of another program has no seal; that is printed and no error. Seals find "
-       "bit rot, cuts and edits; they are not signatures."},
-      {{"A part and its sinogram:",
-        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o sino.exr && vam-check part.vdb "
-        "sino.exr"},
-       {"Headers alone, for large archives:", "vam-check --fast sino.exr"},
-       {"Sealed printer settings:",
-        "vam-slice --print-printer -o printer.toml && vam-check --seal printer.toml && vam-check printer.toml"}},
-      {"Memory: one image, or the topology of one volume. Speed: that of reading."},
-      {"vam-print", "vam-view"}};
+  return {"vam-check",
+          "verify the integrity of files and show their provenance",
+          {"vam-check reads each file and verifies it against its seals: hashes of values and attributes that these "
+           "tools write into stacks, volumes, calibration records, reports and the printer file of a print "
+           "(vam-formats(7), SEALS), and the checksums of lossless videos. If a file differs, the exit status is 65, "
+           "after all others have been checked.",
+           "For each file vam-check prints whether it is sealed, and the commands that produced it: for each command "
+           "the seal of the file that it wrote, the command line, and the name of that file if it is among those "
+           "checked. A dash replaces the seal of a file that was not sealed or came through a pipe.",
+           "All tools verify the seals of the files that they read; vam-check is for archives and for files received "
+           "from others. Files of other programs have no seal, which is printed and is not an error. Seals reveal bit "
+           "rot, truncation and edits; they are not signatures."},
+          {{"Check a part and its sinogram:",
+            "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o sino.exr && vam-check "
+            "part.vdb sino.exr"},
+           {"Headers only, for large archives:", "vam-check --fast sino.exr"},
+           {"Seal printer settings:",
+            "vam-slice --print-printer -o printer.toml && vam-check --seal printer.toml && vam-check printer.toml"}},
+          {"Memory: one image, or the topology of one volume. Speed: that of reading."},
+          {"vam-print", "vam-view"}};
 }
 
 // The names of the files that are checked, by their seals.
 using Names = std::map<std::string, std::string>;
 
-std::string report(const std::string& path, const std::vector<Finding>& findings, const Names& names) {
+std::string report(const std::string& path, const std::vector<ProvenanceEntry>& findings, const Names& names) {
   std::string text;
-  for (const Finding& finding : findings) {
+  for (const ProvenanceEntry& finding : findings) {
     text += printable(io::input_name(path)) + ": " + printable(finding.what) +
             (finding.sealed ? ", sealed" : ", unsealed") + (finding.seal.empty() ? "" : " " + finding.seal) + "\n";
     for (const auto& [command, seal] : chain_of(finding)) {
@@ -67,7 +66,7 @@ std::string report(const std::string& path, const std::vector<Finding>& findings
 }
 
 void check(const Options& options) {
-  std::map<std::string, std::vector<Finding>> found;
+  std::map<std::string, std::vector<ProvenanceEntry>> found;
   Names names;
   std::vector<Error> damaged;
   for (const std::string& path : options.files) {
@@ -77,7 +76,7 @@ void check(const Options& options) {
       damaged.push_back(error);
       continue;
     }
-    for (const Finding& finding : found[path]) {
+    for (const ProvenanceEntry& finding : found[path]) {
       if (!finding.seal.empty()) names.emplace(finding.seal, io::input_name(path));
     }
   }
@@ -95,7 +94,7 @@ void seal(const std::string& path) {
   (void)io::parse_printer(text, path);
   if (io::require_text_seal(text, path)) return;
   if (text.empty() || text.back() != '\n') {
-    throw Error{Fault::data, path + ": ends within a line; complete it before it is sealed"};
+    throw Error{Fault::data, path + ": ends within a line; complete the line before sealing"};
   }
   io::write_text(path, io::sealed_text(text));
 }
@@ -110,11 +109,12 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   cli::App app(manual());
   Options options;
-  app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or any others.")
+  app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or other files.")
       .reads();
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
   app.flag("--seal", options.seal,
-           "Seal printer files instead: a seal line is appended, against which the tools verify the file from then on.")
+           "Seal printer files instead: append a line with the seal, against which the tools verify the file from then "
+           "on.")
       .form();
   return app.run(argc, argv, [&] { run(options); });
 }

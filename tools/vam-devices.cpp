@@ -16,7 +16,7 @@ using namespace vam;
 
 struct Options {
   std::vector<std::string> ports;
-  bool ask = false;
+  bool probe = false;
   std::string report;
 };
 
@@ -24,24 +24,22 @@ cli::Manual manual() {
   return {
       "vam-devices",
       "list stages, cameras, displays and light engines",
-      {"Lists the devices that this machine sees, each with the device string for the printer file and for --device, "
-       "--display and --light, and with what is known of it. A line below a device states why it cannot be used, and "
-       "the remedy: no permission (the group to join or the udev rule to write), another program that has it "
-       "(its process), a graphics card controlled by a desktop session. If no device of a kind is found, what to "
-       "check is listed.",
-       "No commands are sent: nothing moves or lights up. What is connected to a serial port is not known; it "
-       "is listed as gcs: or, where the maker of its USB converter suggests so, another scheme. --ask queries each "
-       "port by each protocol for the identity of the controller. This does not move the stage, but most GRBL boards "
-       "are "
-       "reset when their port is opened, and other instruments on such ports receive a question that they do not "
-       "know."},
+      {"Lists the devices found on this machine, each with its device string, for the printer file and for --device, "
+       "--display and --light, and a description. A line below a device states why it cannot be used, and the remedy: "
+       "no permission (the group to join or the udev rule to write), in use by another program (its process), a "
+       "graphics card controlled by a desktop session. If no device of a kind is found, the checks to make are listed.",
+       "No commands are sent: nothing moves and no light is switched on. The device on a serial port cannot be "
+       "determined in this way; the port is listed as gcs: or, where the maker of its USB converter suggests another "
+       "protocol, by that scheme. --probe queries each port for the identity of a controller, by one protocol after "
+       "the other. This does not move the stage, but most GRBL boards are reset when their port is opened, and other "
+       "instruments on such ports receive commands of a foreign protocol."},
       {{"List the connected devices:", "vam-devices"},
        {"A simulated stage on a pseudo-terminal, queried for its identity:",
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
-        "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --ask"}},
-      {"Duration. About a second, which is the time that cameras on the network have for their answer; with --ask up "
-       "to 4 s more per port.",
-       "A camera of another subnet is not found; give its IP address (aravis:192.168.1.7)."},
+        "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --probe"}},
+      {"Duration. About a second, the time allowed for replies of network cameras; with --probe up to 4 s more per "
+       "port.",
+       "Limits. A camera in another subnet is not found; give its IP address (aravis:192.168.1.7)."},
       {"vam-stage", "vam-capture", "vam-project", "vam-print"}};
 }
 
@@ -75,12 +73,12 @@ void print(const std::vector<device::Found>& found) {
 void run(const Options& options) {
   std::vector<device::Found> found = device::find_devices(options.ports);
   for (auto& one : found) {
-    if (options.ask && one.kind == "stage") device::ask_stage(one);
+    if (options.probe && one.kind == "stage") device::ask_stage(one);
   }
   print(found);
   Json list = Json::array();
   for (const auto& one : found) {
-    list.push_back({{"kind", one.kind}, {"device", one.device}, {"about", one.about}, {"obstacle", one.obstacle}});
+    list.push_back({{"kind", one.kind}, {"device", one.device}, {"description", one.about}, {"problem", one.obstacle}});
   }
   io::write_report(options.report, "vam-devices/1", {{"found", list}});
 }
@@ -90,8 +88,8 @@ void run(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   cli::App app(manual());
-  app.option("--port", "PATH", options.ports, "A serial port besides those that the system lists.");
-  app.flag("--ask", options.ask, "Query the serial ports for stage controllers.");
+  app.option("--port", "PATH", options.ports, "Serial port to list in addition to those of the system.");
+  app.flag("--probe", options.probe, "Query the serial ports for stage controllers.").was("--ask");
   cli::add_report(app, options.report);
   return app.run(argc, argv, [&] { run(options); });
 }

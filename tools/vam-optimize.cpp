@@ -6,12 +6,14 @@
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
 #include "device/os/interrupt.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "model/grid_size.hpp"
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
 #include "vam-optimize/checkpoint.hpp"
+#include "vam-optimize/coarse_start.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -38,38 +40,49 @@ void require_memory_for(const Scene& scene, const light::Operator& light, bool t
       whole ? "use larger voxels (vam-slice --voxel)" : "use larger voxels (vam-slice --voxel) or fewer --angles");
 }
 
+/// --init; the task refers to all three.
+void start_from(std::optional<optimize_tool::Initial>& initial, optimize::VolumeTask& task,
+                const model::StackInfo& info, const Options& options) {
+  if (options.init.empty()) return;
+  initial.emplace(options.init, info);
+  task.initial = [&](int k) { return k < info.count ? (*initial)(k) : Image(info.width, info.height); };
+}
+
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
   settle(app, options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;
+  settle_recorded(printer, options);
   settle_response(app, options);
 
   const optimize_tool::Inputs in = optimize_tool::read(options);
   const Scene scene = make_scene(in.target.front(), printer, options);
+  warn_of(scene, in.target.front(), options);
   const model::StackInfo info = stack_info(scene, in.target.front(), app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
   std::optional<optimize_tool::Initial> initial;
-  if (!options.init.empty()) {
-    initial.emplace(options.init, info);
-    task.initial = [&](int k) { return k < info.count ? (*initial)(k) : Image(info.width, info.height); };
-  }
+  start_from(initial, task, info, options);
   std::optional<optimize_tool::Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
     checkpoint.emplace(options.checkpoint);
     task.interruption = checkpoint->interruption(job_of(app, printer, options));
   }
+  std::optional<optimize_tool::CoarseStart> start;
+  if (task.interruption.from == nullptr) start = coarse_start(in, scene, options);
+  if (device::interrupted()) return;
+  if (start) start_from(*start, task, options);
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int k, const Image& image) {
     if (k < info.count) sink.add(image);  // there may be more slices than rows
   };
 
-  const std::string subject = options.input == "-" ? "stdin" : options.input;
+  const std::string subject = io::input_name(options.input);
   const auto light = make_light(scene, options);
   require_memory_for(scene, *light, options.printer_tolerances.has_value(), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   const auto outcome = optimize::optimise(task, *light);
-  if (outcome.reason == "interrupted") {
+  if (outcome.stop == optimize::StopReason::interrupted) {
     checkpoint->keep();
     return;
   }

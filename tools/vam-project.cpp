@@ -31,8 +31,9 @@ void run(const cli::App& app, Options& options) {
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);
   if (!options.pattern.plan.name.empty()) {
-    if (options.only_plan) throw Error{Fault::usage, "--plan: is of a print, not of a --pattern; omit one"};
-    if (options.input != "-") throw Error{Fault::usage, options.input + ": give either SINOGRAM or --pattern"};
+    if (options.input != "-")
+      throw Error{Fault::usage, "--pattern: conflicts with SINOGRAM (" + options.input + "); omit one"};
+    if (options.only_plan) return project::print_devices(options, printer);
     return show_pattern(app, options, printer.projector);
   }
   if (options.only_plan) return print_plan(options, printer);

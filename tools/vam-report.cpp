@@ -27,36 +27,32 @@ struct Options {
 };
 
 cli::Manual manual() {
-  return {
-      "vam-report",
-      "show a part, its projections, dose and figures on one page",
-      {"Writes one page (HTML) from the files of a print, for a notebook, a publication's supplement, or a colleague. "
-       "It "
-       "needs no network and no server: images, values and script are within, and nothing else can run. It opens in "
-       "any "
-       "browser, on a telephone, too, and prints to PDF.",
-       "FILE is a volume (target, dose, scatter, insert), a stack of sinograms or frames, a video, a report in JSON "
-       "(--report of any tool), the trace of vam-optimize or a PNG image; of a folder all such files are taken. What a "
-       "file is, is determined by its content.",
-       "The page has, as far as the files tell: the verdict of vam-score with its figures; design and print as bodies "
-       "that can be turned, the design coloured by the margin of the dose on its surface, the print by its distance "
-       "from the design; sections of every volume, the dose with the design's outline; the projections as they play, "
-       "and the sinograms; the dose in part and void; convergence; all reports; and for each file the commands that it "
-       "was made by, with their seals.",
-       "The first target and the first dose are judged, with the settings of the printer file, as vam-score does."},
-      {{"A print from design to dose:",
-        "vam-slice --shape gyroid --voxel 0.3 -o part.vdb && vam-optimize part.vdb --angles 120 --iterations 12 "
-        "--trace "
-        "trace.csv -o light.exr --report light.json && vam-dose light.exr --like part.vdb -o dose.vdb && vam-report "
-        "part.vdb light.exr dose.vdb light.json trace.csv -o report.html"},
-       {"Everything in a folder:",
-        "mkdir print && cp part.vdb dose.vdb light.json print/ && vam-report print -o print.html"}},
-      {"Memory: the volumes as stored in their files, one image of a stack, and the page itself. A page has 2 to 15 "
-       "MB, by "
-       "--sections and --projections.",
-       "Surfaces are drawn from voxels averaged until they have less than 60,000 vertices; for measurement use "
-       "vam-sdf."},
-      {"vam-check", "vam-score", "vam-sdf", "vam-status", "vam-view"}};
+  return {"vam-report",
+          "show a part, its projections, dose and figures on one page",
+          {"vam-report writes one page (HTML) from the files of a print, for a laboratory notebook, the supplement of "
+           "a publication, or a colleague. It needs neither network nor server: images, values and script are "
+           "embedded, and the page can load nothing else. It opens in any browser, including those of telephones, and "
+           "can be printed to PDF.",
+           "FILE is a volume (target, dose, scatter, insert), a stack of sinograms or frames, a video, a report in "
+           "JSON (--report of any tool), the trace of vam-optimize or a PNG image; of a folder, all such files are "
+           "used. The type of a file is determined by its content.",
+           "Depending on the files, the page contains: the verdict of vam-score with its figures of merit; design and "
+           "print in three dimensions, the design coloured by the margin of the dose on its surface, the print by its "
+           "distance from the design; sections of every volume, those of the dose with the outline of the design; the "
+           "projections as an animation, and the sinograms; the dose distributions in part and void; the convergence "
+           "of the optimisation; all reports; and for each file the commands that produced it, with their seals.",
+           "The first target and the first dose are scored as by vam-score, with the settings of the printer file."},
+          {{"A print from design to dose:",
+            "vam-slice --shape gyroid --voxel 0.3 -o part.vdb && vam-optimize part.vdb --angles 120 --iterations 12 "
+            "--trace trace.csv -o light.exr --report light.json && vam-dose light.exr --like part.vdb -o dose.vdb && "
+            "vam-report part.vdb light.exr dose.vdb light.json trace.csv -o report.html"},
+           {"Everything in a folder:",
+            "mkdir print && cp part.vdb dose.vdb light.json print/ && vam-report print -o print.html"}},
+          {"Memory: the volumes as stored in their files, one image of a stack, and the page itself. A page has 2 to "
+           "15 MB, depending on --max-sections and --max-images.",
+           "Surfaces are computed on voxels averaged until they have less than 60,000 vertices; for measurements use "
+           "vam-sdf."},
+          {"vam-check", "vam-score", "vam-sdf", "vam-status", "vam-view"}};
 }
 
 void declare(cli::App& app, Options& o) {
@@ -64,8 +60,9 @@ void declare(cli::App& app, Options& o) {
   app.option("-o,--output", "FILE", o.output, "Write the page to FILE; - is standard output.")
       .writes({".html", ".htm"});
   app.option("--title", "TEXT", o.title, "Title of the page.").default_is("the name of the first file");
-  app.option("--sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.");
-  app.option("--projections", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.");
+  app.option("--max-sections", "N", o.sections, {1, 200}, "Maximum number of sections of a volume.").was("--sections");
+  app.option("--max-images", "N", o.projections, {1, 360}, "Maximum number of images of a stack or video.")
+      .was("--projections");
   cli::add_printer(app, o.printer);
   cli::add_threads(app);
 }
@@ -73,7 +70,7 @@ void declare(cli::App& app, Options& o) {
 void run(const cli::App& app, Options& o) {
   const model::Printer printer = tool::load_printer(o.printer);
   if (tool::print_printer(o.printer, printer, o.output)) return;
-  if (o.files.empty()) throw Error{Fault::usage, "FILE: name the files of a print, or their folder"};
+  if (o.files.empty()) throw Error{Fault::usage, "FILE: give the files of a print, or their folder"};
   if (o.title.empty()) o.title = report_tool::file_name(o.files.front());
   plot::Page page;
   page.title = o.title;

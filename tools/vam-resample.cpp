@@ -12,7 +12,8 @@
 #include "io/settings/printer_file.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
-#include "optics/climb.hpp"
+#include "optics/crossed_slices.hpp"
+#include "optics/ray_list.hpp"
 #include "optics/resample_stack.hpp"
 #include "printer.hpp"
 #include "vam-resample/options.hpp"
@@ -38,9 +39,9 @@ void explain(const Options& options, const model::Printer& printer, const optics
 /// Half a slice: up to there light stays in its own.
 void warn_of_climb(const Options& options, const model::Printer& printer, const model::StackInfo& info) {
   constexpr double noticed = 0.5;
-  const double strayed = optics::strayed_slices(printer, info);
-  if (strayed < noticed) return;
-  warn(io::input_name(options.input) + ": the projector's rays climb, by up to " + format_number(strayed, 3) +
+  const double crossed = optics::crossed_slices(printer, info);
+  if (crossed < noticed) return;
+  warn(io::input_name(options.input) + ": the projector's rays climb, by up to " + format_number(crossed, 3) +
        " voxels out of their slice; resampling treats them as horizontal, vam-optimize --geometry vial does not");
 }
 
@@ -68,7 +69,7 @@ void run(const cli::App& app, Options& options) {
               projector ? model::Space::virtual_ : model::Space::camera);
   optics::StackResampling job = projector ? optics::stack_to_projector(printer, options.alignment, in.info(), how)
                                           : optics::stack_to_virtual(printer, options.alignment, in.info(), how,
-                                                                     options.voxel_mm, options.columns);
+                                                                     options.bin_width_mm, options.bins);
   job.info.history.push_back(app.history());
   if (projector) job.info.extra["vam:printer"] = io::printer_settings(printer);
   io::StackWriter out(options.output, job.info, options.stack);

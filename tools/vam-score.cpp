@@ -13,9 +13,9 @@
 #include "score/score.hpp"
 #include "score_volumes.hpp"
 #include "vam-score/inputs.hpp"
+#include "vam-score/lit_fraction.hpp"
 #include "vam-score/options.hpp"
 #include "vam-score/print.hpp"
-#include "vam-score/reach.hpp"
 
 namespace {
 
@@ -29,7 +29,7 @@ void add_light(score::Score& result, const std::string& sinogram) {
   for (model::ImageInfo about; light.next(image, about);) result.add_projection(image.values);
 }
 
-/// Conditions on figures that nothing here tells.
+/// Conditions must be on figures that the inputs determine.
 void require_known(const std::vector<model::Condition>& conditions, const Options& options) {
   const score::ScoreOptions& how = options.how;
   for (const model::Condition& condition : conditions) {
@@ -50,10 +50,10 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
 }
 
 void require_files_for_outputs(const Options& options) {
-  for (const auto& output : {options.print, options.report, options.reach}) {
+  for (const auto& output : {options.print, options.lit_fraction}) {
     if (output != "-") continue;
     throw Error{Fault::usage,
-                "--mesh, --reach, --report: standard output holds the figures of merit; name a file instead of -"};
+                "--mesh, --lit-fraction: standard output holds the figures of merit; give a file instead of -"};
   }
 }
 
@@ -69,10 +69,11 @@ void run(const cli::App& app, Options& options) {
   score::Score result = tool::score_volumes(in.dose(), in.target(), options.how);
   if (!options.sinogram.empty()) add_light(result, options.sinogram);
   const Json figures = result.figures();
-  if (!options.reach.empty()) score_tool::write_reach(options.reach, in.target().grid(), printer, app);
+  if (!options.lit_fraction.empty())
+    score_tool::write_lit_fraction(options.lit_fraction, in.target().grid(), printer, app);
   if (!options.print.empty()) write_print(options, in.dose(), options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score/1", figures);
-  io::write_text("-", options.json ? figures.dump(2) + "\n" : result.table());
+  if (options.report != "-") io::write_text("-", result.table());
   const auto failures = model::unmet(conditions, [&](const std::string& name) { return result.figure(name); });
   if (!failures.empty()) throw Error{Fault::judged, join(failures, "; ")};
 }

@@ -11,40 +11,39 @@ using sdf_tool::HeightOptions;
 using sdf_tool::Options;
 
 cli::Manual manual() {
-  return {
-      "vam-sdf",
-      "measure the deviation of a print from its design",
-      {"Reads the print (a mesh, or a volume whose isosurface at --isovalue is taken) and the design (a mesh, or a "
-       "target volume), aligns them, and measures signed distances: positive where the print is outside the design, "
-       "the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points distributed evenly "
-       "over the area, in both directions: from the print to the design, and from the design to the print, the "
-       "only one that reveals missing pieces.",
-       "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
-       "simulated dose can be compared with the original mesh.",
-       "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
-       "tried, "
-       "and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps it. With "
-       "--fit-scale a uniform scale is fitted too and reported as shrinkage.",
-       "A summary goes to standard error if that is a terminal, the figures as JSON to --report, the print with "
-       "distances and blue-white-red colours to -o. With --require the exit status is 1 unless all conditions hold.",
-       "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
-       "levelled by the plane through its base, the design's outline at half height is aligned with that of the print, "
-       "with a scale reported as shrinkage, and outline, overlap and height are measured."},
-      {{"Compare two boxes of slightly different size:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
-        "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
-        "deviation.json"},
-       {"Check a tolerance in a script:",
-        "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
-       {"Compare an embossed badge that is 1 % too small with its design:",
-        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
-        "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
-        "--pixel 0.1 -o outline.png --plot section.png"}},
-      {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
-       "the triangles are exact; extreme percentiles depend on --samples.",
-       "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and table "
-       "S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
-      {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
+  return {"vam-sdf",
+          "measure the deviation of a print from its design",
+          {"vam-sdf reads the print (a mesh, or a volume whose isosurface at --isovalue is used) and the design (a "
+           "mesh, or a target volume), aligns them, and measures signed distances: positive where the print is outside "
+           "the design, the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points "
+           "distributed evenly over the area, in both directions: from the print to the design, and from the design to "
+           "the print, which alone reveals missing pieces.",
+           "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
+           "simulated dose can be compared with the original mesh.",
+           "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
+           "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
+           "it. With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
+           "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
+           "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
+           "hold.",
+           "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
+           "levelled by the plane through its base, the outline of the design at half height is aligned with that of "
+           "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared."},
+          {{"Compare two boxes of slightly different size:",
+            "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
+            "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
+            "deviation.json"},
+           {"Check a tolerance in a script:",
+            "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
+           {"Compare an embossed badge that is 1 % too small with its design:",
+            "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
+            "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
+            "--pixel 0.1 -o outline.png --plot section.png"}},
+          {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
+           "the triangles are exact; extreme percentiles depend on --samples.",
+           "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and "
+           "table S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
+          {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
 }
 
 void declare(cli::App& app, Options& options) {
@@ -58,45 +57,52 @@ void declare(cli::App& app, Options& options) {
   app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.").reads();
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
   app.was("--reference-isovalue").was("--reference-level");
-  app.option("--pieces", "MM3", options.pieces_mm3, cli::non_negative,
-             "Smallest body of a print volume that belongs to the print. Default: 1 % of the largest body's volume.");
+  app.option("--min-body", "MM3", options.pieces_mm3, cli::non_negative,
+             "Minimum volume of a body that belongs to the print; smaller bodies of a print volume are dropped.")
+      .default_is("1 % of the largest body's volume")
+      .was("--pieces");
   app.group("Alignment");
   app.choice("--align", options.align, {"none", "icp", "full"}, "Alignment of the print with the design.");
-  app.flag("--fit-scale", options.scale, "Fit a uniform scale too.").was("--scale");
+  app.flag("--fit-scale", options.scale, "Also fit a uniform scale.").was("--scale");
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Number of points on each surface.");
   app.option("--histogram", "FILE", options.histogram,
-             "Histogram of distance by area: a plot if FILE ends in .png, else CSV.");
+             "Histogram of the distances by area: a plot if FILE ends in .png, else CSV.");
   app.option("--bins", "N", options.bins, {2, 10000}, "Number of histogram bins.");
   app.option("--limit", "MM", options.limit_mm, cli::positive,
-             "Range of the histogram and of the colours. Default: the 99th percentile.");
+             "Limit of the histogram and of the colours, on either side of 0.")
+      .default_is("the 99th percentile");
   app.option("--require", "CONDITIONS", options.require,
-             "Conditions on rms, mean, sigma, mad, max, hausdorff (mm) and rms_percent, e.g. 'rms<=0.2,hausdorff<1'.");
+             "Exit with status 1 unless all conditions hold, on rms, mean, sigma, mad, max, hausdorff (mm) and "
+             "rms_percent, e.g. 'rms<=0.2,hausdorff<1'.");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }
 
 void declare_height(cli::App& app, HeightOptions& options) {
   app.positional("IMAGE", options.image,
-                 "Profilometer's heights (PNG, TIFF or EXR), or a mesh or volume, viewed from above.")
+                 "Height image of a profilometer (PNG, TIFF or EXR), or a mesh or volume, viewed from above.")
       .reads();
   app.positional("DESIGN", options.design, "Mesh or volume of the design, embossed side up.").reads();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pixel pitch of the image.");
-  app.option(
-      "--full", "MM", options.full_mm, cli::positive,
-      "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.");
-  app.option("--lowest", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).");
+  app.option("--full-scale-height", "MM", options.full_mm, cli::positive,
+             "Height at full scale of a PNG or TIFF, in which 0 is a missing reading. EXR values are multiplied by it.")
+      .was("--full-scale")
+      .was("--full");
+  app.option("--min-height", "MM", options.lowest_mm, cli::any, "Exclude heights below MM (the substrate).")
+      .was("--lowest");
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
   app.was("--reference-isovalue").was("--reference-level");
   app.choice("--align", options.align, {"none", "icp", "full"},
-             "Alignment of the design with the print: centred, refined from there, or from any orientation.");
+             "Alignment of the design with the print: centred (none), refined from there (icp), or from any "
+             "orientation (full).");
   app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.")
       .writes({".png"});
-  app.option("--line", "X0,Y0,X1,Y1", options.line, 4,
-             "End points of a section, in pixels from the top left. Default: the middle column.");
+  app.option("--line", "X0,Y0,X1,Y1", options.line, 4, "End points of a section, in pixels from the top left corner.")
+      .default_is("the middle column");
   app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.").writes({".png"});
   app.option("--require", "CONDITIONS", options.require,
-             "Conditions on rms and max (mm), iou, shrinkage (%), height (mm).");
+             "Exit with status 1 unless all conditions hold, on rms and max (mm), iou, shrinkage (%) and height (mm).");
   cli::add_report(app, options.report);
 }
 

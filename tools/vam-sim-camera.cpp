@@ -14,6 +14,7 @@
 #include "optics/patterns.hpp"
 #include "printer.hpp"
 #include "sim/cameras/gv_camera.hpp"
+#include "sim/cameras/makers.hpp"
 #include "sim/controllers/options.hpp"
 
 namespace {
@@ -28,93 +29,141 @@ struct Options {
   std::string frames;
   optics::PatternPlan pattern;
   std::optional<int> pitch_px, width_px;  // its lines
-  double lag_ms = 0;
-  std::string lose, cut;
-  std::optional<int> vanish, shrink;
+  std::string stamp;
+  bool no_latch = false;
+  double lag_ms = 0, latency_ms = 0;
+  std::string drop, incomplete;
+  std::optional<int> unplug, shrink;
   std::string log;
   cli::PrinterOptions printer;
   bool with_parent = false;
 };
 
 cli::Manual manual() {
-  return {"vam-sim-camera",
-          "simulate a GigE Vision camera beside the vial",
-          {"Simulates a GenICam camera on GigE Vision, on a network address of this machine: it prints that address "
-           "when it is ready, and serves any GenICam client until a signal ends it. It views a simulated, refracting "
-           "vial: the print scatters and grows with its dose, and the projected image fluoresces in the resin.",
-           "The vial turns according to the log of vam-sim-stage (--angles), or at a constant --speed. The projector "
-           "shows the frames given by the log of vam-project (--flips), which also make the print grow: the test "
-           "pattern named in the log, else those of --projected or --pattern. Without that log the first frame is "
-           "shown all the time. A camera frame integrates over its whole exposure, also across changes of the image.",
-           "Its own log is the reference for tests of the tools: for every frame its number, the angle, the exposed "
-           "time so far in seconds and a fingerprint of its grey levels, which the manifest of vam-capture has, too.",
-           "An address has one camera at a time: GigE Vision's control port is always 3956."},
-          {{"Identify a simulated camera",
-            "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
-          {"Faults. --lose and --cut name frames, counted from the first one sent, of which no packet arrives, or only "
-           "some. --vanish N disconnects the cable before frame N: the program ends without informing its client. "
-           "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again. The "
-           "bench may be misaligned; the options of that group are the quantities measured by vam-calibrate.",
-           "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
-          {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
-          {},
-          {{75, "The address has a camera already, or cannot serve one."}}};
+  return {
+      "vam-sim-camera",
+      "simulate a GigE Vision camera beside the vial",
+      {"Simulates a GenICam camera on GigE Vision at a network address of this machine: prints that address when it "
+       "is ready and serves any GenICam client until a signal ends it. The camera views a simulated, refracting "
+       "vial: the print scatters light and grows with its dose, and the projected image fluoresces in the resin.",
+       "The vial rotates as recorded in the log of vam-sim-stage (--follow), or at a constant --speed. The projector "
+       "shows the frames recorded in the log of vam-project (--flips): those of the test pattern that the log "
+       "describes, else those of --projected or --pattern. They also determine how the print grows. Without a log "
+       "the first frame is shown throughout. A camera frame integrates over its whole exposure, also across changes "
+       "of the image.",
+       "Its own log is the reference for tests of the tools: for each frame the number, the stage angle, the exposed "
+       "time so far in seconds, and the fingerprint of the grey levels that the manifest of vam-capture records, "
+       "too.",
+       "The camera behaves as makers document theirs: gain is automatic at power-on, and a gain set meanwhile is "
+       "lost; grey levels saturate; the clock runs from power-on, 30 ppm fast, and can be latched; time stamps name "
+       "the moment of the exposure that --maker documents.",
+       "Only one camera can serve an address, as the control port of GigE Vision is always 3956."},
+      {{"Identify a simulated camera:",
+        "vam-sim-camera --die-with-parent >address & sleep 1; vam-capture identify --device aravis:127.0.0.1"}},
+      {"Faults. --drop and --incomplete list frames, counted from the first one sent, of which no packet arrives or "
+       "only some. --unplug N disconnects the cable before frame N: the program ends without informing its client. "
+       "--shrink N sends images of half the agreed height from frame N on, until a client sets the size again.",
+       "Misalignment. The options of that group are the quantities that vam-calibrate measures.",
+       "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
+      {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
+      {},
+      {{75, "The address is in use by another camera, or cannot serve one."}}};
 }
 
-void declare(cli::App& app, Options& o) {
-  auto& bench = o.camera.bench;
+void declare_scene(cli::App& app, Options& o) {
   app.group("Scene");
-  app.option("--part", "BODIES", o.part, "Print, like 'sphere:x=2,diameter=4;cylinder:diameter=6,height=3'.");
-  app.option("--lit", "S", bench.lit_s, cli::non_negative,
-             "Exposed time that completes the print; its volume grows in proportion. 0: it is there from the start.");
-  app.option("--angles", "FILE", o.camera.sources.angles, "Log of vam-sim-stage: the true stage angle.");
-  app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Stage speed without --angles.");
+  app.option("--part", "BODIES", o.part,
+             "Shape of the print, e.g. 'sphere:x=2,diameter=4;cylinder:diameter=6,height=3'.");
+  app.option("--lit", "S", o.camera.bench.lit_s, cli::non_negative,
+             "Exposed time that completes the print, whose volume grows in proportion; 0: complete from the start.");
+  app.option("--follow", "FILE", o.camera.sources.angles, "Read the stage angle from this log of vam-sim-stage.")
+      .was("--angles");
+  app.option("--speed", "DEG/S", o.camera.sources.speed_deg_s, {-1000, 1000}, "Without --follow: stage speed.");
   app.option("--flips", "FILE", o.camera.sources.shown, "Log of vam-project: which frame was on and when.")
       .was("--shown");
   app.option("--projected", "FILE", o.frames,
              "Frames shown by vam-project: an EXR frame stack, video or folder of images.")
       .was("--frames");
+}
+
+void declare_pattern(cli::App& app, Options& o) {
+  app.group("Test pattern");
   app.option("--pattern", "NAME", o.pattern.name, "Test pattern shown by vam-project.");
-  app.option("--pitch", "PX", o.pitch_px, {1, 100000}, "Pitch of the pattern.").default_is("16; 4 for sweep");
-  app.option("--width", "PX", o.width_px, {1, 100000}, "Width of the pattern's lines.").default_is("1; 4 for sweep");
-  app.option("--grey", "FRACTION", o.pattern.level, {0, 1}, "Grey level of the pattern, as a fraction of full grey.")
+  app.option("--pitch", "PX", o.pitch_px, {1, 100000}, "Pitch of grid lines, and step of the sweep.")
+      .default_is("16; 4 for sweep");
+  app.option("--width", "PX", o.width_px, {1, 100000}, "Width of lines.").default_is("1; 4 for sweep");
+  app.option("--grey", "FRACTION", o.pattern.level, {0, 1},
+             "Grey level of lines and fields, as a fraction of full grey.")
       .was("--level");
-  app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the pattern ramp.");
-  app.group("Misalignment of the bench");
-  app.option("--axis-column", "PX", bench.axis_column, {-4096, 4096},
-             "Column of the rotation axis, counted from the centre of the sensor (camera.axis_column counts from its "
-             "left edge).");
-  app.option("--tilt", "DEG", bench.tilt_deg, {-30, 30}, "Tilt of the axis, its lower end towards higher columns.");
+  app.option("--steps", "N", o.pattern.steps, {2, 65536}, "Levels of the ramp.");
+}
+
+void declare_misalignment(cli::App& app, sim::SimBench& bench) {
+  app.group("Misalignment");
+  app.option("--axis-offset", "PX", bench.axis_column, {-4096, 4096},
+             "Offset of the rotation axis from the centre of the sensor, in columns, positive to the right "
+             "(camera.axis_column counts from the left edge).")
+      .was("--axis-column");
+  app.option("--tilt", "DEG", bench.tilt_deg, {-30, 30}, "Tilt of the axis, positive with its lower end to the right.");
   app.option("--centre", "PX", bench.centre_px, {-4096, 4096},
-             "Centre of the vial in projector columns, from projector.axis_column.");
-  app.option("--wobble", "MM", bench.wobble_mm, {0, 100}, "Distance between the axes of vial and stage.");
+             "Offset of the vial's centre from projector.axis_column, in projector columns.");
+  app.option("--wobble", "MM", bench.wobble_mm, {0, 100}, "Distance of the vial's axis from the rotation axis.");
   app.option("--wobble-phase", "DEG", bench.wobble_deg, {-360, 360},
              "Stage angle at which the vial is displaced towards higher projector columns.");
-  app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Full width at half maximum of a pixel in focus.");
+}
+
+void declare_projector(cli::App& app, Options& o) {
+  auto& bench = o.camera.bench;
+  app.group("Projector");
+  app.option("--beam", "MM", bench.beam_mm, {0, 10}, "Width of a pixel's beam in focus, full width at half maximum.");
   app.option("--focus", "MM", bench.focus_mm, {-1000, 1000}, "Position of the focus along the beam, from the axis.");
   app.option("--divergence", "DEG", bench.divergence_deg, {0, 45},
-             "Increase of that width with the distance from focus.");
-  app.flag("--card", bench.card, "Uniform card in place of the vial, lit by the mean of the image.");
-  app.option("--glow", "FRACTION", bench.glow, {0, 10000},
-             "Fluorescence of a fully lit vial, as a fraction of full scale in 20 ms. A thin line needs more.");
-  app.option("--gamma", "N", bench.gamma, {0.1, 10}, "Intensity = (grey / full grey) to this power.");
+             "Increase of the beam's width with the distance from the focus, as an angle.");
+  app.option("--projector-gamma", "N", bench.gamma, {0.1, 10}, "Intensity = (grey / full grey) to this power.")
+      .was("--gamma");
   app.option("--vignetting", "FRACTION", bench.vignetting, {0, 1},
              "Relative loss of intensity at the corners of the image.");
-  app.option("--background", "FRACTION", bench.background, {0, 1}, "Background, as a fraction of full scale.");
-  app.option("--noise", "FRACTION", bench.noise, {0, 1}, "Standard deviation of noise, as a fraction of full scale.");
-  app.option("--lag", "MS", o.lag_ms, {-1000, 1000}, "Delay from exposure to time stamp.");
+  app.option("--latency", "MS", o.latency_ms, {0, 1000}, "Delay from a flip to its light.");
+  app.option("--glow", "FRACTION", bench.glow, {0, 10000},
+             "Fluorescence of a fully lit vial in an exposure of 20 ms, as a fraction of full scale; a thin line needs "
+             "a larger value.");
+  app.flag("--card", bench.card, "Uniform card in place of the vial, lit by the mean of the image.");
+}
+
+void declare_camera(cli::App& app, Options& o) {
+  auto& bench = o.camera.bench;
   app.group("Camera");
+  app.choice("--maker", o.camera.maker, sim::sim_maker_names(), "Maker whose identity and time stamps are simulated.");
+  app.choice("--stamp", o.stamp, {"start", "middle", "end"},
+             "Moment of the exposure that time stamps name, before --lag.")
+      .default_is("as documented by the maker");
+  app.option("--lag", "MS", o.lag_ms, {-1000, 1000}, "Delay of the time stamps from that moment.");
+  app.flag("--no-latch", o.no_latch, "The clock cannot be latched.");
   app.option("--address", "IP", o.address, "Address of this machine to serve on.");
   app.option("--serial", "TEXT", o.serial, "Serial number.");
   app.option("--columns", "PX", bench.columns, {8, 2048}, "Sensor columns, at a pitch of camera.pixel_mm.");
   app.option("--rows", "PX", bench.rows, {8, 2048}, "Sensor rows.");
+  app.option("--background", "FRACTION", bench.background, {0, 1}, "Background, as a fraction of full scale.");
+  app.option("--noise", "FRACTION", bench.noise, {0, 1}, "Standard deviation of noise, as a fraction of full scale.");
+}
+
+void declare_faults(cli::App& app, Options& o) {
   app.group("Faults");
-  app.option("--lose", "FRAMES", o.lose, "Frames that are lost, like 3,7.");
-  app.option("--cut", "FRAMES", o.cut, "Frames that arrive incomplete.");
-  app.option("--vanish", "N", o.vanish, {0, 1e9}, "Disconnect before this frame.");
-  app.option("--shrink", "N", o.shrink, {1, 1e9}, "From this frame on, images of half the agreed height.");
+  app.option("--drop", "FRAMES", o.drop, "Frames that are dropped, e.g. 3,7.").was("--lose");
+  app.option("--incomplete", "FRAMES", o.incomplete, "Frames that arrive incomplete, e.g. 3,7.").was("--cut");
+  app.option("--unplug", "N", o.unplug, {0, 1e9}, "Disconnect before this frame.").was("--vanish");
+  app.option("--shrink", "N", o.shrink, {1, 1e9}, "From this frame on, send images of half the agreed height.");
+}
+
+void declare(cli::App& app, Options& o) {
+  declare_scene(app, o);
+  declare_pattern(app, o);
+  declare_misalignment(app, o.camera.bench);
+  declare_projector(app, o);
+  declare_camera(app, o);
+  declare_faults(app, o);
   app.group("Program");
-  app.option("--seed", "N", bench.seed, {0, 1e9}, "Seed of the random numbers.");
+  app.option("--seed", "N", o.camera.bench.seed, {0, 1e9}, "Seed of the random numbers.");
   app.option("--log", "FILE", o.log, "Append one JSON line per event.");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_printer(app, o.printer);
@@ -182,9 +231,12 @@ void run(Options& o) {
     return images(pattern_of(event), camera.bench.printer.projector);
   };
   camera.lag_s = 1e-3 * o.lag_ms;
-  camera.lose = sim::parse_frames(o.lose);
-  camera.cut = sim::parse_frames(o.cut);
-  camera.vanish = o.vanish.value_or(-1);
+  camera.sources.latency_s = 1e-3 * o.latency_ms;
+  camera.latch = !o.no_latch;
+  if (!o.stamp.empty()) camera.stamp = device::stamp_moment(o.stamp, "");
+  camera.drop = sim::parse_frames(o.drop);
+  camera.incomplete = sim::parse_frames(o.incomplete);
+  camera.unplug = o.unplug.value_or(-1);
   camera.shrink = o.shrink.value_or(-1);
   const sim::SimGvCamera server(camera, o.address, o.serial, sim::file_sim_log(o.log));
   device::print_line(o.address);
@@ -198,6 +250,6 @@ int main(int argc, char** argv) {
   options.pattern.name.clear();
   cli::App app(manual());
   declare(app, options);
-  // A signal may end it as it is: nothing is to be made safe, and waiting for Aravis' threads can take for ever.
+  // A signal ends it at once: nothing needs a safe state, and waiting for the threads of Aravis may never end.
   return app.run(argc, argv, [&] { run(options); });
 }

@@ -54,26 +54,25 @@ cli::Manual manual() {
   return {
       "vam-sim-stage",
       "simulate a rotation stage on a pseudo-terminal",
-      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: it opens a pseudo-terminal, "
-       "prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia and limits, must "
-       "be powered and referenced, and rejects commands with the error codes of the controller.",
+      {"Simulates a PI C-863 controller with an M-060.PD rotation stage on a serial line: opens a pseudo-terminal, "
+       "prints its path, and answers GCS 2.0 commands until a signal ends it. The stage has inertia and limits of "
+       "travel, must be powered and referenced, and rejects commands with the error codes of the controller.",
        "Its log is the reference for tests of the tools: one JSON line per received command, per start, standstill and "
        "zeroing of the stage, and the true angle every 10 ms during motion, all on CLOCK_MONOTONIC.",
-       "With --protocol relay it is the dead-man relay of vam-devices(7), which opens 0.3 s after the last heartbeat; "
-       "the "
-       "log records when and why.",
-       "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded, whose path "
-       "--shim prints."},
-      {{"Identify a simulated stage",
+       "--protocol relay simulates the dead-man relay of vam-devices(7), which opens 0.3 s after the last heartbeat; "
+       "the log records when and why.",
+       "libserialport, which vam-stage uses, rejects pseudo-terminals unless a small library is preloaded; --shim "
+       "prints its path."},
+      {{"Identify a simulated stage:",
         "vam-sim-stage --link stage --die-with-parent >path & while [ ! -s path ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-stage identify --device gcs:$(cat path)"}},
       {"Faults. --fault KIND@COMMAND[:N] injects a fault at the N-th arrival of a command (POS?, MOV, ERR?, #7, ...): "
-       "garbage, truncated, late (3 s) or silent answers, wrong-sender (an answer of controller 7), error (the command "
+       "garbage, truncated, late (3 s) or silent (no reply), wrong-sender (a reply of controller 7), error (the "
+       "command "
        "is rejected), unplug (the cable is disconnected; the motion continues), power-loss (the controller fails and "
-       "the stage coasts to a stop), block (the stage is blocked while the controller keeps answering) and stall (the "
-       "same, and a Zaber controller reports it). A command of a Zaber stage is named by its first words (get pos, "
-       "move "
-       "abs, home)."},
+       "the stage coasts to a stop), block (the stage is blocked while the controller keeps replying) and stall (the "
+       "same, and a Zaber controller reports it). A command of a Zaber stage is identified by its first words (get "
+       "pos, move abs, home)."},
       {"vam-stage", "vam-sim-camera"},
       {},
       {{69, "No pseudo-terminal is available."}, {129, "SIGHUP."}, {130, "SIGINT."}, {143, "SIGTERM."}}};
@@ -85,34 +84,36 @@ void declare(cli::App& app, Options& options) {
   app.option("--acceleration", "DEG/S2", motor.acceleration_deg_s2, {1, 10000},
              "Acceleration of ramps and smooth stops.");
   app.option("--speed-error", "FRACTION", motor.speed_error, {-0.5, 0.5},
-             "Relative speed error: 0.01 turns 1 % too fast.");
+             "Relative speed error: 0.01 is 1 % too fast.");
   app.option("--ripple", "FRACTION", motor.ripple, {0, 0.5},
-             "Relative amplitude of a speed error that repeats every 30 degrees.");
+             "Relative amplitude of a speed ripple with a period of 30 degrees.");
   app.option("--max-speed", "DEG/S", options.stage.max_speed_deg_s, {1, 10000},
-             "Maximum speed; faster commands are rejected with error 8.");
-  app.option("--min", "DEG", options.stage.min_deg, {-1e7, 0},
-             "Lower limit of travel; commands below it are rejected with error 7.");
-  app.option("--max", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.");
-  app.option("--at", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.");
+             "Maximum speed; commands above it are rejected with error 8.");
+  app.option("--min-angle", "DEG", options.stage.min_deg, {-1e7, 0},
+             "Lower limit of travel; commands below it are rejected with error 7.")
+      .was("--min");
+  app.option("--max-angle", "DEG", options.stage.max_deg, {0, 1e7}, "Upper limit of travel.").was("--max");
+  app.option("--start-angle", "DEG", options.stage.home_deg, {-180, 180}, "Angle at power-on, from the reference.")
+      .was("--at");
   app.group("Serial line");
   app.choice(
       "--protocol", options.protocol, protocol_names(),
-      "A PI controller, a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man relay of "
-      "a lamp.");
-  app.option("--reply-delay", "MS", options.reply_delay_ms, {0, 1000}, "Time from query to reply.").was("--latency");
+      "Device: a PI controller (gcs), a GRBL 1.1 board with the stage on axis X, a Zaber rotary stage, or the dead-man "
+      "relay of a lamp.");
+  app.option("--reply-delay", "MS", options.reply_delay_ms, {0, 1000}, "Delay of replies.").was("--latency");
   app.option("--jitter", "MS", options.jitter_ms, {0, 1000},
-             "Additional random time, before and after the angle is sampled.");
-  app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept this rate only.");
+             "Additional random delay, before and after the angle is sampled.");
+  app.option("--baud", "BAUD", options.baud, {50, 4000000}, "Accept only this baud rate.");
   app.option("--address", "N", options.stage.address, {1, 99},
              "Address of the controller in a daisy chain (GCS: 16 at most).");
   app.flag("--reset-at-open", options.stage.reset_at_open,
-           "GRBL: the board is reset when its port is opened, as most are, and its position is lost.");
-  app.flag("--old-firmware", options.stage.old_firmware, "Zaber: firmware 6.28, which takes no speed with a motion.");
+           "GRBL: the board is reset when its port is opened, as most boards are, and loses its position.");
+  app.flag("--old-firmware", options.stage.old_firmware, "Zaber: firmware 6.28, whose motion commands have no speed.");
   app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N].");
   app.group("Program");
   app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");
   app.option("--log", "FILE", options.log, "Append one JSON line per event.");
-  app.option("--link", "FILE", options.link, "Create this symbolic link to the pseudo-terminal; removed at the end.");
+  app.option("--link", "FILE", options.link, "Symbolic link to the pseudo-terminal, removed at the end.");
   app.flag("--shim", options.shim, "Print the path of the library to preload and exit.");
   app.flag("--die-with-parent", options.with_parent, "Exit when the parent process exits.");
 }

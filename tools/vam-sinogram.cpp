@@ -27,7 +27,7 @@ tomo::ProjectionSpec make_spec(const Options& options, const model::Printer& pri
   tomo::ProjectionSpec spec;
   const double mu =
       options.printer_absorption ? printer.resin.absorption_per_mm : options.absorption_per_mm.value_or(0);
-  spec.geometry = tomo::full_turn(grid, options.angles, options.columns.value_or(0), mu);
+  spec.geometry = tomo::full_turn(grid, options.angles, options.bins.value_or(0), mu);
   spec.voxel_mm = grid.voxel_mm;
   spec.filter.window = tomo::window_from_name(options.filter);
   spec.filter.cutoff = options.cutoff.value_or(1);

@@ -15,7 +15,7 @@
 #include "io/vdb/vdb.hpp"
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 #include "printer.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
@@ -92,7 +92,7 @@ void run(const cli::App& app, Options& options) {
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);
   if (insert) insert = solid::lifted(std::move(*insert), lift_mm);
-  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, size_option(options));
+  solid::require_writable(part.extent, room, options.voxel_mm.value(), part.subject, advice(options));
   const model::Grid grid = grid_of(options, printer, part, insert, room);
   solid::FillSummary content;
   std::optional<io::SparseVolume> opaque;
@@ -103,7 +103,7 @@ void run(const cli::App& app, Options& options) {
   }
   std::vector<io::SparseVolume> volumes;
   volumes.push_back(volume_of("target", printed, grid, content));
-  solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject);
+  solid::require_lit(content.radius_mm, room, grid.voxel_mm, part.subject, advice(options));
   warn_of_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   report["place"] = lift_figures(options, lift_mm);

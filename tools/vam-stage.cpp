@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -34,7 +35,6 @@ struct Options {
   double timeout_s = 120;
   std::optional<double> duration_s;
   double rate_hz = 100;
-  double move_speed_deg_s = 10;
   std::optional<double> speed_deg_s;
   std::optional<int> turns;  // of a spin; absent: of the printer file
   std::string direction;     // likewise when empty
@@ -42,52 +42,71 @@ struct Options {
   cli::PrinterOptions printer;
 };
 
-cli::Manual manual() {
+std::vector<std::string> description() {
   return {
-      "vam-stage",
-      "turn the rotation stage and report its angle",
-      {"Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
-       "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
-       "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all "
-       "processes "
-       "of the machine share, the angle at that time, and its standard deviation. vam-project --follow "
-       "reads these lines. The angle is 0 where the projection may begin, negative before, and 360 times the number of "
-       "turns where it must have ended. Angle 0 is always the same position of the stage: its reference after home.",
-       "The stage is that of --device or stage.device in the printer file; without either the command fails. "
-       "A simulator is used only if it is named; log and identify mark it ({\"simulated\": true}). A device is "
-       "a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
-       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
-       "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
-       "board with the stage on axis X, in degrees (?axis=Y for another). zaber:/dev/ttyUSB0 is a Zaber rotary stage "
-       "(ASCII protocol; ?address=2 and ?axis=2 for another of a chain, ?steps_per_deg=N for a motor that does not "
-       "know its turn). tic:00312345?steps_per_deg=88.9 is a stepper "
-       "motor behind a Pololu Tic on USB; the serial number may be omitted if there is only one. sim: is the PI "
-       "controller simulated inside the tool; its options speed_error, ripple (relative), jitter_ms, latency_ms, "
-       "acceleration_deg_s2, travel_deg, home_deg, seed, fault and log inject faults. vam-sim-stage(1) serves this "
-       "simulator on a pseudo-terminal."
-       " Protocols and fault handling are described in vam-devices(7).",
-       "A device has one user at a time: a second one exits with status 75 and names the process that holds it."},
-      {{"Identify the controller and its limits, here of a simulated stage", "vam-stage identify --device sim:"},
-       {"Find the reference and move to 20 degrees", "vam-stage move --device sim: --home --to 20"},
-       {"One turn of a simulated stage that is 1 % too fast and answers up to 5 ms late",
-        "vam-stage spin --device 'sim:?speed_error=0.01&jitter_ms=5' --speed 90 --run-up 0.25 --rate 10 "
-        ">angles.jsonl"}},
-      {"Safety. Before the stage moves, a child process (the guardian) receives the stop command. When vam-stage ends "
-       "for any reason, SIGKILL and a crash included, or makes no progress for 0.5 s, the guardian sends it: the stage "
-       "begins to stop within 100 ms. This is software and no interlock: it needs a running kernel and a connected "
-       "cable. A disconnected controller finishes its last motion, which is never longer than the requested turns. "
-       "Install a hardware interlock that cuts lamp and motor where people can reach either.",
-       "Accuracy. A sample's time is the middle between question and answer; sigma follows from the time between them. "
-       "spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, and ends when the stage "
-       "deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at 25 deg/s, 16 ms (the "
-       "FTDI default, which is set to 1 ms where permitted) are 0.4 degrees.",
-       "Priority. On a busy machine an answer may be read too late. As root, or with permission for a real-time "
-       "priority of 2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the members of that group "
-       "from their next login), vam-stage and its guardian run before other programs.",
-       "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."},
-      {"vam-project", "vam-sim-stage", "vam-capture"},
-      {},
-      cli::device_statuses};
+      "Drives a rotation stage and reports its angle. spin performs the motion of a print: ramp, one run-up turn at "
+      "constant speed, the whole turns of the print, stop. During the motion it prints one JSON line per sample, "
+      "{\"t_monotonic_s\": ..., \"angle_deg\": ..., \"sigma_deg\": ...}: the time on CLOCK_MONOTONIC, which all "
+      "processes of the machine share, the angle at that time, and its standard deviation. vam-project --follow and "
+      "vam-capture --follow read these lines. The angle is 0 where projection may begin, negative before, and 360 "
+      "times "
+      "the number of turns where projection must have ended. Angle 0 is always the same position of the stage: its "
+      "reference, found by home. Without a reference neither spin nor a motion to an angle starts (status 65).",
+      "The stage is that of --device or stage.device in the printer file; without either the command fails. A "
+      "simulator "
+      "is used only if it is named; log and identify mark it ({\"simulated\": true}).",
+      "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
+      "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
+      "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
+      "board with the stage on axis X, in degrees (?axis=Y for another). zaber:/dev/ttyUSB0 is a Zaber rotary stage "
+      "(ASCII protocol; ?address=2 and ?axis=2 for another of a chain, ?steps_per_deg=N for a controller without "
+      "stored "
+      "microsteps per turn). tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial "
+      "number may be omitted if there is only one. sim: is a PI controller simulated inside the tool; its options are "
+      "speed_error, ripple (relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault "
+      "and "
+      "log. vam-sim-stage(1) serves this simulator on a pseudo-terminal. Protocols and fault handling are described in "
+      "vam-devices(7).",
+      "A device has one user at a time: a second one exits with status 75 and names the process that holds it."};
+}
+
+std::vector<std::string> notes() {
+  return {
+      "Safety. Before the stage moves, a child process (the guardian) receives the stop command. When vam-stage ends "
+      "for "
+      "any reason, SIGKILL and a crash included, or makes no progress for 0.5 s, the guardian sends it: the stage "
+      "begins "
+      "to stop within 100 ms. Software is no interlock: it needs a running kernel and a connected cable. A "
+      "disconnected "
+      "controller completes its last motion, which is never longer than the requested turns. Install a hardware "
+      "interlock that cuts lamp and motor where people can reach either.",
+      "Accuracy. The time of a sample is the midpoint between query and reply; its standard deviation follows from the "
+      "interval between them. spin fails before angle 0 (status 76) when the speed error exceeds --speed-tolerance, "
+      "and "
+      "ends when the stage deviates from uniform rotation by more than 2 degrees. Port latency adds to the error: at "
+      "25 "
+      "deg/s, 16 ms (the FTDI default, which is set to 1 ms where permitted) correspond to 0.4 degrees.",
+      "Priority. On a busy machine a reply may be read too late. As root, or with permission for a real-time priority "
+      "of "
+      "2 (a line `@dialout - rtprio 2` in /etc/security/limits.d/vam.conf, for the members of that group from their "
+      "next "
+      "login), vam-stage and its guardian run before other programs.",
+      "Files. Locks are kept in $VAM_LOCK_DIR, /run/lock or /tmp."};
+}
+
+cli::Manual manual() {
+  return {"vam-stage",
+          "turn the rotation stage and report its angle",
+          description(),
+          {{"Identify the controller and its limits, here of a simulated stage:", "vam-stage identify --device sim:"},
+           {"Find the reference and move to 20 degrees:", "vam-stage move --device sim: --home --angle 20"},
+           {"One turn of a simulated stage that is 1 % too fast and replies up to 5 ms late:",
+            "vam-stage spin --device 'sim:?speed_error=0.01&jitter_ms=5' --speed 90 --run-up 0.25 --rate 10 "
+            ">angles.jsonl"}},
+          notes(),
+          {"vam-project", "vam-sim-stage", "vam-capture"},
+          {},
+          cli::device_statuses};
 }
 
 void add_common(cli::App& command, Options& options) {
@@ -101,47 +120,69 @@ void add_common(cli::App& command, Options& options) {
   cli::add_printer(command, options.printer);
 }
 
-void add_commands(cli::App& app, Options& options, std::string& chosen) {
-  add_common(app.subcommand("identify", "print the controller, its limits and its firmware as JSON", chosen), options);
-  add_common(app.subcommand("status", "print angle, motion and pending error as JSON", chosen), options);
-  app.subcommand("ports", "print the serial ports of this machine as JSON", chosen);
-  auto& home = app.subcommand("home", "find the reference; it becomes 0 degrees", chosen);
-  add_common(home, options);
-  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Maximum duration of the search.");
+void add_speed(cli::App& command, Options& options) {
+  command.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Stage speed.")
+      .default_is("stage.speed_deg_s");
+}
+
+void add_rate(cli::App& command, Options& options) {
+  command.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
+}
+
+void add_home(cli::App& command, Options& options) {
+  command.flag("--home", options.home_first, "Find the reference first.");
+}
+
+void add_move(cli::App& app, Options& options, std::string& chosen) {
   auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
   add_common(move, options);
-  move.option("--to", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; several turns are several times 360.");
+  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.").was("--to");
   move.flag("--relative", options.relative, "The angle is relative to the present one.");
-  move.flag("--home", options.home_first, "Find the reference first.");
-  move.option("--speed", "DEG/S", options.move_speed_deg_s, {0.001, 1000}, "Speed of the stage.");
+  add_home(move, options);
+  add_speed(move, options);
   move.option("--timeout", "S", options.timeout_s, {1, 86400}, "Maximum duration of the motion.");
+}
+
+void add_spin(cli::App& app, Options& options, std::string& chosen) {
   auto& spin = app.subcommand("spin", "ramp, run-up turn, whole turns, stop; print one JSON line per sample", chosen);
   add_common(spin, options);
   spin.option("--turns", "N", options.turns, {1, 100000}, "Turns of the print, after the run-up.")
       .default_is("stage.turns");
-  spin.option("--speed", "DEG/S", options.speed_deg_s, {0.001, 1000}, "Speed of the stage.")
-      .default_is("stage.speed_deg_s");
+  add_speed(spin, options);
   spin.option("--run-up", "TURNS", options.plan.run_up_turns, {0, 100}, "Turns at full speed before angle 0.");
-  spin.choice("--direction", options.direction, {"1", "-1"},
-              "1: clockwise seen from above; -1: the other way. The reported angle increases either way.")
+  spin.choice(
+          "--direction", options.direction, {"1", "-1"},
+          "Direction of rotation: 1 is clockwise seen from above, -1 counterclockwise. The reported angle increases "
+          "in both cases.")
       .default_is("stage.direction");
   spin.option("--speed-tolerance", "FRACTION", options.plan.speed_tolerance, {1e-6, 1},
-              "Largest relative speed error before angle 0.");
-  spin.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
-  spin.flag("--home", options.home_first, "Find the reference first.");
+              "Maximum relative speed error before angle 0.");
+  add_rate(spin, options);
+  add_home(spin, options);
   spin.flag("--plan", options.only_plan, "Print travel, limits and duration of this motion, and do not move.");
+}
+
+void add_commands(cli::App& app, Options& options, std::string& chosen) {
+  add_common(app.subcommand("identify", "print the controller, its limits and its firmware as JSON", chosen), options);
+  add_common(app.subcommand("status", "print angle, motion and pending error as JSON", chosen), options);
+  app.subcommand("ports", "print the serial ports of this machine as JSON", chosen);
+  auto& home = app.subcommand("home", "find the reference, which becomes 0 degrees", chosen);
+  add_common(home, options);
+  home.option("--timeout", "S", options.timeout_s, {1, 3600}, "Maximum duration of the search.");
+  add_move(app, options, chosen);
+  add_spin(app, options, chosen);
   auto& stop = app.subcommand("stop", "stop the stage and wait for standstill", chosen);
   add_common(stop, options);
   stop.flag("--abrupt", options.abrupt, "Stop as fast as the controller can, instead of its normal deceleration.");
   auto& follow = app.subcommand("follow", "print one JSON line per sample without motion", chosen);
   add_common(follow, options);
-  follow.option("--rate", "HZ", options.rate_hz, {1, 1000}, "Samples per second.");
+  add_rate(follow, options);
   follow.option("--duration", "S", options.duration_s, cli::positive, "Duration.")
       .default_is("until a signal")
       .was("--seconds");
 }
 
-// Unset options come from the printer file; calibration records have nothing to say about the stage.
+// Unset options come from the printer file; calibration records do not concern the stage.
 void settle(Options& options) {
   const model::PrinterStage stage =
       io::load_printer(options.printer.file, options.printer.sets, io::Records::ignore).stage;
@@ -182,7 +223,7 @@ void drive(const std::string& command, Options& options) {
       {"identify", [&] { device::print_line(describe(*stage).dump(2)); }},
       {"status", [&] { device::print_line(status(*stage).dump(2)); }},
       {"move",
-       [&] { move(*stage, clock, options.angle_deg, options.relative, options.move_speed_deg_s, options.timeout_s); }},
+       [&] { move(*stage, clock, options.angle_deg, options.relative, options.plan.speed_deg_s, options.timeout_s); }},
       {"spin", [&] { spin(*stage, clock, options.plan, print); }},
       {"stop", [&] { halt(*stage, clock, options.abrupt ? device::Stop::abrupt : device::Stop::smooth); }},
       {"follow", [&] { follow(*stage, clock, options.plan.period_s, options.duration_s, print); }}};

@@ -26,7 +26,7 @@ struct Options {
   std::string run;
   std::string sinogram;
   std::string page;
-  bool follow = false;
+  bool watch = false;
   double period_s = 1;
   bool with_parent = false;
 };
@@ -36,34 +36,37 @@ cli::Manual manual() {
       "vam-status",
       "show the progress of a print",
       {"Reads the logs in the run folder of vam-print, of a print in progress or finished, and prints one line: "
-       "whether it is preparing, running up, printing or finished; turn and stage angle; the fraction of the exposure "
-       "delivered; vertical blanks missed; and with live metrology (vam-print --until) the fractions of the part that "
-       "are cured and missing. With --follow it does so until the print ends; on a terminal the line "
-       "is refreshed in place.",
-       "--page writes a page for a browser, which refreshes itself: these figures, the newest image of the camera, the "
-       "vial from above with the dose so far and the current projection, the projected image, and the ages of the "
-       "calibration records. It is one file with its images within and is opened as it is (file:///...), without a "
-       "server; a page that is no longer written shows this.",
-       "vam-print shows the line by itself on a terminal, and writes page.html into the run folder with --page."},
+       "the state (preparing, run-up, printing or ended), turn and stage angle, the fraction of the exposure "
+       "delivered, "
+       "the number of missed vertical blanks and, with live metrology (vam-print --until), the fractions of the part "
+       "that are cured and missing. With --watch it repeats this until the print ends; on a terminal the line is "
+       "refreshed in place.",
+       "--page writes a page for a browser, which refreshes itself: these figures, the newest camera image, the vial "
+       "from above with the dose so far and the current projection, the projected image, and the ages of the "
+       "calibration records. The page is one file, images included, and is opened directly (file:///...), without a "
+       "server; it shows when it is no longer updated.",
+       "On a terminal vam-print prints this line itself; with --run-page it writes page.html into the run folder."},
       {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\nvam-print "
         "projector.exr "
         "--display null: --uncalibrated --missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run"},
        {"The same as a page:", "vam-status dry-run --page page.html"}},
-      {"The dose is that of the middle slice, by horizontal rays, without blur; vam-dose --shown computes it in full.",
-       "The sinogram is read once, up to 300 columns, slices and stage angles of it are kept.",
-       "It only reads the run folder, and can be started and ended at any time."},
+      {"Dose. The page shows the dose in the middle slice, by horizontal rays and without blur; vam-dose --shown "
+       "computes the dose of all slices with the full model.",
+       "Memory. The sinogram is read once, and at most 300 columns, slices and stage angles of it are kept.",
+       "The run folder is only read: vam-status can be started and ended at any time."},
       {"vam-print", "vam-dose", "vam-ost"}};
 }
 
 void declare(cli::App& app, Options& o) {
   app.positional("RUN", o.run, "Run folder of vam-print.");
-  app.flag("--follow", o.follow, "Repeat until the print has ended.");
-  app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or pages.").was("--every");
-  app.option("--page", "FILE", o.page, "Write a page (HTML).").writes();
-  app.option("--sinogram", "FILE", o.sinogram, "The sinogram of the print, for the images of projections and dose.")
-      .default_is("RUN/sinogram.exr, a link that vam-print makes");
+  app.flag("--watch", o.watch, "Repeat until the print has ended.").was("--follow");
+  app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or updates of the page.")
+      .was("--every");
+  app.option("--page", "FILE", o.page, "Write a page that refreshes itself (HTML).").writes();
+  app.option("--sinogram", "FILE", o.sinogram, "Sinogram of the print, for the images of projections and dose.")
+      .default_is("RUN/sinogram.exr, a link that vam-print creates");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_threads(app);
 }
@@ -75,7 +78,7 @@ std::optional<status_tool::LightView> light_of(const Options& o, const status_to
     return status_tool::LightView(file, run.printer());
   } catch (const Error& error) {
     if (!o.sinogram.empty()) throw;
-    warn(std::string(error.what()) + "; the page has no images of the light, --sinogram FILE names it");
+    warn(std::string(error.what()) + "; the page is written without projections and dose; give --sinogram FILE");
     return std::nullopt;
   }
 }
@@ -85,12 +88,12 @@ void run(const Options& o) {
   status_tool::RunFolder run(o.run);
   const std::string name = std::filesystem::weakly_canonical(o.run).filename().string();
   const auto light = o.page.empty() ? std::nullopt : light_of(o, run);
-  const bool in_place = o.follow && isatty(STDOUT_FILENO) == 1;
+  const bool in_place = o.watch && isatty(STDOUT_FILENO) == 1;
   for (bool more = true; more;) {
     run.read();
-    more = o.follow && !run.progress().outcome;
+    more = o.watch && !run.progress().outcome;
     if (!o.page.empty()) io::write_text(o.page, status_tool::page(name, run, light ? &*light : nullptr, o.period_s));
-    if (o.page.empty() || o.follow) {
+    if (o.page.empty() || o.watch) {
       const std::string line = status_tool::status_line(run.progress(), run.printer().stage.speed_deg_s);
       std::cout << (in_place ? "\r\033[K" : "") << line << (in_place && more ? "" : "\n") << std::flush;
       if (!std::cout) throw Error{Fault::io, "stdout: cannot be written"};

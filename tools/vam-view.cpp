@@ -10,7 +10,7 @@
 #include "io/vdb/nrrd.hpp"
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
 #include "vam-view/options.hpp"
@@ -31,7 +31,7 @@ io::SparseVolume target_for(const Options& options) {
 }
 
 bool has_grid(const std::string& path, const std::string& name) {
-  if (path == "-") return false;  // comes but once
+  if (path == "-") return false;  // can be read once only
   const std::vector<io::VolumeFacts> grids = io::check_volumes(path, true);
   return std::any_of(grids.begin(), grids.end(), [&](const io::VolumeFacts& facts) { return facts.name == name; });
 }
@@ -68,10 +68,10 @@ void show_volume(const Options& options, const io::ImageText& text) {
 
 void show_images(const Options& options, io::FileType type, const io::ImageText& text) {
   if (options.histogram || !options.target.empty()) {
-    throw Error{Fault::data, options.input + ": --histogram and --target need a volume (VDB), but this holds images"};
+    throw Error{Fault::data, options.input + ": --dose-histogram and --target require a volume (VDB), not images"};
   }
   if (!options.exported.empty()) {
-    if (type != io::FileType::stack) throw Error{Fault::usage, "--export: needs a volume or an EXR stack"};
+    if (type != io::FileType::stack) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
     io::StackReader stack(options.input);
     return io::write_nrrd(options.exported, stack);
   }

@@ -20,7 +20,7 @@ enum class Fault : int {
   protocol = 76,   // an invalid answer of a device
 };
 
-/// One line for the user: subject, problem with numbers, remedy. "part.stl: 12 open edges; --repair closes them".
+/// One line for the user: subject, problem with numbers, remedy. "part.stl: 12 boundary edges; --repair closes them".
 struct Error : std::runtime_error {
   Error(Fault whose, const std::string& line) : std::runtime_error(line), fault(whose) {}
   Fault fault;

@@ -23,7 +23,8 @@ constexpr std::uint64_t everything = std::numeric_limits<std::uint64_t>::max();
 constexpr std::size_t unseen_bytes = std::size_t{1} << 24;  // that a thread takes between two looks
 
 std::atomic<std::uint64_t> bound{everything};  // NOLINT: one per process, like the memory it bounds
-std::atomic<bool> chosen{false};               // NOLINT: by --memory
+std::atomic<bool> chosen{false};               // NOLINT: by the user
+const char* bound_name = "a higher limit";     // NOLINT: what messages call it
 
 constexpr double bytes_per_gib = 1024.0 * 1024.0 * 1024.0;
 
@@ -99,13 +100,13 @@ void admit(std::size_t bytes) {
 
 OutOfMemory::OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t most) noexcept {
   const auto of = [](std::uint64_t bytes) { return static_cast<double>(bytes) / bytes_per_gib; };
-  std::snprintf(text_.data(), text_.size(),
-                chosen ? "needs %.3g GiB of memory beside the %.3g GiB that it has; --memory allows %.3g GiB"
-                       : "needs %.3g GiB of memory beside the %.3g GiB that it has; the machine had %.3g GiB free",
-                of(wanted), of(has), of(most));
+  std::snprintf(text_.data(), text_.size(), "needs %.3g GiB of memory beside the %.3g GiB that it has; %s%s %.3g GiB%s",
+                of(wanted), of(has), chosen ? bound_name : "the machine had", chosen ? " allows" : "", of(most),
+                chosen ? "" : " free");
 }
 
-void bound_memory(std::uint64_t bytes) {
+void bound_memory(std::uint64_t bytes, const char* name) {
+  bound_name = name;
   chosen = bytes > 0;
   bound = bytes > 0 ? bytes : taken() + free_of_machine();
 }
@@ -119,9 +120,10 @@ std::uint64_t memory_left() {
 void require_memory(double bytes, const std::string& subject, const std::string& remedy) {
   const auto left = static_cast<double>(memory_left());
   if (bytes <= left) return;
-  throw Error{Fault::memory, subject + ": needs " + in_gib(bytes) + " of memory, but " +
-                                 (chosen ? "--memory leaves " + in_gib(left) : in_gib(left) + " are free") + "; " +
-                                 remedy + ", or allow more with --memory"};
+  throw Error{Fault::memory,
+              subject + ": needs " + in_gib(bytes) + " of memory, but " +
+                  (chosen ? std::string(bound_name) + " leaves " + in_gib(left) : in_gib(left) + " are free") + "; " +
+                  remedy + ", or allow more with " + bound_name};
 }
 
 }  // namespace vam

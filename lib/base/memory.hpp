@@ -1,4 +1,4 @@
-// How much memory this process may take: the bound of --memory, else what the machine has free.
+// How much memory this process may take: a chosen bound, else what the machine has free.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@ namespace vam {
 
 /// Bounds the memory of the process from here on; 0: what it has and what the machine has free (MemAvailable, or what
 /// its control groups leave if that is less). From then on `new` throws OutOfMemory instead of exceeding it: looked up
-/// every 16 MiB that a thread takes. Never called: no bound.
-void bound_memory(std::uint64_t bytes);
+/// every 16 MiB that a thread takes. Never called: no bound. Messages call the bound by its name, which must last.
+void bound_memory(std::uint64_t bytes, const char* name = "a higher limit");
 
 /// Bytes until the bound; without one, those the machine has free.
 [[nodiscard]] std::uint64_t memory_left();
 
 /// What a tool knows before it begins. Throws Fault::memory unless `bytes` more fit: "part.vdb (9000 x 9000 x 4000
-/// voxels): needs 12 GiB of memory, but 8 GiB are free; `remedy`, or allow more with --memory". Bytes are a double
+/// voxels): needs 12 GiB of memory, but 8 GiB are free; `remedy`, or allow more with `name`". Bytes are a double
 /// because products of sizes in a file may exceed all integers.
 void require_memory(double bytes, const std::string& subject, const std::string& remedy);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <new>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam {
@@ -22,7 +23,7 @@ void over_blocks(const Slab& slab, const Work& work) {
   const std::size_t pixels = slab.values.size() / lanes;
   const int count = static_cast<int>((pixels + block - 1) / block);
   parallel_for(count, [&](int item) {
-    const std::size_t first = static_cast<std::size_t>(item) * block;
+    const std::size_t first = product(item, block);
     work(first, std::min(first + block, pixels));
   });
 }
@@ -44,7 +45,7 @@ void pack(const float* images, int count, Slab& slab) {
   over_blocks(slab, [&](std::size_t first, std::size_t last) {
     for (std::size_t p = first; p < last; ++p) {
       float* to = slab.values.data() + p * lanes;
-      for (int s = 0; s < count; ++s) to[s] = images[static_cast<std::size_t>(s) * pixels + p];
+      for (int s = 0; s < count; ++s) to[s] = images[product(s, pixels) + p];
       for (int s = count; s < lanes; ++s) to[s] = 0;
     }
   });
@@ -54,8 +55,8 @@ void unpack(const Slab& slab, int count, float* images) {
   const std::size_t pixels = slab.values.size() / lanes;
   over_blocks(slab, [&](std::size_t first, std::size_t last) {
     for (int s = 0; s < count; ++s) {
-      float* to = images + static_cast<std::size_t>(s) * pixels;
-      for (std::size_t p = first; p < last; ++p) to[p] = slab.values[p * lanes + static_cast<std::size_t>(s)];
+      float* to = images + product(s, pixels);
+      for (std::size_t p = first; p < last; ++p) to[p] = slab.values[p * lanes + s];
     }
   });
 }

@@ -102,4 +102,8 @@ std::string format_number(double value, int digits) {
   return text;
 }
 
+std::string mm_text(double value_mm) { return format_number(value_mm) + " mm"; }
+
+std::string size_text(int columns, int rows) { return std::to_string(columns) + " x " + std::to_string(rows); }
+
 }  // namespace vam

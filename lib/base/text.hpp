@@ -32,4 +32,10 @@ namespace vam {
 /// Shortest decimal form with at most `digits` significant digits, for messages: format_number(0.0650) = "0.065".
 [[nodiscard]] std::string format_number(double value, int digits = 6);
 
+/// "1.5 mm"
+[[nodiscard]] std::string mm_text(double value_mm);
+
+/// "640 x 480", columns and rows.
+[[nodiscard]] std::string size_text(int columns, int rows);
+
 }  // namespace vam

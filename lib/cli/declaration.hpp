@@ -57,8 +57,8 @@ struct Declaration {
 
 /// Of the option that every tool has.
 inline constexpr const char* memory_help =
-    "Take at most so much memory; what needs more is refused. Range: more than 0, at most 1e6. Default: what the "
-    "machine has free.";
+    "Maximum amount of memory; a computation that needs more is refused. Range: more than 0, at most 1e6. Default: the "
+    "memory that is available.";
 
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);

@@ -32,7 +32,9 @@ std::string usage(const Declaration& tool) {
       lines.push_back(name + (form.groups.empty() ? "" : " [OPTIONS]") + operands(form));
     }
   }
-  if (!tool.subcommands.empty()) lines.push_back(name + " COMMAND [OPTIONS]; " + name + " COMMAND --help");
+  for (const auto& nested : tool.subcommands) {
+    lines.push_back(name + " " + nested.manual.name + (nested.groups.empty() ? "" : " [OPTIONS]") + operands(nested));
+  }
   return "Usage: " + join(lines, "\n       ") + "\n";
 }
 

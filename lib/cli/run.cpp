@@ -82,8 +82,7 @@ void App::require_present() const {
     if (nested->state_->parser->parsed()) return nested->require_present();
   }
   const auto require = [&](const std::string& name) {
-    if (state_->parser->get_option(name)->count() == 0)
-      throw Error{Fault::usage, name + ": missing; --help explains it"};
+    if (state_->parser->get_option(name)->count() == 0) throw Error{Fault::usage, name + ": missing; see --help"};
   };
   for (const auto& positional : state_->tool.positionals) {
     if (positional.default_text.empty()) require(split(positional.value_name, ' ').front());
@@ -116,7 +115,7 @@ namespace {
 void bound(const std::optional<std::string>& gib) {
   constexpr double bytes_per_gib = 1 << 30;
   const double chosen = !gib ? 0 : checked_number(memory_flag, *gib, {0, 1e6, true});
-  bound_memory(static_cast<std::uint64_t>(std::ceil(chosen * bytes_per_gib)));
+  bound_memory(static_cast<std::uint64_t>(std::ceil(chosen * bytes_per_gib)), memory_flag);
 }
 
 }  // namespace

@@ -8,14 +8,13 @@
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "light/private/smear.hpp"
+#include "light/private/gaussian_blur.hpp"
 
 namespace vam::light {
 
 std::vector<double> gaussian_weights(double sigma_px) {
   const double t = sigma_px * sigma_px;
-  // Beyond this the Bessel functions overflow, and the sampled Gaussian is the same to 1e-4 of its height.
-  const bool wide = t > 500;
+  const bool wide = t > 500;  // the Bessel functions overflow
   std::vector<double> weights;
   double sum = 0;
   for (int n = 0; weights.empty() || 1 - sum > 1e-9; ++n) {
@@ -33,7 +32,7 @@ double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds) {
 }
 
 VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out)
-    : smear_(std::make_unique<Smear>(sigma_px)), out_(std::move(out)) {}
+    : smear_(std::make_unique<GaussianBlur>(sigma_px)), out_(std::move(out)) {}
 VolumeBlur::~VolumeBlur() = default;
 
 void VolumeBlur::push(Image slice) {
@@ -41,7 +40,7 @@ void VolumeBlur::push(Image slice) {
   smear_->across(std::span(&plane, 1), slice.width, slice.height, 1);
   held_.push_back(std::move(slice));
   ++pushed_;
-  if (pushed_ - emitted_ > smear_->reach()) emit(emitted_);
+  if (pushed_ - emitted_ > smear_->half_width()) emit(emitted_);
 }
 
 void VolumeBlur::finish() {
@@ -50,8 +49,8 @@ void VolumeBlur::finish() {
 
 void VolumeBlur::emit(int centre) {
   Image result(held_.front().width, held_.front().height);
-  const int low = std::max(centre - smear_->reach(), 0);
-  const int high = std::min(centre + smear_->reach(), pushed_ - 1);
+  const int low = std::max(centre - smear_->half_width(), 0);
+  const int high = std::min(centre + smear_->half_width(), pushed_ - 1);
   parallel_for(result.height, [&](int y) {
     float* to = result.row(y);
     for (int k = low; k <= high; ++k) {
@@ -61,7 +60,7 @@ void VolumeBlur::emit(int centre) {
     }
   });
   ++emitted_;
-  while (first_ < emitted_ - smear_->reach()) {
+  while (first_ < emitted_ - smear_->half_width()) {
     held_.pop_front();
     ++first_;
   }

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/per_slice.hpp"
-#include "light/private/smear.hpp"
+#include "light/private/gaussian_blur.hpp"
 
 namespace vam::light {
 
-int halo_slices(double sigma_px) { return std::min(lanes, static_cast<int>(std::ceil(3 * sigma_px))); }
+int halo_slices(double sigma_px) { return std::min(lanes, ceil_int(3 * sigma_px)); }
 
 BlurredOperator::BlurredOperator(const Operator& sharp, double sigma_px, int slices)
-    : sharp_(sharp), slices_(slices), smear_(std::make_unique<Smear>(sigma_px)) {}
+    : sharp_(sharp), slices_(slices), smear_(std::make_unique<GaussianBlur>(sigma_px)) {}
 BlurredOperator::~BlurredOperator() = default;
 
 void BlurredOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
@@ -27,11 +27,7 @@ void BlurredOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> o
 }
 
 SlabRange BlurredOperator::lit_by(const SlabRange&) const {
-  throw Error{Fault::bug, "blur: needs the whole grid, not a range of its slabs"};
-}
-
-void BlurredOperator::adjoint_within(const Window<const Slab>&, const Window<Slab>&) const {
-  throw Error{Fault::bug, "blur: needs the whole grid, not a range of its slabs"};
+  return sharp_.lit_by({0, static_cast<std::size_t>((slices_ + lanes - 1) / lanes)});
 }
 
 void BlurredOperator::blur(std::span<Slab> objects) const {
@@ -43,13 +39,13 @@ void BlurredOperator::blur(std::span<Slab> objects) const {
 
 /// Along z: the slices in use, one above the other.
 void BlurredOperator::blur_stack(std::span<Slab> objects, int y) const {
-  const auto reach = static_cast<std::size_t>(smear_->reach());
-  const int used = std::min(slices_, static_cast<int>(objects.size()) * lanes);
+  const auto reach = static_cast<std::size_t>(smear_->half_width());
+  const int used = std::min(slices_, count_of(objects) * lanes);
   std::vector<float> padded(static_cast<std::size_t>(used) + 2 * reach, 0.0F);
   std::vector<float> result(objects.size() * lanes, 0.0F);
   for (int x = 0; x < objects[0].width; ++x) {
     for (int k = 0; k < used; ++k) {
-      padded[reach + static_cast<std::size_t>(k)] = objects[k / lanes].at(x, y)[k % lanes];
+      padded[reach + k] = objects[k / lanes].at(x, y)[k % lanes];
     }
     smear_->sum(padded.data() + reach, 1, result.data(), used);
     for (std::size_t s = 0; s < objects.size(); ++s) std::copy_n(result.data() + s * lanes, lanes, objects[s].at(x, y));

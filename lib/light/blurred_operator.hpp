@@ -1,4 +1,4 @@
-// The blur of beam and resin, inside the operator: the projections then compensate for it.
+// The operator with the blur of beam and resin inside: the projections then compensate for it.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace vam::light {
 
-class Smear;
+class GaussianBlur;
 
 /// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4],
 /// that of light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other.
@@ -27,9 +27,8 @@ class BlurredOperator final : public Operator {
   /// The spans are the pass's slabs from the first on.
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
-  /// Not of a part of the grid. Throws Fault::bug.
+  /// All rows that light the grid.
   [[nodiscard]] SlabRange lit_by(const SlabRange& objects) const override;
-  void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const override;
   void filter(std::span<Slab> sinograms) const override { sharp_.filter(sinograms); }
   void precondition(std::span<Slab> sinograms) const override { sharp_.precondition(sinograms); }
   void invert(std::span<const Slab> objects, std::span<Slab> sinograms) const override {
@@ -44,7 +43,7 @@ class BlurredOperator final : public Operator {
 
   const Operator& sharp_;
   int slices_;
-  std::unique_ptr<Smear> smear_;
+  std::unique_ptr<GaussianBlur> smear_;
 };
 
 /// Slices on either side that a slice must know: three sigma, at most 16.

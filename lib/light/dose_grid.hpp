@@ -1,4 +1,4 @@
-// Where the doses of a stack are looked at.
+// The grid on which the dose of a stack is computed.
 #pragma once
 
 #include <optional>

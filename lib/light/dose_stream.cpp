@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
 #include "light/insert.hpp"
@@ -56,7 +57,7 @@ void DoseStream::emit_ready() {
     const std::size_t end = std::min(all, next_ + slabs_per_pass);
     const SlabRange needed = light_.lit_by({next_, end});
     const std::size_t passed = std::min(needed.first, first_row_ + rows_.size()) - first_row_;
-    rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(passed));
+    rows_.erase(rows_.begin(), rows_.begin() + passed);
     first_row_ += passed;
     if (!finished_ && needed.end > first_row_ + rows_.size()) return;
     emit(end);
@@ -70,8 +71,7 @@ void DoseStream::emit(std::size_t end) {
   for (Slab& dose : doses_) {
     if (!bodies_.empty()) darken(bodies_[next_], dose);
     std::vector<Image> slices(std::min<std::size_t>(lanes, static_cast<std::size_t>(state.grid.nz) - next_ * lanes));
-    parallel_for(static_cast<int>(slices.size()),
-                 [&](int k) { slices[k] = state.in_resin(dose, static_cast<std::size_t>(k)); });
+    parallel_for(count_of(slices), [&](int k) { slices[k] = state.in_resin(dose, k); });
     for (Image& slice : slices) out_(std::move(slice));
     ++next_;
   }

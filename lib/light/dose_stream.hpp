@@ -1,4 +1,4 @@
-// The simulation of a volume that does not fit into memory: rows of light in, doses out, block by block.
+// Simulation of a volume that does not fit into memory: rows of light in, doses out, block by block.
 #pragma once
 
 #include <functional>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -19,7 +20,7 @@ constexpr double least_px = 4;  // width of a face
 double width_px(const std::vector<char>& mask, int nx, int ny) {
   std::vector<int> distance(mask.size(), 0);
   const auto relax = [&](std::ptrdiff_t at, int x, int step) {  // from the row before and the voxel before
-    const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(step) * nx;
+    const std::ptrdiff_t row = std::ptrdiff_t{step} * nx;
     int least = std::min(distance[at - step], distance[at - row]) + straight;
     least = std::min(least,
                      std::min(x > 0 ? distance[at - row - 1] : 0, x < nx - 1 ? distance[at - row + 1] : 0) + diagonal);
@@ -28,14 +29,14 @@ double width_px(const std::vector<char>& mask, int nx, int ny) {
   constexpr int far = 1 << 28;
   for (int y = 1; y < ny - 1; ++y) {
     for (int x = 1; x < nx - 1; ++x) {
-      const auto at = static_cast<std::ptrdiff_t>(y) * nx + x;
+      const auto at = std::ptrdiff_t{y} * nx + x;
       distance[at] = mask[at] != 0 ? std::min(far, relax(at, x, 1)) : 0;
     }
   }
   int most = 0;
   for (int y = ny - 2; y > 0; --y) {
     for (int x = nx - 2; x > 0; --x) {
-      const auto at = static_cast<std::ptrdiff_t>(y) * nx + x;
+      const auto at = std::ptrdiff_t{y} * nx + x;
       if (mask[at] == 0) continue;
       distance[at] = std::min(distance[at], relax(at, x, -1));
       most = std::max(most, distance[at]);
@@ -90,7 +91,7 @@ double climb_at(const model::Printer& printer, double z_mm) {
 
 }  // namespace
 
-double smear_voxels(const model::Printer& printer, const FlatFace& face, double voxel_mm) {
+double blur_voxels(const model::Printer& printer, const FlatFace& face, double voxel_mm) {
   return climb_at(printer, face.z_mm) * face.width_mm / (voxel_mm * model::vertical_magnification(printer));
 }
 
@@ -100,14 +101,14 @@ double best_lift_mm(const model::Printer& printer, const std::vector<FlatFace>& 
     double sum = 0;
     for (FlatFace face : faces) {
       face.z_mm += lift_mm;
-      const double smear = smear_voxels(printer, face, voxel_mm);
+      const double smear = blur_voxels(printer, face, voxel_mm);
       sum += face.area_mm2 * smear * smear;
     }
     return sum;
   };
   constexpr double rounding = 1e-6;
-  const int first = static_cast<int>(std::ceil(least_mm / voxel_mm - rounding));
-  const int last = std::max(first, static_cast<int>(std::floor(most_mm / voxel_mm + rounding)));
+  const int first = ceil_int(least_mm / voxel_mm - rounding);
+  const int last = std::max(first, floor_int(most_mm / voxel_mm + rounding));
   int best = std::clamp(0, first, last);
   double least = suffering(best * voxel_mm);
   const auto look = [&](int from, int to, int step) {

@@ -1,4 +1,4 @@
-// Level faces of a part, and how far rays that climb across them smear the dose up and down.
+// Horizontal faces of a part, and the height over which rays that climb across them blur the dose.
 #pragma once
 
 #include <vector>
@@ -39,7 +39,7 @@ class FlatFaceFinder {
 
 /// By how many voxels a ray climbs from one side of the face to the other: over so much the dose falls from the part's
 /// to the void's [physics §11]. 0 where rays stay level.
-[[nodiscard]] double smear_voxels(const model::Printer& printer, const FlatFace& face, double voxel_mm);
+[[nodiscard]] double blur_voxels(const model::Printer& printer, const FlatFace& face, double voxel_mm);
 
 /// The lift of the part, in whole voxels within the bounds, that makes the mean square of the smear over the area of
 /// all faces least; of equal ones that nearest to 0.

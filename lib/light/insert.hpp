@@ -1,4 +1,4 @@
-// Opaque inserts (overprinting): what counts as insert, and what as dark behind it.
+// Opaque inserts (overprinting): which voxels are insert, and which are in its shadow.
 #pragma once
 
 #include <cstddef>

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "light/insert.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 constexpr double never = std::numeric_limits<double>::infinity();
 
 /// A ray along one axis, in voxels: voxel i lies between i and i + 1.
-struct Axis {
+struct WalkAxis {
   double start, rate;
 
   /// Stretch of u in which the ray is between two faces.
@@ -26,7 +27,7 @@ struct Axis {
     return {std::min(a, b), std::max(a, b)};
   }
   [[nodiscard]] int voxel(double u, int low, int high) const {
-    return std::clamp(static_cast<int>(std::floor(start + u * rate)), low, high - 1);
+    return std::clamp(floor_int(start + u * rate), low, high - 1);
   }
   /// u at which it leaves the voxel.
   [[nodiscard]] double leaves(int voxel) const {
@@ -44,7 +45,7 @@ struct InsertShadow::Body {
   std::array<int, 3> low{}, high{};
 
   explicit Body(std::span<const Slab> slabs) : coverage(slabs) {
-    const std::array<int, 3> size{slabs[0].width, slabs[0].height, static_cast<int>(slabs.size()) * lanes};
+    const std::array<int, 3> size{slabs[0].width, slabs[0].height, count_of(slabs) * lanes};
     low = size;
     for (int z = 0; z < size[2]; ++z) {
       for (int y = 0; y < size[1]; ++y) {
@@ -78,7 +79,7 @@ InsertShadow::InsertShadow(const model::Grid& grid, std::span<const Slab> insert
     : grid_(grid), angles_(part_angles_rad.size()) {
   const Body body(inserts);
   const int angles = static_cast<int>(angles_);
-  rays_.resize(static_cast<std::size_t>(columns) * angles_);
+  rays_.resize(product(columns, angles_));
   ends_.assign(row_slabs, Slab(columns, angles));
   parallel_for(row_slabs * columns, [&](int item) {
     Slab& slab = ends_[item / columns];
@@ -117,9 +118,9 @@ float InsertShadow::follow(const Body& body, const PixelRay& ray, double part_an
   const double c = std::cos(part_angle_rad + ray.delta_rad);
   const double s = std::sin(part_angle_rad + ray.delta_rad);
   const double voxel = grid_.voxel_mm;  // u in voxels on the way
-  const std::array<Axis, 3> axes{Axis{(ray.offset_mm * c - grid_.origin_mm[0]) / voxel + 0.5, -s},
-                                 Axis{(ray.offset_mm * s - grid_.origin_mm[1]) / voxel + 0.5, c},
-                                 Axis{ray.slice + 0.5, ray.climb_per_mm * voxel}};
+  const std::array<WalkAxis, 3> axes{WalkAxis{(ray.offset_mm * c - grid_.origin_mm[0]) / voxel + 0.5, -s},
+                                     WalkAxis{(ray.offset_mm * s - grid_.origin_mm[1]) / voxel + 0.5, c},
+                                     WalkAxis{ray.slice + 0.5, ray.climb_per_mm * voxel}};
   double u = -never;
   double out = never;
   for (std::size_t d = 0; d < 3; ++d) {

@@ -1,4 +1,4 @@
-// All resin that the light of a part reaches: the voxels around it to constrain and judge.
+// The grid of all resin that the light of a part reaches: the voxels around it that are constrained and judged.
 #pragma once
 
 #include "model/grid.hpp"
@@ -20,6 +20,7 @@ struct Margin {
 [[nodiscard]] Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double radius_mm,
                                 const model::Poses& poses = {});
 
+/// The grid with so many voxels more on its sides; those that it had stay in place.
 [[nodiscard]] model::Grid extended(const model::Grid& grid, const Margin& margin);
 
 }  // namespace vam::light

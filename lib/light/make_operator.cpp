@@ -40,7 +40,8 @@ std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const 
   const double mu = beam.mu_per_px;
   if (!inserts.empty()) {
     if (mu > 0 && beam.correction == Correction::disc) {
-      throw Error{Fault::usage, "--absorption-model disc: does not apply around an insert; use exact"};
+      throw Error{Fault::usage,
+                  "the disc normalisation of absorption does not apply around an insert; use the exact inverse"};
     }
     return std::make_unique<ShadowedOperator>(beam.turn, mu, beam.resin_radius_px, inserts);
   }

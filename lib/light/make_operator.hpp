@@ -1,4 +1,4 @@
-// The light of a print, and the operator that follows it.
+// Beam models, and the operator of each: parallel, attenuated, shadowed, or the refracted chief rays of the vial.
 #pragma once
 
 #include <memory>

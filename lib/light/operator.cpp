@@ -14,7 +14,26 @@ void scaled(const Slab& from, double factor, Slab& to) {
   for (float& v : to.values) v *= static_cast<float>(factor);
 }
 
+/// A map of whole passes, for a part of one: what is beyond is dark.
+template <class Map>
+void within(const Window<const Slab>& from, const Window<Slab>& to, const Map& map) {
+  const std::size_t count = std::max(from.end(), to.end());
+  std::vector<Slab> given = slabs(count, from.slabs[0].width, from.slabs[0].height);
+  std::vector<Slab> made = slabs(count, to.slabs[0].width, to.slabs[0].height);
+  for (std::size_t s = from.first; s < from.end(); ++s) given[s].values = from[s].values;
+  map(given, made);
+  for (std::size_t s = to.first; s < to.end(); ++s) to[s].values = made[s].values;
+}
+
 }  // namespace
+
+void Operator::adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
+  within(sinograms, objects, [this](const auto& from, auto& to) { adjoint(from, to); });
+}
+
+void Operator::forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const {
+  within(objects, sinograms, [this](const auto& from, auto& to) { forward(from, to); });
+}
 
 void Operator::invert(std::span<const Slab> objects, std::span<Slab> sinograms) const {
   forward(objects, sinograms);

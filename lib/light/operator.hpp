@@ -1,5 +1,5 @@
-// What light does, as a pair of linear maps. Optimisers see only this; a vial, an absorber or an opaque insert is
-// another implementation or a decorator around one.
+// The forward model as a pair of linear maps, A* from projections to dose and its transpose A. Optimisers see only
+// this; a vial, an absorber or an opaque insert is another implementation or a decorator around one.
 #pragma once
 
 #include <span>
@@ -65,9 +65,9 @@ class Operator {
   virtual void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const = 0;
   /// A* for a part of a grid whose slices are coupled: `sinograms` has the rows lit_by() the objects, or more. The same
   /// bytes as of the whole grid where the objects begin with a multiple of 4 slabs and end with one or with the grid.
-  virtual void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
-    adjoint(sinograms.slabs, objects.slabs);
-  }
+  virtual void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const;
+  /// A of objects that are dark beyond these slabs. `sinograms` has the rows lit_by() the objects, or more.
+  virtual void forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const;
   /// Multiplies by the approximate inverse of A A* (ramp), in place: adjoint(filter(forward(f))) is about f.
   virtual void filter(std::span<Slab> sinograms) const = 0;
   /// Multiplies by an approximate inverse of A A* that is symmetric and positive definite, in place: the ramp, kept

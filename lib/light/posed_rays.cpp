@@ -13,15 +13,15 @@ namespace vam::light {
 namespace {
 
 constexpr float turn_rad = 2 * std::numbers::pi_v<float>;
-using Values = std::array<float, VialShift::floats>;
+using NodeValues = std::array<float, DisplacedVial::floats>;
 
 /// Between four points of the table.
-Values between(const TableNode* low, const TableNode* high, float across, float along) {
-  const auto a = std::bit_cast<Values>(low[0]);
-  const auto b = std::bit_cast<Values>(low[1]);
-  const auto c = std::bit_cast<Values>(high[0]);
-  const auto d = std::bit_cast<Values>(high[1]);
-  Values values;
+NodeValues between(const TableNode* low, const TableNode* high, float across, float along) {
+  const auto a = std::bit_cast<NodeValues>(low[0]);
+  const auto b = std::bit_cast<NodeValues>(low[1]);
+  const auto c = std::bit_cast<NodeValues>(high[0]);
+  const auto d = std::bit_cast<NodeValues>(high[1]);
+  NodeValues values;
   for (std::size_t v = 0; v < values.size(); ++v) {
     const float first = a[v] + along * (b[v] - a[v]);
     const float second = c[v] + along * (d[v] - c[v]);
@@ -42,11 +42,11 @@ void require_small(double largest_mm, double resin_mm) {
 PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const RayTable& table) : sense_(rays.sense) {
   const double largest_mm = model::farthest_mm(setup.poses, model::Moves::vial);
   require_small(largest_mm, table.edge_mm);
-  if (largest_mm > 0) shift_ = VialShift(rays, table, largest_mm);
+  if (largest_mm > 0) shift_ = DisplacedVial(rays, table, largest_mm);
   for (std::size_t k = 0; k < setup.poses.size(); ++k) {
     const model::Pose& pose = setup.poses[k];
     const double theta = setup.part_angle_rad(static_cast<int>(k));
-    Frame& frame = frames_.emplace_back();
+    FramePose& frame = frames_.emplace_back();
     frame.cosine = std::cos(theta);
     frame.sine = std::sin(theta);
     frame.lift_mm = pose.dz_mm;
@@ -64,7 +64,7 @@ PosedRays::PosedRays(const VialSetup& setup, const RayTable::Scope& rays, const 
 
 int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, const HeightScale& scale,
                     RayNode* to) const {
-  const Frame& here = frames_[frame];
+  const FramePose& here = frames_[frame];
   const auto x = static_cast<float>(x_mm * here.cosine + y_mm * here.sine + here.x_mm);
   const auto y = static_cast<float>(y_mm * here.cosine - x_mm * here.sine + here.y_mm);
   const float r = std::sqrt(x * x + y * y);
@@ -82,7 +82,7 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
     const int low = std::min(static_cast<int>(row), table.inner.rows - 2);
     const auto below = pair(table.points(table.inner, low, 0));
     const auto above = pair(table.points(table.inner, low + 1, 0));
-    Values values = between(below.data(), above.data(), row - static_cast<float>(low), along);
+    NodeValues values = between(below.data(), above.data(), row - static_cast<float>(low), along);
     if (here.shifted) shift_.add(r, turn, here.powers, values);
     to[0] = node_at(std::bit_cast<TableNode>(values), scale);
     return 1;

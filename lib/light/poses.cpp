@@ -7,7 +7,7 @@
 #include "base/text.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::light {
 
@@ -31,7 +31,7 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   const double pitch = std::abs(pitch_mm);
   if (pitch > 2 * image_mm) {
     throw Error{Fault::usage,
-                "--helix: at " + format_number(pitch, 4) + " mm per turn a slice passes the image, " +
+                "helix: at " + format_number(pitch, 4) + " mm per turn a slice passes the image, " +
                     format_number(image_mm, 4) + " mm high in the resin, in " + format_number(image_mm / pitch, 3) +
                     " turns; at least half a turn is needed: give at most " + format_number(2 * image_mm, 4)};
   }
@@ -39,7 +39,7 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
   const double turns = std::ceil((part_mm + image_mm) / pitch - rounding);
   constexpr double most_frames = 1e6;
   if (!(turns * angles <= most_frames)) {
-    throw Error{Fault::usage, "--helix: a pitch of " + format_number(pitch) + " mm takes " + format_number(turns, 3) +
+    throw Error{Fault::usage, "helix: a pitch of " + format_number(pitch) + " mm takes " + format_number(turns, 3) +
                                   " turns; at most " + format_number(std::floor(most_frames / angles)) +
                                   " can be computed: give at least " +
                                   format_number((part_mm + image_mm) * angles / most_frames, 3)};

@@ -1,4 +1,4 @@
-// Poses that follow from a few numbers.
+// Poses of a wobbling vial and of a helical print [physics §11].
 #pragma once
 
 #include "model/grid.hpp"

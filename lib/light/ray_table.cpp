@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "light/private/level_rays.hpp"
+#include "light/private/chief_ray_dose.hpp"
 
 namespace vam::light {
 
@@ -24,15 +25,15 @@ RayTable::RayTable(const Scope& scope)
       scope_(scope),
       climbs_(scope.view.rows_lens_mm.has_value()) {
   scope_.height_mm = std::max(scope.height_mm, 1e-3);
-  const LevelRays light{scope_, edge_mm, reach_mm};
+  const ChiefRayDose light{scope_, edge_mm, reach_mm};
   const double inside =
-      std::min(reach_mm * (climbs_ ? 0.9995 : LevelRays::rim), std::max(scope.r_max_mm, scope.pitch_mm));
-  inner.rows = std::max(2, static_cast<int>(std::ceil(inside / scope.pitch_mm)) + 1);
+      std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, scope.pitch_mm));
+  inner.rows = std::max(2, ceil_int(inside / scope.pitch_mm) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
   const double beyond = std::min(edge_mm, scope.r_max_mm) - reach_mm;
   if (beyond > 0) {
     outer.sheets = most_sheets;
-    outer.rows = static_cast<int>(std::ceil(2 * beyond / scope.pitch_mm));  // nearest row: half the pitch
+    outer.rows = ceil_int(2 * beyond / scope.pitch_mm);  // nearest row: half the pitch
     outer.pitch_mm = beyond / outer.rows;
     outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
     outer.first_row = inner.rows;
@@ -57,8 +58,8 @@ void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) co
   nodes.resize(rows * static_cast<std::size_t>(directions + 1));
   const HeightScale here = scale_at(z_mm, scale);
   parallel_for(rows, [&](int row) {
-    const TableNode* from = nodes_.data() + static_cast<std::ptrdiff_t>(row) * directions;
-    RayNode* to = nodes.data() + static_cast<std::ptrdiff_t>(row) * (directions + 1);
+    const TableNode* from = nodes_.data() + std::ptrdiff_t{row} * directions;
+    RayNode* to = nodes.data() + std::ptrdiff_t{row} * (directions + 1);
     for (int i = 0; i < directions; ++i) to[i] = node_at(from[i], here);
     to[directions] = to[0];
   });
@@ -67,15 +68,14 @@ void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) co
 double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {
   const auto square = [&](double z) { return static_cast<float>((z / scope_.height_mm) * (z / scope_.height_mm)); };
   constexpr double counts = 0.95;  // of the reach: at the rim rays drift without bounds, and carry next to nothing
-  const int row =
-      std::min(inner.rows - 1, static_cast<int>(std::ceil(std::min(r_mm, counts * reach_mm) / inner.pitch_mm)));
-  const TableNode* nodes = nodes_.data() + static_cast<std::ptrdiff_t>(row) * directions;
+  const int row = std::min(inner.rows - 1, ceil_int(std::min(r_mm, counts * reach_mm) / inner.pitch_mm));
+  const TableNode* nodes = nodes_.data() + std::ptrdiff_t{row} * directions;
   float most = 0;
   for (int i = 0; i < directions; ++i) {
     const TableNode::Even& x_p = nodes[i].x_p;
     most = std::max(most, std::abs(value(x_p, square(to_mm)) - value(x_p, square(from_mm))));
   }
-  return static_cast<double>(most);
+  return most;
 }
 
 }  // namespace vam::light

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
 #include "tomo/depth_to_axis.hpp"
@@ -28,7 +29,7 @@ ShadowedOperator::ShadowedOperator(const tomo::ParallelGeometry& turn, double mu
   const auto ray = [&](int column, int row, int) -> PixelRay {
     return {true, offset(column), 0, static_cast<double>(row), 0};
   };
-  shadow_ = InsertShadow(grid, inserts, angles, turn.columns, static_cast<int>(inserts.size()), true, ray);
+  shadow_ = InsertShadow(grid, inserts, angles, turn.columns, count_of(inserts), true, ray);
 }
 
 ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle) const {
@@ -41,7 +42,7 @@ ShadowedOperator::Footprint ShadowedOperator::footprint(int x, int y, int angle)
   const auto shadow = tomo::Trapezoid::of(wide, narrow, 1);
   Footprint result{};
   result.u = -dx * s + dy * c;
-  result.first = static_cast<int>(std::floor(column - shadow.half + 0.5));
+  result.first = floor_int(column - shadow.half + 0.5);
   float before = -0.5F;
   for (int i = 0; i < most_columns; ++i) {
     const float up_to = shadow.area_up_to(static_cast<float>(result.first + i + 0.5 - column));
@@ -63,10 +64,10 @@ void ShadowedOperator::each_column(const Footprint& footprint, std::size_t slab,
 }
 
 void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
-  parallel_for(static_cast<int>(objects.size()) * turn_.angles, [&](int item) {
+  parallel_for(count_of(objects) * turn_.angles, [&](int item) {
     const auto s = static_cast<std::size_t>(item / turn_.angles);
     const int a = item % turn_.angles;
-    std::fill_n(sinograms[s].at(0, a), static_cast<std::size_t>(turn_.columns) * lanes, 0.0F);
+    std::fill_n(sinograms[s].at(0, a), product(turn_.columns, lanes), 0.0F);
     for (int y = 0; y < turn_.ny; ++y) {
       for (int x = 0; x < turn_.nx; ++x) {
         const Footprint voxel = footprint(x, y, a);
@@ -82,7 +83,7 @@ void ShadowedOperator::forward(std::span<const Slab> objects, std::span<Slab> si
 }
 
 void ShadowedOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
-  parallel_for(static_cast<int>(objects.size()) * turn_.ny, [&](int item) {
+  parallel_for(count_of(objects) * turn_.ny, [&](int item) {
     const auto s = static_cast<std::size_t>(item / turn_.ny);
     const int y = item % turn_.ny;
     for (int x = 0; x < turn_.nx; ++x) {

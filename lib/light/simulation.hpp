@@ -1,10 +1,11 @@
-// What a stack of sinograms does to the resin: the chief-ray dose of a projector's, the parallel dose of a virtual one.
+// The dose of a stack of sinograms: by chief rays for a projector's stack, by parallel light for a virtual one.
 #pragma once
 
 #include <memory>
 #include <span>
 
 #include "base/image.hpp"
+#include "light/vial_setup.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
@@ -26,6 +27,8 @@ class Simulation {
   /// that differ from the virtual columns.
   Simulation(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::StackInfo& info,
              const model::Grid& grid, Climb climb = Climb::follow);
+  /// Chief rays in a vial that is not quite that of the part's slices, such as one with another z_scale.
+  explicit Simulation(const VialSetup& setup);
   ~Simulation();
   /// Whether rows light other slices than their own. Then dose() takes all sinograms of the stack and gives all slices
   /// of the grid, as DoseStream does with less memory; otherwise any slices with their own sinograms.

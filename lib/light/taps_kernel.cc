@@ -73,7 +73,7 @@ inline void weigh(Shadows& shadows, int e, const RayTaps& taps) {
 }
 
 /// What the rays of a tile have in common, ray by ray of a block.
-struct Bounds {
+struct TapBounds {
   alignas(64) int first_cell[ray_block], last_cell[ray_block];
   alignas(64) float first_row[ray_block], last_row[ray_block], outer[ray_block];
 
@@ -119,7 +119,7 @@ struct Bounds {
 void find_taps(const RayNode* nodes, const RaySource* sources, int count, const RayFrame& frame, RayTaps& taps) {
   alignas(64) Node at[ray_block];
   Shadows shadows[most_blocks];
-  Bounds bounds{};
+  TapBounds bounds{};
   for (int e = 0; e < count; e += ray_block) {
     Shadows& block = shadows[e / ray_block];
     for (int i = 0; i < ray_block; ++i) find_node(nodes, sources[e + i], frame, at[i]);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
 #include "light/private/columns_kernel.hpp"
@@ -11,24 +12,26 @@ namespace vam::light {
 
 namespace {
 
-struct Kernels {
+struct TileKernels {
   decltype(&baseline::gather_rays) gather;
   decltype(&baseline::scatter_rays) scatter;
   decltype(&baseline::copy_columns) copy;
   decltype(&baseline::add_columns) add;
 
-  static const Kernels& best() {
+  static const TileKernels& best() {
     const Simd level = simd_level();
-    static const Kernels kernels{VAM_KERNEL(gather_rays, level), VAM_KERNEL(scatter_rays, level),
-                                 VAM_KERNEL(copy_columns, level), VAM_KERNEL(add_columns, level)};
+    static const TileKernels kernels{VAM_KERNEL(gather_rays, level), VAM_KERNEL(scatter_rays, level),
+                                     VAM_KERNEL(copy_columns, level), VAM_KERNEL(add_columns, level)};
     return kernels;
   }
 };
 
 /// Elements of a times b: sizes are multiplied as sizes.
-std::size_t product(int a, int b) { return static_cast<std::size_t>(a) * b; }
-
 constexpr int overrun = 32;  // floats that the kernels may read and write beyond: two vectors
+
+void fill_last_block(Tile& tile) {
+  while (tile.rays.size() % ray_block != 0) tile.rays.push_back(tile.rays.back());
+}
 
 int tiles_across(int voxels) { return (voxels + TileLight::edge - 1) / TileLight::edge; }
 
@@ -40,7 +43,7 @@ std::vector<Tile> TileLight::tiles(const VialRays& rays) {
   const model::Grid& grid = rays.setup().grid;
   const int across = tiles_across(grid.nx);
   std::vector<Tile> all(product(across, tiles_across(grid.ny)));
-  parallel_for(static_cast<int>(all.size()), [&](int t) {
+  parallel_for(count_of(all), [&](int t) {
     Tile& tile = all[t];
     RaySource found[VialRays::most_rays];
     double r_mm = 0;
@@ -55,10 +58,10 @@ std::vector<Tile> TileLight::tiles(const VialRays& rays) {
       }
       const int count = rays.find(i, j, found);
       tile.rays.insert(tile.rays.end(), found, found + count);
-      tile.voxels.insert(tile.voxels.end(), static_cast<std::size_t>(count), voxel);
+      tile.voxels.insert(tile.voxels.end(), count, voxel);
     }
     tile.chunk = rays.chunk(r_mm);
-    while (tile.rays.size() % ray_block != 0) tile.rays.push_back(tile.rays.back());
+    fill_last_block(tile);
   });
   return all;
 }
@@ -78,7 +81,7 @@ void TileLight::enter(int tile, const Tile& rays, const Chunk& chunk) {
 
 void TileLight::make_room(std::size_t pitch) {
   cells_.resize(pitch);
-  floats_.resize((2 + static_cast<std::size_t>(rays_.taps())) * pitch);
+  floats_.resize((2 + rays_.taps()) * pitch);
   taps_ = {cells_.data(),
            floats_.data(),
            floats_.data() + pitch,
@@ -111,6 +114,26 @@ void TileLight::load_voxels(const Window<const Slab>& objects) {
   each_voxel([&](int i, int j, std::size_t slab, std::size_t at, int used) {
     std::copy_n(objects[slab].at(i, j), used, voxels_.data() + at);
   });
+  keep_bright();
+}
+
+void TileLight::keep_bright() {
+  const Tile& all = *tile_;
+  bool bright[edge * edge];
+  for (int voxel = 0; voxel < edge * edge; ++voxel) {
+    const float* slices = voxels_.data() + voxel_gap + product(voxel, chunk_.width() + voxel_gap);
+    bright[voxel] = std::any_of(slices, slices + chunk_.width(), [](float v) { return v != 0.0F; });
+  }
+  bright_.rays.clear();
+  bright_.voxels.clear();
+  for (std::size_t e = 0; e < all.voxels.size(); ++e) {
+    if (!bright[all.voxels[e]]) continue;
+    bright_.voxels.push_back(all.voxels[e]);
+    if (!all.rays.empty()) bright_.rays.push_back(all.rays[e]);
+  }
+  fill_last_block(bright_);
+  tile_ = &bright_;
+  make_room(bright_.rays.size());
 }
 
 void TileLight::store_voxels(const Window<Slab>& objects) const {
@@ -130,14 +153,14 @@ bool TileLight::find_posed_taps(int frame) {
   int rays = 0;
   for (const int voxel : tile_->voxels) {
     const int found = rays_.find_posed(i0_ + voxel % edge, j0_ + voxel / edge, frame, scale, &posed_nodes_[rays]);
-    posed_voxels_.insert(posed_voxels_.end(), static_cast<std::size_t>(found), voxel);
+    posed_voxels_.insert(posed_voxels_.end(), found, voxel);
     rays += found;
   }
   if (rays == 0) return false;
   const int whole = (rays + ray_block - 1) / ray_block * ray_block;
   posed_nodes_.resize(static_cast<std::size_t>(whole) + 1);
   std::fill(posed_nodes_.begin() + rays, posed_nodes_.end(), posed_nodes_[rays - 1]);
-  make_room(static_cast<std::size_t>(whole));
+  make_room(whole);
   rays_.find_posed_taps(posed_nodes_, rays, frame, chunk_.width(), taps_);
   return true;
 }
@@ -187,14 +210,14 @@ void TileLight::fetch(int angle, const Window<const Slab>& sinograms) {
   light_.assign(product(columns_, rows_), 0.0F);
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
   each_piece(angle, sinograms, [&](const float* from, std::size_t at, int columns, int rows) {
-    Kernels::best().copy(from, columns, rows, rows_, next, light_.data() + at);
+    TileKernels::best().copy(from, columns, rows, rows_, next, light_.data() + at);
   });
 }
 
 void TileLight::put_back(int angle, const Window<Slab>& sinograms) const {
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));
   each_piece(angle, sinograms, [&](float* to, std::size_t at, int columns, int rows) {
-    Kernels::best().add(light_.data() + at, columns, rows, rows_, next, to);
+    TileKernels::best().add(light_.data() + at, columns, rows, rows_, next, to);
   });
 }
 
@@ -213,7 +236,7 @@ void TileLight::cast_shadow(int angle) {
   ends_.assign(product(columns_, rows_), InsertShadow::unhindered);
   each_piece(angle, Window<const Slab>{0, shadow_.ends()},
              [&](const float* from, std::size_t at, int columns, int rows) {
-               Kernels::best().copy(from, columns, rows, rows_, 0, ends_.data() + at);
+               TileKernels::best().copy(from, columns, rows, rows_, 0, ends_.data() + at);
              });
   const model::Grid& grid = rays_.setup().grid;
   depth_.assign(product(taps_.taps, taps_.pitch), 0.0F);
@@ -224,7 +247,7 @@ void TileLight::cast_shadow(int angle) {
     const double y = grid.y_mm(j);
     for (int k = 0; k < taps_.taps; ++k) {
       const int column = std::clamp(taps_.cell[e] + k - rays_.padding(), 0, rays_.columns() - 1);
-      depth_[product(k, taps_.pitch) + static_cast<std::size_t>(e)] = shadow_.depth_mm(x, y, angle, column);
+      depth_[product(k, taps_.pitch) + e] = shadow_.depth_mm(x, y, angle, column);
     }
   }
 }
@@ -238,17 +261,18 @@ void TileLight::take(const RayNodes& nodes, int angle, const Window<const Slab>&
   fetch(angle, sinograms);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
-  Kernels::best().gather(columns(), taps_, voxels().data(), count(), chunk_.width(), rays_.climbs(),
-                         voxels_.data() + voxel_gap);
+  TileKernels::best().gather(columns(), taps_, voxels().data(), count(), chunk_.width(), rays_.climbs(),
+                             voxels_.data() + voxel_gap);
 }
 
 void TileLight::give(const RayNodes& nodes, int angle, const Window<Slab>& sinograms) {
+  if (tile_->voxels.empty()) return;
   if (!find_taps(nodes, angle, {sinograms.first, sinograms.end()})) return;
   light_.assign(product(columns_, rows_), 0.0F);
   ends_.clear();
   if (shadowed(angle)) cast_shadow(angle);
-  Kernels::best().scatter(voxels_.data() + voxel_gap, taps_, voxels().data(), count(), chunk_.width(), rays_.climbs(),
-                          columns());
+  TileKernels::best().scatter(voxels_.data() + voxel_gap, taps_, voxels().data(), count(), chunk_.width(),
+                              rays_.climbs(), columns());
   put_back(angle, sinograms);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "light/private/tile_light.hpp"
 #include "optics/skew_ray.hpp"
@@ -18,7 +19,7 @@ constexpr double faint = 0.1;  // of the best column's: grazing rays are not amp
 /// Columns are projector pixels here: A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels
 /// and w = T e^{-mu depth}, and a ramp across columns is voxel / (J pitch) times one across voxels, which cancels the J
 /// of J / T [physics §3]: the gain is (1/2) step (voxel / pitch)^2.
-InverseLight inverse_of(const VialRays& rays) {
+Preconditioner inverse_of(const VialRays& rays) {
   double most = 0;
   for (int c = 0; c < rays.columns(); ++c) most = std::max(most, rays.transmitted(c));
   std::vector<float> amplified;
@@ -73,7 +74,7 @@ InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
                          way.climb / slice_mm};
     return still.seen_from(vial ? 0 : pose.dx_mm, vial ? 0 : pose.dy_mm, pose.dz_mm / slice_mm);
   };
-  const int row_slabs = rays.climbs() ? (setup.rows + lanes - 1) / lanes : static_cast<int>(inserts.size());
+  const int row_slabs = rays.climbs() ? (setup.rows + lanes - 1) / lanes : count_of(inserts);
   return {setup.grid, inserts, angles, rays.columns(), row_slabs, !rays.posed(), ray};
 }
 
@@ -104,22 +105,27 @@ void VialOperator::each_chunk(const SlabRange& slabs, const Visit& visit) const 
 double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.step_rad); }
 
 /// Angles are shared among the threads: each writes its own rows.
-void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
-  for (Slab& slab : sinograms) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
+void VialOperator::forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const {
+  for (Slab& slab : sinograms.slabs) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
   const auto blocks = angle_blocks(sinogram().height);
-  each_chunk({0, objects.size()}, [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
-    parallel_for(static_cast<int>(blocks.size()), [&](int b) {
-      TileLight light(rays_, shadow_);
-      const auto [first, end] = blocks[b];
-      for (const int t : tiles) {
-        const Tile& tile = tiles_[t];
-        if (tile.voxels.empty()) continue;
-        light.enter(t, tile, chunk);
-        light.load_voxels({0, objects});
-        for (int angle = first; angle < end; ++angle) light.give(nodes, angle, {0, sinograms});
-      }
-    });
-  });
+  each_chunk({objects.first, objects.end()},
+             [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
+               parallel_for(count_of(blocks), [&](int b) {
+                 TileLight light(rays_, shadow_);
+                 const auto [first, end] = blocks[b];
+                 for (const int t : tiles) {
+                   const Tile& tile = tiles_[t];
+                   if (tile.voxels.empty()) continue;
+                   light.enter(t, tile, chunk);
+                   light.load_voxels(objects);
+                   for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
+                 }
+               });
+             });
+}
+
+void VialOperator::forward(std::span<const Slab> objects, std::span<Slab> sinograms) const {
+  forward_within({0, objects}, {0, sinograms});
 }
 
 void VialOperator::adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const {
@@ -143,7 +149,7 @@ void VialOperator::adjoint_within(const Window<const Slab>& sinograms, const Win
   const int angles = sinogram().height;
   each_chunk({objects.first, objects.end()},
              [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
-               parallel_for(static_cast<int>(tiles.size()), [&](int item) {
+               parallel_for(count_of(tiles), [&](int item) {
                  TileLight light(rays_, shadow_);
                  const int t = tiles[item];
                  const Tile& tile = tiles_[t];

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
@@ -45,7 +46,7 @@ RayTable::Scope VialRays::table_scope() const {
   constexpr double least_height_mm = 1e-3;
   RayTable::Scope table;
   table.view = setup_.view;
-  table.angles = static_cast<int>(std::lround(turn_rad / std::abs(setup_.turn.step_rad)));
+  table.angles = round_int(turn_rad / std::abs(setup_.turn.step_rad));
   table.sense = sense();
   table.absorption_per_mm = setup_.absorption_per_mm;
   table.r_max_mm = farthest_mm(setup_) + model::farthest_mm(setup_.poses, model::Moves::part);
@@ -63,7 +64,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   table_.at_height(0, scale(), level);
   const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
   const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
-  taps_ = static_cast<int>(std::ceil(std::numbers::sqrt2 * static_cast<double>(widest))) + 1;
+  taps_ = ceil_int(std::numbers::sqrt2 * static_cast<double>(widest)) + 1;
   require_moderate_rays(level);
   for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta = setup_.part_angle_rad(a);
@@ -101,8 +102,8 @@ void VialRays::note_rows() {
   const auto row_at = [&](double z_mm) {
     return std::clamp((z_mm - setup_.first_row_mm) / voxel, -1.0, static_cast<double>(setup_.rows));
   };
-  first_row_ = std::max(0, static_cast<int>(std::ceil(row_at(setup_.lowest_mm) - 0.01)));
-  end_row_ = std::min(setup_.rows, static_cast<int>(std::floor(row_at(setup_.highest_mm) + 0.01)) + 1);
+  first_row_ = std::max(0, ceil_int(row_at(setup_.lowest_mm) - 0.01));
+  end_row_ = std::min(setup_.rows, floor_int(row_at(setup_.highest_mm) + 0.01) + 1);
   if (!posed()) return;
   constexpr float spare = 0.05F;  // for heights and displaced vials
   least_row_ = 1e9F;
@@ -135,8 +136,7 @@ RowRange VialRays::rows_to(const RayNodes& nodes, int first, int slices) const {
     low = std::min(low, node.row - half);
     high = std::max(high, node.row + half);
   }
-  return {std::clamp(static_cast<int>(std::floor(low)) - 1, first_row_, end_row_),
-          std::clamp(static_cast<int>(std::ceil(high)) + 2, first_row_, end_row_)};
+  return {std::clamp(floor_int(low) - 1, first_row_, end_row_), std::clamp(ceil_int(high) + 2, first_row_, end_row_)};
 }
 
 RowRange VialRays::posed_rows_to(int first, int slices) const {
@@ -148,9 +148,8 @@ RowRange VialRays::posed_rows_to(int first, int slices) const {
   const auto row_at = [&](double z_mm) {
     return std::clamp((z_mm - setup_.first_row_mm) / setup_.grid.voxel_mm, -2.0, setup_.rows + 2.0);
   };
-  return {
-      std::clamp(static_cast<int>(std::floor(row_at(bottom * (bottom > 0 ? least : most)))) - 1, first_row_, end_row_),
-      std::clamp(static_cast<int>(std::ceil(row_at(top * (top > 0 ? most : least)))) + 2, first_row_, end_row_)};
+  return {std::clamp(floor_int(row_at(bottom * (bottom > 0 ? least : most))) - 1, first_row_, end_row_),
+          std::clamp(ceil_int(row_at(top * (top > 0 ? most : least))) + 2, first_row_, end_row_)};
 }
 
 HeightScale VialRays::posed_scale(int first, int slices, int frame) const {
@@ -190,7 +189,7 @@ void VialRays::require_moderate_rays(RayNodes& nodes) const {
                                  format_number(steepest) + " supported" + remedy};
   }
   if (low >= least_zoom && high <= largest_zoom) return;
-  const auto number = [](float v) { return format_number(static_cast<double>(v), 3); };
+  const auto number = [](float v) { return format_number(v, 3); };
   throw Error{Fault::data, lens + "across the vial rows are " + number(low) + " to " + number(high) +
                                " times as dense as on the axis, at least " + number(least_zoom) + " and at most " +
                                number(largest_zoom) + " supported" + remedy};
@@ -220,8 +219,8 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   if (outside && table_.outer.rows == 0) return 0;
   const RayTable::Zone& zone = outside ? table_.outer : table_.inner;
   const double place = (r - zone.first_mm) / zone.pitch_mm;
-  const int low = outside ? std::clamp(static_cast<int>(std::lround(place)), 0, zone.rows - 1)
-                          : std::min(static_cast<int>(place), zone.rows - 2);
+  const int low =
+      outside ? std::clamp(round_int(place), 0, zone.rows - 1) : std::min(static_cast<int>(place), zone.rows - 2);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup_.part_angle_rad(0);
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;
@@ -247,7 +246,7 @@ void VialRays::at_slices(int first, int slices, RayNodes& nodes) const {
   table_.at_height(climbs() ? height_mm(first + 0.5 * (slices - 1)) : 0, scale(), nodes);
 }
 
-void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count, const Standing& part, int slices,
+void VialRays::take_from(const RayNodes& nodes, const RaySource* rays, int count, const PartTurn& part, int slices,
                          RayTaps& taps) const {
   static const auto kernel = VAM_KERNEL(find_taps, simd_level());
   const RayFrame frame{part.shift,

@@ -15,8 +15,6 @@ namespace vam::light {
 
 namespace {
 
-std::string mm(double value) { return format_number(value) + " mm"; }
-
 /// What optimisation and simulation of a printer have in common.
 VialSetup on_the_bench(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::Grid& grid) {
   VialSetup setup;
@@ -32,14 +30,15 @@ VialSetup on_the_bench(const model::Printer& printer, const optics::AxisAlignmen
 
 void require_columns_of(const optics::Detector& projector, const model::StackInfo& info) {
   if (info.width == projector.columns && std::abs(info.pixel_mm / projector.pixel_mm - 1) < 1e-3) return;
-  throw Error{Fault::data, "sinogram: it has " + std::to_string(info.width) + " columns of " + mm(info.pixel_mm) +
+  throw Error{Fault::data, "sinogram: it has " + std::to_string(info.width) + " columns of " + mm_text(info.pixel_mm) +
                                ", the projector " + std::to_string(projector.columns) + " of " +
-                               mm(projector.pixel_mm) + "; use the printer it was resampled for"};
+                               mm_text(projector.pixel_mm) + "; use the printer it was resampled for"};
 }
 
 void require_slices_of(const model::Grid& grid, const model::StackInfo& info) {
   if (!(info.row_mm > 0) || std::abs(info.row_mm / grid.voxel_mm - 1) < 1e-3) return;
-  throw Error{Fault::data, "sinogram: its slices are " + mm(info.row_mm) + " apart, the voxels " + mm(grid.voxel_mm) +
+  throw Error{Fault::data, "sinogram: its slices are " + mm_text(info.row_mm) + " apart, the voxels " +
+                               mm_text(grid.voxel_mm) +
                                ": they are not slices of the volume; make both from the same target"};
 }
 
@@ -65,10 +64,10 @@ void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& 
   const double first = std::ceil((low_mm - setup.grid.z_mm(0)) / voxel - rounding);
   const double last = std::floor((high_mm - setup.grid.z_mm(0)) / voxel + rounding);
   if (last < first) {
-    throw Error{Fault::data, "poses: the slices are at z = " + mm(slices.z_mm(0) + lift.least / setup.z_scale) +
-                                 " ... " + mm(slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale) +
-                                 ", but the projector's rows cover " + mm(setup.lowest_mm) + " ... " +
-                                 mm(setup.highest_mm) + "; check projector.axis_row and the table"};
+    throw Error{Fault::data, "poses: the slices are at z = " + mm_text(slices.z_mm(0) + lift.least / setup.z_scale) +
+                                 " ... " + mm_text(slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale) +
+                                 ", but the projector's rows cover " + mm_text(setup.lowest_mm) + " ... " +
+                                 mm_text(setup.highest_mm) + "; check projector.axis_row and the table"};
   }
   setup.poses = poses;
   setup.turn.rows = static_cast<int>(poses.size());

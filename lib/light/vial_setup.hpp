@@ -1,4 +1,4 @@
-// The projector, the vial and the grid of one dose.
+// Projector, vial and grid of one chief-ray dose.
 #pragma once
 
 #include "model/grid.hpp"

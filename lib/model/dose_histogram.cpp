@@ -31,7 +31,7 @@ double DoseHistogram::upper_edge(int key) { return lower_edge(key + 1); }
 std::int64_t& DoseHistogram::bin(int key) {
   if (key < 0) return below_;
   auto& page = pages_[key / page_size];
-  if (!page) page = std::make_unique<Page>();
+  if (!page) page = std::make_unique<CountPage>();
   return (*page)[key % page_size];
 }
 
@@ -45,7 +45,7 @@ void DoseHistogram::merge(const DoseHistogram& other, int times) {
   below_ += times * other.below_;
   for (std::size_t p = 0; p < pages; ++p) {
     if (!other.pages_[p]) continue;
-    if (!pages_[p]) pages_[p] = std::make_unique<Page>();
+    if (!pages_[p]) pages_[p] = std::make_unique<CountPage>();
     for (std::size_t i = 0; i < page_size; ++i) (*pages_[p])[i] += times * (*other.pages_[p])[i];
   }
 }

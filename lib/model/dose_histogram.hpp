@@ -25,7 +25,7 @@ class DoseHistogram {
     for (auto& page : pages_) {
       int there = page ? 1 : 0;
       fields(there);
-      if (there != 0 && !page) page = std::make_unique<Page>();
+      if (there != 0 && !page) page = std::make_unique<CountPage>();
       if (there != 0) fields(*page);
     }
   }
@@ -45,7 +45,7 @@ class DoseHistogram {
   static constexpr int page_size = 1 << mantissa_bits;
   static constexpr int first_exponent = -24;
   static constexpr int pages = 64;
-  using Page = std::array<std::int64_t, page_size>;
+  using CountPage = std::array<std::int64_t, page_size>;
 
   static int key_of(float dose);
   static double lower_edge(int key);
@@ -54,7 +54,7 @@ class DoseHistogram {
   [[nodiscard]] std::int64_t count(int key) const;
 
   std::int64_t below_ = 0;  // key -1
-  std::array<std::unique_ptr<Page>, pages> pages_{};
+  std::array<std::unique_ptr<CountPage>, pages> pages_{};
 };
 
 }  // namespace vam::model

@@ -22,18 +22,18 @@ inline constexpr float coverage_rounding = 1e-3F;
 }
 
 /// Process window, voxel error rate and their kin [OSMO21; physics §7]. G = part, V = void inside the writable circle,
-/// f = dose. Doses keep the unit they came in; pw and ipdr are divided by max_dose when relative.
+/// x = dose. Doses keep the unit they came in; pw and ipdr are divided by max_dose when relative.
 struct DoseMetrics {
   std::int64_t part = 0;   // #G
   std::int64_t void_ = 0;  // #V
-  double min_part = 0;     // min_G f
+  double min_part = 0;     // min_G x
   double max_part = 0;
   double mean_part = 0;
-  double max_void = 0;       // max_V f
+  double max_void = 0;       // max_V x
   double max_dose = 0;       // over G and V
-  double ver = 0;            // #{V: f >= min_G f} / (#G + #V)
-  double pw = 0;             // min_G f - max_V f, positive is good
-  double ipdr = 0;           // max_G f - min_G f
+  double ver = 0;            // #{V: x >= min_G x} / (#G + #V)
+  double pw = 0;             // min_G x - max_V x, positive is good
+  double ipdr = 0;           // max_G x - min_G x
   double cv = 0;             // sigma_G / mean_G
   double iou = 0;            // best over thresholds of |print and part| / |print or part|
   double iou_threshold = 0;  // the middle of the thresholds that give it

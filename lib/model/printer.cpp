@@ -6,11 +6,14 @@ namespace {
 
 std::optional<double> lens_mm(const Projector& projector, bool telecentric) {
   if (telecentric) return std::nullopt;
-  if (projector.lens_distance_mm) return projector.lens_distance_mm;
-  return projector.throw_ratio * projector.columns * projector.pixel_mm;
+  return lens_distance_mm(projector);
 }
 
 }  // namespace
+
+double lens_distance_mm(const Projector& projector) {
+  return projector.lens_distance_mm.value_or(projector.throw_ratio * projector.columns * projector.pixel_mm);
+}
 
 std::optional<double> columns_lens_mm(const Projector& projector) {
   return lens_mm(projector, projector.telecentric || projector.telecentric_columns);

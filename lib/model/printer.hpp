@@ -69,7 +69,8 @@ struct PrinterCamera {
   double fps = 10;
   std::optional<double> gain;         // as the camera counts it; absent: as it has it
   std::optional<double> black_level;  // the same
-  double lag_ms = 0;                  // from the end of an exposure to its time stamp, as it arrives
+  std::string stamp = "auto";         // the moment of an exposure that a time stamp names: start, middle or end
+  double lag_ms = 0;                  // from that moment to the time stamp
   double index_resin = 1.53;          // at the camera's wavelength
   double absorption_per_mm = 0;       // of the resin there, natural logarithm of intensity lost per mm
   std::optional<double> axis_column;  // where the rotation axis appears at the middle row; found in the views if absent
@@ -96,6 +97,8 @@ struct Printer {
   Calibration calibration;
 };
 
+/// Distance from lens to rotation axis, as set or by the throw ratio.
+[[nodiscard]] double lens_distance_mm(const Projector& projector);
 /// Distance from lens to rotation axis in mm as the columns and as the rows see it, empty when telecentric in them.
 [[nodiscard]] std::optional<double> columns_lens_mm(const Projector& projector);
 [[nodiscard]] std::optional<double> rows_lens_mm(const Projector& projector);

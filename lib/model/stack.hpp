@@ -41,6 +41,7 @@ struct ImageInfo {
   double time_s = 0;
   bool has_angle = false;  // frames with a measured angle of their own
   bool has_time = false;
+  double time_sigma_s = 0;  // standard deviation that the times of one capture share; 0: not known
   bool has_number = false;  // camera frames
   int number = 0;           // since the camera started; a gap is frames that were lost
   bool incomplete = false;  // parts of the image did not arrive

@@ -41,7 +41,7 @@ double amount(std::string text, std::string_view unit, const std::string& clause
                                 (unit.empty() ? "" : " in " + std::string(unit)) + std::string(example)};
 }
 
-double of(const Tolerances& tolerances, const Deviation& by, Off what) {
+double of(const Tolerances& tolerances, const PrinterDeviation& by, Deviating what) {
   const auto i = static_cast<std::size_t>(what);
   return tolerances[i] * by[i];
 }
@@ -62,12 +62,31 @@ Tolerances parse_tolerances(const std::string& text) {
   return tolerances;
 }
 
-DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, const Deviation& by) {
-  DeviatingPrinter off{printer, of(tolerances, by, Off::angle) * rad_per_deg, 1 + 0.01 * of(tolerances, by, Off::lamp)};
-  off.printer.projector.axis_column += of(tolerances, by, Off::axis);
-  off.printer.resin.index += of(tolerances, by, Off::index);
-  off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, Off::radius);
-  off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, Off::psf));
+std::string tolerances_text(const Tolerances& tolerances) {
+  std::vector<std::string> clauses;
+  for (std::size_t i = 0; i < tolerances.size(); ++i) {
+    const Tolerance& one = tolerance_table[i];
+    if (tolerances[i] == 0) continue;
+    clauses.push_back(std::string(one.name) + "=" + format_number(tolerances[i]) + std::string(one.unit));
+  }
+  return join(clauses, ",");
+}
+
+std::vector<std::string> exact_quantities(const Tolerances& tolerances) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < tolerances.size(); ++i) {
+    if (tolerances[i] == 0) names.emplace_back(tolerance_table[i].name);
+  }
+  return names;
+}
+
+DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, const PrinterDeviation& by) {
+  DeviatingPrinter off{printer, of(tolerances, by, Deviating::angle) * rad_per_deg,
+                       1 + 0.01 * of(tolerances, by, Deviating::lamp)};
+  off.printer.projector.axis_column += of(tolerances, by, Deviating::axis);
+  off.printer.resin.index += of(tolerances, by, Deviating::index);
+  off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, Deviating::radius);
+  off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, Deviating::psf));
   if (off.intensity > 0 && off.printer.resin.index >= 1 && resin_radius_mm(off.printer.vial) > 0) return off;
   throw Error{Fault::usage, "tolerances: " + format_number(off.intensity) + " times the lamp, index " +
                                 format_number(off.printer.resin.index) + " and " +
@@ -75,8 +94,8 @@ DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, c
                                 " mm of resin are no printer; reduce them"};
 }
 
-std::vector<Deviation> balanced_corners() {
-  std::vector<Deviation> corners(8);
+std::vector<PrinterDeviation> balanced_corners() {
+  std::vector<PrinterDeviation> corners(8);
   for (unsigned row = 0; row < corners.size(); ++row) {
     for (unsigned column = 0; column < corners[row].size(); ++column) {
       corners[row][column] = std::popcount(row & (column + 1)) % 2 == 0 ? 1 : -1;  // Sylvester
@@ -85,8 +104,8 @@ std::vector<Deviation> balanced_corners() {
   return corners;
 }
 
-Deviation drawn_deviation(std::uint64_t seed, int n) {
-  Deviation by{};
+PrinterDeviation drawn_deviation(std::uint64_t seed, int n) {
+  PrinterDeviation by{};
   std::uint64_t state = scrambled(seed + static_cast<std::uint64_t>(n));
   for (double& one : by) one = 2 * unit_interval(state = scrambled(state)) - 1;
   return by;

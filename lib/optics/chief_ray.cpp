@@ -71,9 +71,8 @@ void check(const View& view) {
   }
   if (view.bath_index == 1.0) return;
   if (!(view.window_mm >= radius && view.window_mm < *lens_mm)) {
-    throw Error{Fault::data, "bath: its window stands " + mm(view.window_mm) +
-                                 " before the axis, but the vial ends at " + mm(radius) + " and the lens is at " +
-                                 mm(*lens_mm) + "; set bath.window_mm"};
+    throw Error{Fault::data, "bath: its window is " + mm(view.window_mm) + " before the axis, but the vial ends at " +
+                                 mm(radius) + " and the lens is at " + mm(*lens_mm) + "; set bath.window_mm"};
   }
 }
 

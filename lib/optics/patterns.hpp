@@ -1,4 +1,4 @@
-// Images to adjust and measure a projector with, in its own grey levels: no response table stands between.
+// Test images to adjust and measure a projector with, in its own grey levels: no response table is applied.
 #pragma once
 
 #include <optional>

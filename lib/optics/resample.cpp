@@ -1,4 +1,5 @@
-// Applying a plan: 16 slices side by side, one tile of output columns at a time, so that a tile's input stays in cache.
+// Applies a resampling plan: 16 slices side by side, one tile of output columns at a time, so that a tile's input stays
+// in cache.
 #include "optics/resample.hpp"
 
 #include <algorithm>
@@ -19,12 +20,12 @@ constexpr int tile_columns = 16;  // one cache line of an output row
 
 using Index = std::ptrdiff_t;
 
-struct Kernels {
+struct ResampleKernels {
   decltype(&baseline::mix_columns) mix;
   decltype(&baseline::shift_rows) shift;
 };
 
-Kernels kernels() { return {VAM_KERNEL(mix_columns, simd_level()), VAM_KERNEL(shift_rows, simd_level())}; }
+ResampleKernels kernels() { return {VAM_KERNEL(mix_columns, simd_level()), VAM_KERNEL(shift_rows, simd_level())}; }
 
 // Columns [first, last) of up to 16 images as [column][row][16]; missing lanes stay 0.
 void pack(std::span<const Image> images, int first, int last, std::vector<float>& packed) {
@@ -50,8 +51,8 @@ void unpack(const std::vector<float>& packed, int first, int last, std::span<Ima
   }
 }
 
-void resample_tile(const ResamplePlan& plan, const Kernels& kernel, int first, int last, std::span<const Image> in,
-                   std::span<Image> out) {
+void resample_tile(const ResamplePlan& plan, const ResampleKernels& kernel, int first, int last,
+                   std::span<const Image> in, std::span<Image> out) {
   int low = plan.columns_in;
   int high = 0;
   for (int c = first; c < last; ++c) {
@@ -95,7 +96,7 @@ void resample(const ResamplePlan& plan, std::span<const Image> in, std::span<Ima
     }
   }
   for (Image& image : out) image = Image(plan.columns_out, plan.rows);
-  const Kernels kernel = kernels();
+  const ResampleKernels kernel = kernels();
   const int slices = static_cast<int>(in.size());
   const int groups = (slices + lanes - 1) / lanes;
   const int tiles = (plan.columns_out + tile_columns - 1) / tile_columns;

@@ -1,4 +1,4 @@
-// A resampling of a whole stack: the plan for its slices and the facts of the stack that comes out.
+// Resampling of a whole stack: the plan for its slices and the metadata of the resulting stack.
 #pragma once
 
 #include <iosfwd>

@@ -16,7 +16,7 @@ SlicePlace::SlicePlace(const std::string& subject, const model::Projector& proje
   if (slice.pixel_mm > 0 && std::fabs(projector.pixel_mm - slice.pixel_mm) > 1e-3 * projector.pixel_mm) {
     throw Error{Fault::data, subject + ": the part's voxels of " + format_number(slice.pixel_mm) +
                                  " mm are not the projector's pixels of " + format_number(projector.pixel_mm) +
-                                 " mm; slice with --voxel " + format_number(projector.pixel_mm)};
+                                 " mm; slice with voxels of " + format_number(projector.pixel_mm) + " mm"};
   }
   const bool whole = as_it_is(slice.width, slice.height);
   const double left = whole ? 0 : projector.axis_column - 0.5 * (slice.width - 1);

@@ -1,4 +1,4 @@
-// Where a slice of a part lies in the projector's image.
+// Position of a part's slice in the projector's image.
 #pragma once
 
 #include <string>

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/index.hpp"
+
 namespace vam::plot {
 
 namespace {
@@ -15,11 +17,9 @@ constexpr double font_height = 30;  // pixels of a line at scale 1, descenders i
 
 cv::Scalar scalar(Rgb colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
-cv::Point fine(Spot spot) {
-  return {static_cast<int>(std::lround(spot.x * (1 << shift))), static_cast<int>(std::lround(spot.y * (1 << shift)))};
-}
+cv::Point fine(Spot spot) { return {round_int(spot.x * (1 << shift)), round_int(spot.y * (1 << shift))}; }
 
-int whole(double thickness) { return std::max(1, static_cast<int>(std::lround(thickness))); }
+int whole(double thickness) { return std::max(1, round_int(thickness)); }
 
 struct Letters {
   cv::Mat mask;     // opacity 0..255
@@ -27,7 +27,7 @@ struct Letters {
   double baseline;  // rows from the top of the mask
 };
 
-int stroke(double size) { return std::max(1, static_cast<int>(std::lround(size * supersample / 13))); }
+int stroke(double size) { return std::max(1, round_int(size * supersample / 13)); }
 
 Letters letters(const std::string& words, double size) {
   const double scale = size * supersample / font_height;
@@ -77,7 +77,7 @@ void Canvas::line(Spot from, Spot to, Rgb colour, double thickness) {
 void Canvas::dashed(Spot from, Spot to, Rgb colour, double thickness) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
   constexpr double period = 12;
-  const int dashes = static_cast<int>(std::ceil(length / period));
+  const int dashes = ceil_int(length / period);
   for (int dash = 0; dash < dashes; ++dash) {
     const double at = dash * period;
     const auto along = [&](double d) {
@@ -94,7 +94,7 @@ void Canvas::polyline(const std::vector<Spot>& spots, Rgb colour, double thickne
 }
 
 void Canvas::fill(Spot corner, Spot opposite, Rgb colour, double opacity) {
-  const auto pixel = [](double x) { return static_cast<int>(std::lround(x)); };
+  const auto pixel = [](double x) { return round_int(x); };
   for (int y = pixel(std::min(corner.y, opposite.y)); y < pixel(std::max(corner.y, opposite.y)); ++y) {
     for (int x = pixel(std::min(corner.x, opposite.x)); x < pixel(std::max(corner.x, opposite.x)); ++x) {
       state_->blend(x, y, colour, opacity);
@@ -107,8 +107,8 @@ void Canvas::outline(Spot corner, Spot opposite, Rgb colour, double thickness) {
 }
 
 void Canvas::disc(Spot centre, double radius, Rgb colour) {
-  cv::circle(state_->pixels, fine(centre), static_cast<int>(std::lround(radius * (1 << shift))), scalar(colour),
-             cv::FILLED, cv::LINE_AA, shift);
+  cv::circle(state_->pixels, fine(centre), round_int(radius * (1 << shift)), scalar(colour), cv::FILLED, cv::LINE_AA,
+             shift);
 }
 
 void Canvas::paste(const RgbImage& image, int x0, int y0) {
@@ -131,9 +131,7 @@ void Canvas::text(Spot at, const std::string& words, double size, Rgb colour, Al
   for (int y = 0; y < word.mask.rows; ++y) {
     for (int x = 0; x < word.mask.cols; ++x) {
       const int opacity = word.mask.at<unsigned char>(y, x);
-      if (opacity > 0)
-        state_->blend(static_cast<int>(std::lround(x0)) + x, static_cast<int>(std::lround(y0)) + y, colour,
-                      opacity / 255.0);
+      if (opacity > 0) state_->blend(round_int(x0) + x, round_int(y0) + y, colour, opacity / 255.0);
     }
   }
 }

@@ -41,7 +41,7 @@ void check_same_size(const model::Grid& grid, const model::Grid& other, const st
     return std::to_string(g.nx) + " x " + std::to_string(g.ny) + " x " + std::to_string(g.nz);
   };
   throw Error{Fault::data, name + ": the dose has " + text(grid) + " voxels, but the target has " + text(other) +
-                               "; make the dose for this target"};
+                               "; compute the dose on this target"};
 }
 
 struct Sides {
@@ -79,13 +79,13 @@ Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target
   Plot plot;
   plot.title = options.name + ": dose inside and outside the part";
   plot.x = {views::with_unit("dose", dose.units), low, high, false};
-  plot.y = {"share of the voxels of each side (%)", 0, 0, false};
+  plot.y = {"voxels inside, and outside (%)", 0, 0, false};
   const auto bars_out = outside.done();
   const auto bars_in = inside.done();
   plot.series = {{"outside the part", bars_out.edges, bars_out.percent, paint::blue, SeriesStyle::bars},
                  {"inside the part", bars_in.edges, bars_in.percent, paint::vermilion, SeriesStyle::bars}};
-  plot.markers = {{inner.low, "lowest inside " + format_number(inner.low, 4), paint::vermilion},
-                  {outer.high, "highest outside " + format_number(outer.high, 4), paint::blue}};
+  plot.markers = {{inner.low, "minimum inside " + format_number(inner.low, 4), paint::vermilion},
+                  {outer.high, "maximum outside " + format_number(outer.high, 4), paint::blue}};
   return plot;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "base/index.hpp"
+
 namespace vam::plot {
 
 namespace {
@@ -30,8 +32,8 @@ Scale scale_for(const ImageFigure& figure, double room_x, double room_y) {
 // Enlarged by repetition, since a voxel is a box; reduced by averaging.
 RgbImage scaled(const RgbImage& image, Scale scale) {
   const cv::Mat in(image.height, image.width, CV_8UC3, const_cast<Rgb*>(image.values.data()));
-  const int width = std::max(1, static_cast<int>(std::lround(image.width * scale.x)));
-  const int height = std::max(1, static_cast<int>(std::lround(image.height * scale.y)));
+  const int width = std::max(1, round_int(image.width * scale.x));
+  const int height = std::max(1, round_int(image.height * scale.y));
   cv::Mat stretched;
   cv::resize(in, stretched, {width, in.rows}, 0, 0, scale.x >= 1 ? cv::INTER_NEAREST : cv::INTER_AREA);
   RgbImage out(width, height);
@@ -61,7 +63,7 @@ void draw_scale_bar(Canvas& canvas, double pixel_mm, Scale scale, Spot corner, d
 }
 
 void draw_colour_bar(Canvas& canvas, const ImageFigure& figure, double left, double top, double bottom) {
-  const int rows = static_cast<int>(std::ceil(bottom - top));
+  const int rows = ceil_int(bottom - top);
   for (int row = 0; row < rows; ++row) {
     const double y = top + row;
     const Rgb here = colour(figure.colours, (bottom - 0.5 - y) / (bottom - top));
@@ -107,8 +109,7 @@ void cover(RgbImage& image, const Panel& panel) {
     const int row = std::min(y * panel.hatched.height / image.height, panel.hatched.height - 1);
     for (int x = 0; x < image.width; ++x) {
       const int column = std::min(x * panel.hatched.width / image.width, panel.hatched.width - 1);
-      Rgb& pixel = image.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
-                                static_cast<std::size_t>(x)];
+      Rgb& pixel = image.values[product(y, image.width) + static_cast<std::size_t>(x)];
       if (panel.hatched(column, row) >= 0.5F) {
         pixel = (x + y) % period < stroke ? paint::black : paint::light_grey;
       } else {
@@ -161,12 +162,12 @@ int sheet_columns(const ImageFigure& figure) {
   const Image& image = figure.panels.front().values;
   const double aspect = figure.square_pixels ? static_cast<double>(image.width) / image.height : 4.0 / 3;
   const auto count = static_cast<double>(figure.panels.size());
-  return std::clamp(static_cast<int>(std::lround(std::sqrt(count * (4.0 / 3) / aspect))), 1, static_cast<int>(count));
+  return std::clamp(round_int(std::sqrt(count * (4.0 / 3) / aspect)), 1, static_cast<int>(count));
 }
 
 RgbImage draw_sheet(const ImageFigure& figure) {
   const int columns = sheet_columns(figure);
-  const int rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
+  const int rows = (count_of(figure.panels) + columns - 1) / columns;
   constexpr double gap = 12;
   constexpr double caption = 24;
   const double room = std::max(1.4 * figure.size / std::max(columns, rows), 96.0);

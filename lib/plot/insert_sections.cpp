@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::plot {
@@ -16,28 +17,25 @@ constexpr int directions = 48;
 constexpr float opaque = 0.5F;  // as the light sees it
 
 /// One slice of the insert, x fastest.
-struct Slice {
+struct InsertSlice {
   int width;
   int height;
   const float* values;
-  [[nodiscard]] bool hides(int x, int y) const {
-    return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] >=
-           opaque;
-  }
+  [[nodiscard]] bool hides(int x, int y) const { return values[flat_index(y, width, x)] >= opaque; }
 };
 
-bool is_hidden(const Slice& slice, int x, int y, double angle) {
+bool is_hidden(const InsertSlice& slice, int x, int y, double angle) {
   const double dx = std::cos(angle);
   const double dy = std::sin(angle);
   for (int step = 1;; ++step) {
-    const auto i = static_cast<int>(std::lround(x + step * dx));
-    const auto j = static_cast<int>(std::lround(y + step * dy));
+    const auto i = round_int(x + step * dx);
+    const auto j = round_int(y + step * dy);
     if (i < 0 || j < 0 || i >= slice.width || j >= slice.height) return false;
     if (slice.hides(i, j)) return true;
   }
 }
 
-float hidden_share(const Slice& slice, int x, int y) {
+float hidden_share(const InsertSlice& slice, int x, int y) {
   if (slice.hides(x, y)) return 0;
   int hidden = 0;
   for (int d = 0; d < directions; ++d) {
@@ -50,7 +48,7 @@ Image axial_shadow(const io::SparseVolume& insert, int k) {
   const model::Grid& grid = insert.grid();
   std::vector<float> values(grid.slice_size());
   insert.read_slices(k, 1, values.data());
-  const Slice slice{grid.nx, grid.ny, values.data()};
+  const InsertSlice slice{grid.nx, grid.ny, values.data()};
   Image shadow(grid.nx, grid.ny);
   if (std::none_of(values.begin(), values.end(), [](float value) { return value >= opaque; })) return shadow;
   parallel_for(grid.ny, [&](int row) {
@@ -67,7 +65,7 @@ Image upright_shadow(const io::SparseVolume& insert, Plane plane, int index) {
     std::vector<float> values(grid.slice_size());
     insert.read_slices(grid.nz - 1 - row, 1, values.data());
     if (std::none_of(values.begin(), values.end(), [](float value) { return value >= opaque; })) return;
-    const Slice slice{grid.nx, grid.ny, values.data()};
+    const InsertSlice slice{grid.nx, grid.ny, values.data()};
     for (int at = 0; at < shadow.width; ++at) {
       shadow(at, row) = coronal ? hidden_share(slice, at, index) : hidden_share(slice, index, at);
     }

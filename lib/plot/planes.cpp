@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
+
 namespace vam::plot {
 
 namespace {
@@ -16,13 +18,10 @@ Image empty_plane(const model::Grid& grid, Plane plane) {
 
 // One slice's part of a section: all of an axial one, one row of the others. Upwards is towards row 0.
 void take(const model::Grid& grid, Plane plane, const float* slice, int k, int index, Image& image) {
-  const auto at = [&](int i, int j) {
-    return slice[static_cast<std::size_t>(j) * grid.nx + static_cast<std::size_t>(i)];
-  };
+  const auto at = [&](int i, int j) { return slice[flat_index(j, grid.nx, i)]; };
   if (plane == Plane::axial) {
     if (k != index) return;
-    for (int j = 0; j < grid.ny; ++j)
-      std::copy_n(&slice[static_cast<std::size_t>(j) * grid.nx], grid.nx, image.row(grid.ny - 1 - j));
+    for (int j = 0; j < grid.ny; ++j) std::copy_n(&slice[product(j, grid.nx)], grid.nx, image.row(grid.ny - 1 - j));
     return;
   }
   float* row = image.row(grid.nz - 1 - k);

@@ -83,7 +83,8 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   const model::StackInfo info = images.info();
   const bool sinogram = info.kind == model::Kind::sinogram;
   if (options.at && !sinogram && info.angle_step_deg == 0) {
-    throw Error{Fault::data, options.name + ": its images have no recorded angles; use --sheet, or the EXR stack"};
+    throw Error{Fault::data,
+                options.name + ": its images have no recorded angles; show a sheet of them, or use the EXR stack"};
   }
   Selection selection(info, options);
   Image image;
@@ -92,7 +93,7 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   if (selection.panels.empty()) throw Error{Fault::data, options.name + ": has no image"};
   const double pitch = std::abs(sinogram ? info.row_mm : info.angle_step_deg);
   if (selection.away() > 0.51 * pitch + 1e-6) {
-    throw Error{Fault::data, options.name + ": has none at " + format_number(*options.at) + "; the nearest is " +
+    throw Error{Fault::data, options.name + ": has no image at " + format_number(*options.at) + "; the nearest is " +
                                  selection.panels[0].caption};
   }
   ImageFigure figure;
@@ -107,7 +108,7 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   figure.title = options.name + (sinogram ? ": sinogram" : ": frame");
   figure.title += figure.panels.size() == 1
                       ? (sinogram ? " at " : ", ") + figure.panels[0].caption
-                      : std::string(sinogram ? "s, columns to the right, angles down" : "s, upright as in the file");
+                      : std::string(sinogram ? "s, columns to the right, angles down" : "s, oriented as in the file");
   return figure;
 }
 

@@ -11,9 +11,6 @@
 
 namespace vam::resin {
 
-namespace {
-
-// Most rows of most frames are: one look at their bits is many times as fast as the work on them.
 bool is_dark(const Image& image, int y) {
   std::uint32_t bits = 0;
   for (const float* value = image.row(y); value != image.row(y) + image.width; ++value) {
@@ -21,6 +18,8 @@ bool is_dark(const Image& image, int y) {
   }
   return bits == 0;
 }
+
+namespace {
 
 void require_monotone(const model::ResponseTable& table) {
   const auto& grey = table.grey;
@@ -118,15 +117,28 @@ GreyLevels::GreyLevels(const Response& response, int bits) : bits_(bits) {
   for (int level = 0; level <= last; ++level) {
     intensity_.push_back(static_cast<float>(response.intensity(static_cast<double>(level) / last)));
   }
+  const int steps = 4 * count();
+  for (int step = 0; step <= steps; ++step) {  // one too low, for rounding
+    const float least = static_cast<float>(step - 1) / static_cast<float>(steps);
+    first_.push_back(static_cast<int>(first_at_least(intensity_, least)));
+  }
+}
+
+/// `intensity` from 0 to the last level's: the first level that is not below, by few comparisons.
+std::size_t GreyLevels::not_below(float intensity) const {
+  const auto steps = static_cast<float>(first_.size() - 1);
+  auto level = static_cast<std::size_t>(first_[static_cast<std::size_t>(intensity * steps)]);
+  while (intensity_[level] < intensity) ++level;
+  return level;
 }
 
 int GreyLevels::level(float intensity) const {
   if (!(intensity > intensity_.front())) return 0;
-  const std::size_t above = first_at_least(intensity_, std::min(intensity, intensity_.back()));
+  const std::size_t above = not_below(std::min(intensity, intensity_.back()));
   const float below = intensity_[above - 1];
   const bool lower = intensity - below <= intensity_[above] - intensity && intensity < intensity_.back();
   // Of several levels of the same intensity, the lowest.
-  return static_cast<int>(lower ? first_at_least(intensity_, below) : above);
+  return static_cast<int>(lower ? not_below(below) : above);
 }
 
 LightTally& LightTally::operator+=(const LightTally& other) {

@@ -55,7 +55,10 @@ class GreyLevels {
 
  private:
   int bits_;
+  [[nodiscard]] std::size_t not_below(float intensity) const;
+
   std::vector<float> intensity_;  // rising with the level
+  std::vector<int> first_;        // of each of equal steps of intensity: the first level that is not below it
 };
 
 /// Intensity of an image, summed, and the pixels that were clipped.
@@ -69,6 +72,10 @@ struct LightTally {
 
 /// Multiplies by scale and clips at full intensity, 1.
 LightTally limit_to_full(Image& image, float scale);
+
+/// Whether all of a row is 0. Most rows of most frames are: one look at their bits is many times as fast as work on
+/// them.
+[[nodiscard]] bool is_dark(const Image& image, int y);
 
 /// Every pixel's nearest level, in the memory of a former image. Intensities are fractions of full; beyond what the
 /// projector can do they are clamped.

@@ -13,16 +13,16 @@ namespace vam::resin {
 
 namespace {
 
-struct Level {
+struct GreyLevel {
   double grey = 0;
   double mean = 0;
   double count = 0;
 };
 
-std::vector<Level> averaged(std::span<const PhotodiodeReading> readings, double dark, double& noise) {
+std::vector<GreyLevel> averaged(std::span<const PhotodiodeReading> readings, double dark, double& noise) {
   std::map<double, std::vector<double>> groups;
   for (const PhotodiodeReading& r : readings) groups[r.grey].push_back(r.reading - dark);
-  std::vector<Level> levels;
+  std::vector<GreyLevel> levels;
   double squares = 0;
   double freedom = 0;
   for (const auto& [grey, values] : groups) {
@@ -36,7 +36,7 @@ std::vector<Level> averaged(std::span<const PhotodiodeReading> readings, double 
   return levels;
 }
 
-void check(const std::vector<Level>& levels, double noise, const std::string& source) {
+void check(const std::vector<GreyLevel>& levels, double noise, const std::string& source) {
   if (levels.size() < 3) {
     throw Error{Fault::data,
                 source + ": " + std::to_string(levels.size()) + " grey levels do not make a curve; measure at least 3"};
@@ -60,18 +60,18 @@ void check(const std::vector<Level>& levels, double noise, const std::string& so
 }
 
 // Pool adjacent violators: the non-decreasing means with the least weighted squared distance [AYER55; physics §14.3].
-int pool(std::vector<Level>& levels) {
-  struct Block {
+int pool(std::vector<GreyLevel>& levels) {
+  struct Pool {
     double sum;
     double weight;
     std::size_t size;
     [[nodiscard]] double mean() const { return sum / weight; }
   };
-  std::vector<Block> blocks;
-  for (const Level& level : levels) {
+  std::vector<Pool> blocks;
+  for (const GreyLevel& level : levels) {
     blocks.push_back({level.mean * level.count, level.count, 1});
     while (blocks.size() > 1 && blocks[blocks.size() - 2].mean() > blocks.back().mean()) {
-      const Block last = blocks.back();
+      const Pool last = blocks.back();
       blocks.pop_back();
       blocks.back() = {blocks.back().sum + last.sum, blocks.back().weight + last.weight,
                        blocks.back().size + last.size};
@@ -79,7 +79,7 @@ int pool(std::vector<Level>& levels) {
   }
   std::size_t i = 0;
   int pooled = 0;
-  for (const Block& block : blocks) {
+  for (const Pool& block : blocks) {
     if (block.size > 1) pooled += static_cast<int>(block.size);
     for (std::size_t k = 0; k < block.size; ++k) levels[i++].mean = std::max(0.0, block.mean());
   }
@@ -87,11 +87,11 @@ int pool(std::vector<Level>& levels) {
 }
 
 // ln((I - I_0) / (I_max - I_0)) = gamma ln(grey / full), least squares through the origin.
-double power_law(const std::vector<Level>& levels) {
+double power_law(const std::vector<GreyLevel>& levels) {
   double product = 0;
   double squares = 0;
   const double span = levels.back().mean - levels.front().mean;
-  for (const Level& level : levels) {
+  for (const GreyLevel& level : levels) {
     const double part = (level.mean - levels.front().mean) / span;
     const double x = std::log(level.grey / levels.back().grey);
     if (!(part > 0.02) || level.grey <= 0) continue;  // near the dark the logarithm is all noise
@@ -105,11 +105,11 @@ double power_law(const std::vector<Level>& levels) {
 
 ResponseFit fit_response(std::span<const PhotodiodeReading> readings, double dark, const std::string& source) {
   ResponseFit fit;
-  std::vector<Level> levels = averaged(readings, dark, fit.noise);
+  std::vector<GreyLevel> levels = averaged(readings, dark, fit.noise);
   check(levels, fit.noise, source);
   fit.pooled = pool(levels);
   fit.table.source = source;
-  for (const Level& level : levels) {
+  for (const GreyLevel& level : levels) {
     fit.table.grey.push_back(level.grey);
     fit.table.intensity.push_back(level.mean);
   }

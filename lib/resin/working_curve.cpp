@@ -16,7 +16,7 @@ namespace {
 constexpr double ln10 = std::numbers::ln10;
 
 // y = mean_y + slope (x - mean_x)
-struct Line {
+struct FittedLine {
   double mean_x = 0;
   double mean_y = 0;
   double slope = 0;
@@ -44,8 +44,8 @@ Groups checked(std::span<const CuredSample> samples) {
   return groups;
 }
 
-Line fit(std::span<const CuredSample> samples) {
-  Line line;
+FittedLine fit(std::span<const CuredSample> samples) {
+  FittedLine line;
   const auto count = static_cast<double>(samples.size());
   for (const CuredSample& sample : samples) {
     line.mean_x += std::log10(sample.exposure_mj_cm2) / count;
@@ -63,7 +63,7 @@ Line fit(std::span<const CuredSample> samples) {
 
 // Where the line crosses 0, in x - mean_x, with Fieller's interval: all u with
 // (mean_y + slope u)^2 <= t^2 s^2 (1/n + u^2 / spread).
-Interval fieller(const Line& line, double count, double t) {
+Interval fieller(const FittedLine& line, double count, double t) {
   const double noise = t * t * line.variance;
   const double a = line.slope * line.slope - noise / line.spread;
   const double b = line.mean_y * line.slope;
@@ -93,7 +93,7 @@ void judge_repeats(const Groups& groups, double residual_squares, WorkingCurve& 
   if (squares > 0) curve.lack_of_fit_p = stats::f_tail(excess / lack / (squares / pure), lack, pure);
 }
 
-void flag_outliers(std::span<const CuredSample> samples, const Line& line, double residual_squares,
+void flag_outliers(std::span<const CuredSample> samples, const FittedLine& line, double residual_squares,
                    WorkingCurve& curve) {
   const auto count = static_cast<double>(samples.size());
   curve.outlier.assign(samples.size(), false);
@@ -109,8 +109,8 @@ void flag_outliers(std::span<const CuredSample> samples, const Line& line, doubl
   }
 }
 
-/// h_a, E_c and D_gel of the line, with their bounds at `t` of Student's [physics §14.4].
-void set_values(const Line& line, double count, double t, WorkingCurve& curve) {
+/// h_a, E_c and D_c of the line, with their bounds at `t` of Student's [physics §14.4].
+void set_values(const FittedLine& line, double count, double t, WorkingCurve& curve) {
   const Interval crossing = fieller(line, count, t);
   const double slope_error = std::sqrt(line.variance / line.spread);
   const double offset = -line.mean_y / line.slope;  // log10 E_c - mean_x
@@ -121,7 +121,7 @@ void set_values(const Line& line, double count, double t, WorkingCurve& curve) {
   curve.critical_exposure_range_mj_cm2 = {std::pow(10, line.mean_x + crossing.low),
                                           std::pow(10, line.mean_x + crossing.high)};
   curve.gel_dose_mj_cm3 = ln10 * curve.critical_exposure_mj_cm2 / (line.slope * 1e-4);  // um to cm
-  // ln D_gel = const + ln(10) (-mean_y / slope) - ln(slope); mean_y and slope are independent.
+  // ln D_c = const + ln(10) (-mean_y / slope) - ln(slope); mean_y and slope are independent.
   const double by_mean = -ln10 / line.slope;
   const double by_slope = -ln10 * offset / line.slope - 1 / line.slope;
   const double log_error = std::sqrt(line.variance * (by_mean * by_mean / count + by_slope * by_slope / line.spread));
@@ -133,7 +133,7 @@ void set_values(const Line& line, double count, double t, WorkingCurve& curve) {
 
 WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double confidence) {
   const Groups groups = checked(samples);
-  Line line = fit(samples);
+  FittedLine line = fit(samples);
   WorkingCurve curve;
   curve.confidence = confidence;
   curve.samples = static_cast<int>(samples.size());

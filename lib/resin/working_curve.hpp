@@ -24,7 +24,7 @@ struct WorkingCurve {
   Interval absorbance_height_range_um;  // confidence intervals
   double critical_exposure_mj_cm2 = 0;  // E_c, where the thickness is 0
   Interval critical_exposure_range_mj_cm2;
-  double gel_dose_mj_cm3 = 0;  // D_gel = ln(10) E_c / h_a: the dose at the surface under E_c
+  double gel_dose_mj_cm3 = 0;  // D_c = ln(10) E_c / h_a: the dose at the surface under E_c
   Interval gel_dose_range_mj_cm3;
   double penetration_depth_um = 0;  // D_p = h_a / ln(10)
   double confidence = 0.95;
@@ -38,7 +38,7 @@ struct WorkingCurve {
   std::vector<bool> outlier;        // flagged and kept: the deleted residual is beyond Bonferroni's 5 % bound
 };
 
-/// confidence in (0, 1). E_c by Fieller's theorem [FIE54], exact for normal errors, D_gel by the delta method on
+/// confidence in (0, 1). E_c by Fieller's theorem [FIE54], exact for normal errors, D_c by the delta method on
 /// its logarithm. Throws Fault::data: fewer than three distinct exposures, values not positive, thickness that does not
 /// rise.
 [[nodiscard]] WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double confidence = 0.95);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -36,8 +37,8 @@ const std::vector<Figure>& figure_list() {
       {"max_void", "maximum dose in the void"},
       {"max_dose", "maximum dose"},
       {"outside_voxels", "void voxels outside the box around the part"},
-      {"outside_gelled_voxels", "those of them that gel in the print"},
-      {"outside_max_dose", "maximum dose in them"},
+      {"outside_gelled_voxels", "void voxels outside the box that gel in the print"},
+      {"outside_max_dose", "maximum dose of void voxels outside the box"},
       {"trimmed_ver", "ver with the extremes trimmed"},
       {"trimmed_pw", "pw with the extremes trimmed"},
       {"cured_part", "at the critical dose: fraction of the part that cures"},
@@ -76,9 +77,9 @@ void Score::add(const float* dose, const float* target, int count) {
     cut.emplace_back(options_.threshold);
   }
   std::vector<model::OutsideDoses> outside(slices.size());
-  std::vector<std::int64_t> surface(static_cast<std::size_t>(count), 0);
+  std::vector<std::int64_t> surface(count, 0);
   parallel_for(count, [&](int s) {
-    const std::size_t first = static_cast<std::size_t>(s) * inside_.size();
+    const std::size_t first = product(s, inside_.size());
     for (std::size_t i = 0; i < inside_.size(); ++i) {
       const float d = dose[first + i];
       const float f = target[first + i];
@@ -127,8 +128,8 @@ double Score::figure(const std::string& name) const {
     if (!options_.exposure) return none;
     const model::DoseMetrics doses = judged().metrics(false);
     if (!(window_middle(doses) > 0)) return none;
-    const ExposurePlan plan =
-        plan_exposure(doses, 1 / options_.exposure->full_light_turns, options_.exposure->printer, 1, options_.aimed_at);
+    const ExposurePlan plan = plan_exposure(doses, 1 / options_.exposure->full_intensity_turns,
+                                            options_.exposure->printer, 1, options_.aimed_at);
     if (name == "turns") return plan.turns;
     if (name == "duration_s") return plan.seconds;
     return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;

@@ -16,8 +16,8 @@ namespace vam::score {
 
 /// What the dose was given with.
 struct Exposure {
-  model::Printer printer;       // with a critical dose
-  double full_light_turns = 1;  // turns of full light that give the dose
+  model::Printer printer;           // with a critical dose
+  double full_intensity_turns = 1;  // turns at full intensity that give the dose
 };
 
 struct ScoreOptions {

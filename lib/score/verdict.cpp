@@ -21,7 +21,7 @@ std::string words(const Verdict& verdict) {
                      margin(verdict.whole) + " of the largest dose, VER " + format_number(verdict.whole.ver, 3) +
                      ", of " + std::to_string(voxels(verdict.whole)) + " voxels";
   if (cut > 0) {
-    line += "; with the " + std::to_string(cut) + " that the surface cuts " + margin(verdict.with_cut) + ", VER " +
+    line += "; including " + std::to_string(cut) + " voxels cut by the surface " + margin(verdict.with_cut) + ", VER " +
             format_number(verdict.with_cut.ver, 3);
   }
   if (verdict.seconds) line += "; " + format_number(*verdict.seconds, 4) + " s";

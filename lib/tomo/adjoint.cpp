@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "tomo/private/radon_plan.hpp"
 
@@ -23,7 +24,7 @@ struct Factors {
 };
 
 std::size_t factor_at(std::size_t block, int pixel, int pixels) {
-  return (block * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(pixel)) * rows;
+  return (block * static_cast<std::size_t>(pixels) + pixel) * rows;
 }
 
 /// Eight angles as one tile sees them.
@@ -50,7 +51,7 @@ class Adjoint {
   void run() const {
     const int across = (geometry_.nx + tile - 1) / tile;
     const int down = (geometry_.ny + tile - 1) / tile;
-    parallel_for(static_cast<int>(groups_.size()) * across * down, [&](int item) {
+    parallel_for(count_of(groups_) * across * down, [&](int item) {
       const SlabGroup& group = groups_[item / (across * down)];
       work_out_tile(group, item % across * tile, item / across % down * tile);
     });
@@ -72,7 +73,7 @@ class Adjoint {
     const int width = geometry_.nx + 1;
     factors_.x.assign(factor_at(footprints_.size(), 0, width), 1.0F);
     factors_.y.assign(factor_at(footprints_.size(), 0, geometry_.ny), 1.0F);
-    parallel_for(static_cast<int>(plan_.rays.size()), [&](int angle) {
+    parallel_for(count_of(plan_.rays), [&](int angle) {
       const auto a = static_cast<std::size_t>(angle);
       const Ray& ray = plan_.rays[a];
       for (int i = 0; i < width; ++i) {
@@ -134,7 +135,7 @@ class Adjoint {
       if (a >= plan_.rays.size()) continue;
       const Ray& ray = plan_.rays[a];
       const double left = std::min(0.0, ray.cosine * (tile - 1)) + std::min(0.0, ray.sine * (tile - 1));
-      const int origin = static_cast<int>(std::floor(x0 * ray.cosine + y0 * ray.sine + ray.offset + left)) - 2;
+      const int origin = floor_int(x0 * ray.cosine + y0 * ray.sine + ray.offset + left) - 2;
       const int first = std::clamp(-origin, 0, window);
       stretch.origin[r] = origin;
       stretch.skip[r] = first;

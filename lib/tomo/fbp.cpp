@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 void scale(Slab& slab, float factor) {
-  const std::size_t row = static_cast<std::size_t>(slab.width) * lanes;
+  const std::size_t row = product(slab.width, lanes);
   parallel_for(slab.height, [&](int y) {
     float* values = slab.at(0, y);
     for (std::size_t i = 0; i < row; ++i) values[i] *= factor;
@@ -49,14 +50,14 @@ ParallelGeometry full_turn(const model::Grid& grid, int angles, int columns, dou
   if (columns == 0) {
     const double x = std::max(geometry.axis_x + 0.5, grid.nx - 0.5 - geometry.axis_x);
     const double y = std::max(geometry.axis_y + 0.5, grid.ny - 0.5 - geometry.axis_y);
-    geometry.columns = static_cast<int>(std::ceil(2 * std::hypot(x, y) - 1e-6));
+    geometry.columns = ceil_int(2 * std::hypot(x, y) - 1e-6);
     if ((geometry.columns - grid.nx) % 2 != 0) ++geometry.columns;
   }
   return geometry;
 }
 
 int columns_across(const model::Circle& circle, int nx) {
-  const int least = 2 * static_cast<int>(std::ceil(circle.radius + 0.5)) + 1;
+  const int least = 2 * ceil_int(circle.radius + 0.5) + 1;
   return least + (least + nx) % 2;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "tomo/private/radon_plan.hpp"
 
@@ -19,7 +20,7 @@ constexpr int row_elements = band + 2 * pad;
 constexpr auto rows = static_cast<std::size_t>(gather_rows);
 
 /// One angle: t = p * cp + q * cq + offset, p along the rows, q across them; e^{alpha u} = major[p] * minor[q].
-struct View {
+struct AngleView {
   int angle;
   double cp;
   double cq;
@@ -30,7 +31,7 @@ struct View {
 };
 
 /// Some angles with the same major axis and number of taps.
-struct Block {
+struct AngleBlock {
   bool x_major;
   std::size_t taps;
   std::vector<int> angles;
@@ -76,12 +77,12 @@ class Forward {
     }
   }
 
-  [[nodiscard]] int major_size(const Block& block) const { return block.x_major ? geometry_.nx : geometry_.ny; }
-  [[nodiscard]] int minor_size(const Block& block) const { return block.x_major ? geometry_.ny : geometry_.nx; }
+  [[nodiscard]] int major_size(const AngleBlock& block) const { return block.x_major ? geometry_.nx : geometry_.ny; }
+  [[nodiscard]] int minor_size(const AngleBlock& block) const { return block.x_major ? geometry_.ny : geometry_.nx; }
 
-  [[nodiscard]] View make_view(const Block& block, int angle) const {
+  [[nodiscard]] AngleView make_view(const AngleBlock& block, int angle) const {
     const Ray& ray = plan_.rays[angle];
-    View view{};
+    AngleView view{};
     view.angle = angle;
     view.cp = block.x_major ? ray.cosine : ray.sine;
     view.cq = block.x_major ? ray.sine : ray.cosine;
@@ -94,10 +95,10 @@ class Forward {
     return view;
   }
 
-  void set_factors(View& view, const Block& block, const Ray& ray) const {
+  void set_factors(AngleView& view, const AngleBlock& block, const Ray& ray) const {
     const double alpha = geometry_.alpha_per_px;
     const auto along = [alpha](int pixels, double axis, double slope) {
-      std::vector<float> factors(static_cast<std::size_t>(pixels));
+      std::vector<float> factors(pixels);
       for (int i = 0; i < pixels; ++i) {
         factors[i] = static_cast<float>(std::exp(alpha * (i - axis) * slope));
       }
@@ -112,8 +113,8 @@ class Forward {
     view.minor.resize(view.minor.size() + rows);
   }
 
-  void work_out_block(const SlabGroup& group, const Block& block) const {
-    std::vector<View> views;
+  void work_out_block(const SlabGroup& group, const AngleBlock& block) const {
+    std::vector<AngleView> views;
     for (const int angle : block.angles) {
       views.push_back(make_view(block, angle));
       for (Slab& sinogram : sinograms_.subspan(group.first, group.slabs)) {
@@ -129,9 +130,9 @@ class Forward {
         const GatherRows now = next;
         next = p + band < np ? find(group, block, p + band, q) : find(group, block, 0, q + gather_rows);
         if (!copy(now, pixels, group.pitch())) continue;
-        Ahead ahead(next, band / segment * static_cast<int>(views.size()));
+        Ahead ahead(next, band / segment * count_of(views));
         for (int m = 0; m < band; m += segment) {
-          for (const View& view : views) {
+          for (const AngleView& view : views) {
             project(group, block, view, p, q, find_bins(view, p, q, m), pixels);
             ahead.fetch_share();
           }
@@ -142,14 +143,14 @@ class Forward {
     for (const int angle : block.angles) mirror(group, angle);
   }
 
-  struct Bins {
+  struct BinRange {
     int first;
     int last;  // one past
   };
 
   /// The bins whose strips cross the middle of the band in pixels [m, m + segment); the first and last segment also
   /// take the bins that only touch the band.
-  [[nodiscard]] Bins find_bins(const View& view, int p0, int q0, int m) const {
+  [[nodiscard]] BinRange find_bins(const AngleView& view, int p0, int q0, int m) const {
     const double middle = p0 * view.cp + (q0 + 0.5 * (gather_rows - 1)) * view.cq + view.offset;
     const double margin = 0.5 * (gather_rows * std::abs(view.cq) + std::abs(view.cp) + 1);
     const bool rising = view.cp > 0;
@@ -157,12 +158,11 @@ class Forward {
     double high = middle + (rising ? m + segment : m) * view.cp;
     if (m == (rising ? 0 : band - segment)) low -= margin;
     if (m == (rising ? band - segment : 0)) high += margin;
-    return {std::max(0, static_cast<int>(std::ceil(low))),
-            std::min(geometry_.columns, static_cast<int>(std::ceil(high)))};
+    return {std::max(0, ceil_int(low)), std::min(geometry_.columns, ceil_int(high))};
   }
 
   /// Adds the band's pixels to these bins.
-  void project(const SlabGroup& group, const Block& block, const View& view, int p0, int q0, Bins bins,
+  void project(const SlabGroup& group, const AngleBlock& block, const AngleView& view, int p0, int q0, BinRange bins,
                const float* pixels) const {
     if (bins.first >= bins.last) return;
     const double t0 = p0 * view.cp + q0 * view.cq + view.offset;  // of the band's first pixel
@@ -191,7 +191,7 @@ class Forward {
   }
 
   /// Where eight rows of pixels lie; rows beyond the image have no pixels.
-  [[nodiscard]] GatherRows find(const SlabGroup& group, const Block& block, int p0, int q0) const {
+  [[nodiscard]] GatherRows find(const SlabGroup& group, const AngleBlock& block, int p0, int q0) const {
     const int np = std::min(band, major_size(block) - p0);
     const int nq = std::min(gather_rows, minor_size(block) - q0);
     GatherRows found{};
@@ -235,7 +235,7 @@ class Forward {
   Plan plan_;
   std::vector<SlabGroup> groups_;
   const RadonKernels& kernels_;
-  std::vector<Block> blocks_;
+  std::vector<AngleBlock> blocks_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "tomo/depth_to_axis.hpp"
 
@@ -18,7 +19,7 @@ FilterSpec matched(FilterSpec filter, const ParallelGeometry& geometry) {
 /// physics §5]; columns beyond the wall get the factor of the axis plane, 1.
 std::vector<float> column_weights(const ProjectionSpec& spec) {
   const double unit = spec.filter.window == FilterWindow::none ? spec.voxel_mm : 0.5;  // [TM80]: |k| / (4 pi) = |f| / 2
-  std::vector<float> weights(static_cast<std::size_t>(spec.geometry.columns), 1.0F);
+  std::vector<float> weights(spec.geometry.columns, 1.0F);
   if (spec.wall_radius_mm) {
     const double radius_px = *spec.wall_radius_mm / spec.voxel_mm;
     weights = to_the_axis(spec.geometry.columns, spec.geometry.alpha_per_px, radius_px);
@@ -48,10 +49,10 @@ void Projections::work_out(std::span<const Slab> images, std::span<Slab> sinogra
 }
 
 float lowest(const Slab& slab) {
-  std::vector<float> rows(static_cast<std::size_t>(slab.height), 0.0F);
+  std::vector<float> rows(slab.height, 0.0F);
   parallel_for(slab.height, [&](int y) {
     const float* values = slab.at(0, y);
-    rows[y] = *std::min_element(values, values + static_cast<std::ptrdiff_t>(slab.width) * lanes);
+    rows[y] = *std::min_element(values, values + std::ptrdiff_t{slab.width} * lanes);
   });
   return std::min(0.0F, *std::min_element(rows.begin(), rows.end()));
 }
@@ -69,8 +70,8 @@ const std::vector<std::string>& negative_names() {
 }
 
 int slabs_a_pass(const ParallelGeometry& geometry, std::size_t budget_bytes) {
-  const std::size_t image = static_cast<std::size_t>(geometry.nx) * geometry.ny;
-  const std::size_t sinogram = static_cast<std::size_t>(geometry.columns) * geometry.angles;
+  const std::size_t image = product(geometry.nx, geometry.ny);
+  const std::size_t sinogram = product(geometry.columns, geometry.angles);
   const std::size_t slab_bytes =
       (2 * image + 3 * sinogram) * lanes * sizeof(float);  // slabs, slices read, images written
   return static_cast<int>(std::clamp<std::size_t>(budget_bytes / slab_bytes, 1, 4));

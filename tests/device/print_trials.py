@@ -85,6 +85,7 @@ def main():
                               "9000", "--max-speed", "360"], stdout=subprocess.PIPE, text=True)
     stage.stdout.readline()
     environment = dict(os.environ, LD_PRELOAD=shim)
+    subprocess.run(["vam-stage", "home"], check=True, env=environment)
     screen, log = Screen("screen/Xvfb_screen0"), Log("truth")
     failed = trials(count, screen, log, environment, "", LIMIT_S)
     with load(LOOPS):

@@ -17,7 +17,8 @@ from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
 SCHEME = sys.argv[2]
 OPTIONS = {"gcs": "?baud=115200"}.get(SCHEME, "")
 ANGLE_QUERY = {"gcs": "POS?", "grbl": "?", "zaber": "get pos"}[SCHEME]
-TRAVEL = ["--min", "-900000", "--max", "900000"]  # of a Zaber stage, whose position counts on from trial to trial
+HOME = ["--home"] if SCHEME == "grbl" else []  # the others keep their reference
+TRAVEL = ["--min-angle", "-900000", "--max-angle", "900000"]  # of a Zaber stage, whose position counts on from trial to trial
 LANES = 3  # trials at the same time, each with a table of its own: mostly they wait
 
 
@@ -39,7 +40,8 @@ def simulator(folder, *options):
 
 
 def tool(path, environment):
-    return subprocess.Popen(["vam-stage", "spin", "--device", f"{SCHEME}:{path}{OPTIONS}", "--speed", "60", "--turns", "90"],
+    return subprocess.Popen(["vam-stage", "spin", "--device", f"{SCHEME}:{path}{OPTIONS}", "--speed", "60", "--turns", "90",
+                             *HOME],
                             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment)
 
 
@@ -57,7 +59,7 @@ def running_tool(path, environment, log):
 
 
 def home(path, environment):
-    """A Zaber stage that was just switched on turns only after this."""
+    """A stage that was just switched on turns only after this."""
     command = ["vam-stage", "home", "--device", f"{SCHEME}:{path}{OPTIONS}"]
     for _ in range(5):  # the simulator may still start, on a busy machine
         if subprocess.run(command, stderr=subprocess.DEVNULL, env=environment).returncode != 75:

@@ -1,6 +1,6 @@
 #!/bin/sh
 # The crontab line and the systemd units of vam-calibrate-all(1), as cron and systemd run them: installed, in an empty
-# environment with their own PATH; the devices alone are simulated ones. And the progress that a terminal sees.
+# environment with their own PATH; the devices alone are simulated ones. And the progress on a terminal.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 page=$VAM_SOURCE/man/vam-calibrate-all.1
@@ -13,7 +13,7 @@ cat >printer.toml <<TOML
 device = "sim:?acceleration_deg_s2=1000&log=$PWD/truth"
 speed_deg_s = 85
 [camera]
-device = "sim:?angles=$PWD/truth&lit=0.001&columns=128&rows=96&part=cylinder:x=2,diameter=3,height=8"
+device = "sim:?follow=$PWD/truth&lit=0.001&columns=128&rows=96&part=cylinder:x=2,diameter=3,height=8"
 pixel_mm = 0.26
 exposure_us = 5000
 [calibration]
@@ -36,7 +36,7 @@ for try in 1 2 3; do  # a busy machine may lose frames
   [ $status -eq 0 ] && break
   sed 's/^/# attempt: /' out
 done
-is 'cron runs it, silently' "$status $(cat out)" '0 '
+is 'cron runs it, without messages' "$status $(cat out)" '0 '
 is 'with a record' "$(json cal/current-axis.json status)" pass
 is 'and a log' "$(tail -n 1 vam-calibrate.jsonl | grep -c '"event":"end","scan":"axis"')" 1
 
@@ -57,16 +57,16 @@ done
 is 'so does systemd' "$status $(cat out) $(json cal/current-axis.json status)" '0  pass'
 if command -v systemd-analyze >.log/out; then
   sed -i "s|/usr/local|$PWD/prefix|" vam-calibrate.service
-  is 'which takes the units' "$(systemd-analyze verify --man=no ./vam-calibrate.service ./vam-calibrate.timer 2>&1 | grep vam-calibrate)" ''
+  is 'which accepts the units' "$(systemd-analyze verify --man=no ./vam-calibrate.service ./vam-calibrate.timer 2>&1 | grep vam-calibrate)" ''
   ok 'on working days' systemd-analyze calendar "$(sed -n 's/^OnCalendar=//p' vam-calibrate.timer)"
 else
   echo '# no systemd-analyze: the units are not verified'
 fi
 
-# A terminal sees which scan runs, and for how long; nothing of it stays.
+# A terminal shows the scan and its duration; the line is removed at the end.
 again
 script -qec "$(cat crontab)" seen </dev/null >.log/out 2>&1
 tr '\r' '\n' <seen >lines
-is 'a terminal sees the scan and its seconds' "$(grep -c 'vam-calibrate-all: axis, scan 1 of 1, [1-9] s' lines | awk '{ print ($1 > 1) }')" 1
-is 'until it is over' "$(grep -v '^Script' lines | grep . | tail -n 1 | tr -d '\033')" '[K'
+is 'a terminal shows the scan and its duration' "$(grep -c 'vam-calibrate-all: axis, scan 1 of 1, [1-9] s' lines | awk '{ print ($1 > 1) }')" 1
+is 'until its end' "$(grep -v '^Script' lines | grep . | tail -n 1 | tr -d '\033')" '[K'
 done_testing

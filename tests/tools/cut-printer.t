@@ -11,7 +11,7 @@ for part in 1 3 10 50 90 99; do
   fails 65 'cut.toml: is cut off after' vam-slice --print-printer --printer cut.toml -o x.toml
 done
 grep -v '^# end of the settings' whole.toml >cut.toml
-fails 65 'is cut off after .* write it again with --print-printer' vam-slice --print-printer --printer cut.toml -o x.toml
+fails 65 'is cut off after .* write it again' vam-slice --print-printer --printer cut.toml -o x.toml
 
 printf '[projector]\nfps = 8\n[vial]\nradius_mm = 1' >hand.toml
 vam-slice --print-printer --printer hand.toml -o x.toml 2>err

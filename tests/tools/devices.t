@@ -93,11 +93,11 @@ tries=0; until look 1 third.exr 2>err || [ $tries -ge 10 ]; do tries=$((tries + 
 ok 'aravis: free again after kill -9' test -s third.exr
 kill -9 $camera; wait $camera 2>/dev/null
 
-# As cron runs a tool: nothing to read from, no environment to speak of, silence unless there is something to say.
+# As cron runs a tool: no input, an almost empty environment, and no output unless there is an error.
 cron() { env -i PATH="$PATH" VAM_LOCK_DIR="$VAM_LOCK_DIR" "$@" </dev/null >out 2>>all.log; }
 cron vam-stage home --device sim: --log -
 is 'cron: homing' "$? $(cat out)" '0 '
-cron vam-stage move --device sim: --home --to 3 --log -
+cron vam-stage move --device sim: --home --angle 3 --log -
 is 'cron: a move' "$? $(cat out)" '0 '
 cron vam-project --pattern grey -o null: --hold 0.1 --light sim: --log -
 is 'cron: a test pattern' "$? $(cat out)" '0 '

@@ -33,7 +33,7 @@ out.nrrd|vam-view part.vdb --export out.nrrd
 out.exr|vam-project small.exr --printer small.toml -o out.exr
 out.mkv|vam-project small.exr --printer small.toml -o out.mkv
 out.toml|vam-project --print-printer -o out.toml
-out.vdb out.json|vam-ost views --angle-step 10 --pixel 0.26 --no-refraction -o out.vdb --report out.json
+out.vdb out.json|vam-ost views --view-step 10 --pixel 0.26 --no-refraction -o out.vdb --report out.json
 out.exr out.json|vam-curethrough correct ladder.vdb --max-irradiance 110 -o out.exr --report out.json
 out.vdb|vam-curethrough model ladder.vdb --max-irradiance 110 -o out.vdb
 out.exr|vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o out.exr

@@ -27,9 +27,9 @@ left = [pid for pid in bench if os.path.exists(f'/proc/{pid}/exe') and os.access
 print(status, len(bench) >= 4, len(left), time.time() - began < 10)
 PY
 is 'Control-C: status, bench running, left behind, at once' "$(python3 interrupt.py "$lab")" '130 True 0 True'
-is 'and no trace of the bench' "$(ls -A stopped | grep -Ec 'bench|^stage$')" 0
+is 'and the bench is removed' "$(ls -A stopped | grep -Ec 'bench|^stage$')" 0
 
-# A machine too busy to show every image ends a print, as it must; that is repeated.
+# A machine too busy to show every image ends a print by design; it is then repeated.
 began=$(date +%s)
 for attempt in 1 2 3; do
   rm -rf lab
@@ -48,10 +48,10 @@ page=$VAM_SOURCE/man/vam-tutorial.7
 is 'and every command of the page was shown' "$(grep -c '^\$ ' err)" \
   "$(awk '/^\.Ed/{code = 0} code{++lines} /^\.Bd/{code = 1} END{print lines}' "$page")"
 is 'the print is done' "$(json lab/print/summary.json outcome)" 'done'
-holds 'in both turns' "$(json lab/print/summary.json reached.turns) > 1.95"  # the angle of the last image
-is 'by the records' "$(json lab/print/summary.json calibration.edges.status)" pass
+holds 'with both turns' "$(json lab/print/summary.json reached.turns) > 1.95"  # the angle of the last image
+is 'with the records' "$(json lab/print/summary.json calibration.edges.status)" pass
 holds 'the axis in force is that of the bench' "($(json lab/records/current-edges.json values.axis_column.value) - 106.7) ^ 2 < 0.1 ^ 2"
 is 'its page' "$(grep -c '<title>ended: done - print</title>' lab/print/page.html)" 1
-is 'the print was seen' "$(ls lab | grep -c 'scatter.png\|dose.png')" 2
-is 'no trace of the bench' "$(ls -A lab | grep -Ec 'bench|^stage$')" 0
+is 'the print was captured' "$(ls lab | grep -c 'scatter.png\|dose.png')" 2
+is 'the bench is removed' "$(ls -A lab | grep -Ec 'bench|^stage$')" 0
 done_testing

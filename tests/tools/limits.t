@@ -28,8 +28,8 @@ python3 "$VAM_SOURCE/tests/tools/exr.py" make plain.exr space=virtual width=29 h
 for stack in sealed plain; do
   ok "$stack: as it is" vam-view $stack.exr -o $stack.png
   { cat $stack.exr; echo more; } >long.exr
-  fails 65 'long.exr: goes on after its last image, at byte [0-9]+, with what is no stack' vam-view long.exr -o x.png
-  fails 65 'stdin: goes on after its last image' sh -c 'vam-view - -o x.png <long.exr'
+  fails 65 'long.exr: trailing data after the last image, from byte [0-9]+ on, is not a stack' vam-view long.exr -o x.png
+  fails 65 'stdin: trailing data after the last image' sh -c 'vam-view - -o x.png <long.exr'
   cat $stack.exr $stack.exr >two.exr
   ok "$stack: a further stack is none of them" vam-view two.exr -o two.png
 done

@@ -41,8 +41,8 @@ quiet "frames of light with poses" vam-project sink.exr $sixty -o frames/ --repo
 is "one turn, whatever stage.turns is" "$(vam-project sink.exr $sixty --set stage.turns=3 -o three/ --report three.json; json three.json frames)" 60
 fails 64 'shown once' vam-project sink.exr $sixty --turns 2 -o two/
 quiet "a wobble repeats" vam-project wobble.exr $sixty --turns 2 -o two/
-fails 64 'not those of one turn that repeats' vam-project sink.exr --plan --turns 2 -o null:
-fails 64 'not those of one turn that repeats' vam-project sink.exr --turns 2 -o null:
+fails 64 'a live print repeats one turn, which its poses do not allow' vam-project sink.exr --plan --turns 2 -o null:
+fails 64 'a live print repeats one turn, which its poses do not allow' vam-project sink.exr --turns 2 -o null:
 fails 64 'do not return to the first one' vam-dose sink.exr --like part.vdb --exposure-plan --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 -o plan.vdb
 
@@ -79,31 +79,34 @@ record() { printf '{"schema":"vam-calibration/1",'"$times"',"scan":"%s","values"
 record edges 28.6478898 edges.json
 record axis -61.3521102 axis.json
 for scan in edges axis; do
-  quiet "wobble from a record of $scan" vam-optimize --method fbp --angles 60 --wobble $scan.json part.vdb -o $scan.exr
+  quiet "wobble from a record of $scan" vam-optimize --method fbp --angles 60 --wobble-record $scan.json part.vdb -o $scan.exr
 done
-is "is that of the table, to 1e-6 mm" "$($exr attr edges.exr vam:poses | cut -c1-9)" "$($exr attr axis.exr vam:poses | cut -c1-9)"
+is "the poses are those of the table, to 1e-6 mm" "$($exr attr edges.exr vam:poses | cut -c1-9)" "$($exr attr axis.exr vam:poses | cut -c1-9)"
 vam-optimize --method fbp --angles 60 --poses wobble.csv part.vdb -o table.exr
 for scan in edges axis; do
   is "the same light from the record of $scan and the table" "$(vam-dose $scan.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)" \
     "$(vam-dose table.exr --size 5 -o r.vdb --report r.json; json r.json dose_per_turn_max_relative | cut -c1-6)"
 done
+mkdir -p folder && printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{"axis_column":{"value":511.5},"radius":{"value":12.5},"wobble_mm":{"value":0.3,"sigma":0.01}}}' >folder/current-edges.json
+vam-optimize --method fbp --angles 60 --set calibration.folder=folder part.vdb -o o.exr 2>errors
+is "a wobble that is known and left out is a warning" "$? $(grep -c 'warning: the vial wobbles by 0.3 mm .*compensate for it by --wobble-record' errors)" '0 1'
 sed 's/2126/2026/' axis.json >old.json
-vam-optimize --method fbp --angles 60 --wobble old.json part.vdb -o old.exr 2>errors
+vam-optimize --method fbp --angles 60 --wobble-record old.json part.vdb -o old.exr 2>errors
 is "a record past its validity is used with a warning" "$? $(grep -c 'warning: old.json: is .* h old and was valid for' errors)" '0 1'
-vam-optimize --method fbp --angles 60 --wobble axis.json --set 'calibration.vial=vial 9' part.vdb -o other.exr 2>errors
+vam-optimize --method fbp --angles 60 --wobble-record axis.json --set 'calibration.vial=vial 9' part.vdb -o other.exr 2>errors
 is "one of another vial, too" "$? $(grep -c "warning: axis.json: is of vial '', this is 'vial 9'" errors)" '0 1'
 printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{}}' >still.json
-fails 65 'knows no wobble_mm' vam-optimize --wobble still.json part.vdb -o none.exr
-wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble wrong.json part.vdb -o none.exr; }
+fails 65 'lacks wobble_mm' vam-optimize --wobble-record still.json part.vdb -o none.exr
+wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble-record wrong.json part.vdb -o none.exr; }
 head='{"schema":"vam-calibration/1",'"$times"',"scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
 wrong 'changed after it was written' "$head,$values,\"seal\":\"xxh3:00000000000000000000000000000000\"}"
 wrong 'of a scan that failed' "$head,$values,\"status\":\"fail\"}"
 wrong 'a wobble of -0.3 mm' "$head,\"values\":{\"wobble_mm\":{\"value\":-0.3},\"wobble_phase\":{\"value\":20}}}"
-wrong 'knows no wobble_mm' "$head,\"values\":{\"wobble_mm\":{\"value\":\"x\"},\"wobble_phase\":{\"value\":20}}}"
+wrong 'lacks wobble_mm' "$head,\"values\":{\"wobble_mm\":{\"value\":\"x\"},\"wobble_phase\":{\"value\":20}}}"
 for other in '' '[]' '{"schema":5}' "$head" "$head,\"values\":4}" '{"schema":"vam-calibration/1","scan":3,"values":{}}'; do
   wrong 'is not a vam-calibration/1 record' "$other"
 done
-fails 65 'is not a vam-calibration/1 record' vam-optimize --wobble wobble.csv part.vdb -o none.exr
+fails 65 'is not a vam-calibration/1 record' vam-optimize --wobble-record wobble.csv part.vdb -o none.exr
 
 # Wrong tables and combinations
 fails 66 'missing.csv' vam-optimize --poses missing.csv part.vdb -o none.exr
@@ -120,8 +123,8 @@ fails 65 'align the vial' vam-optimize --angles 60 --poses wide.csv part.vdb -o 
 fails 65 'empty.csv' vam-optimize --angles 60 --poses empty.csv part.vdb -o none.exr
 head -n 31 wobble.csv >half.csv
 fails 65 'one a frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
-fails 64 'give one of them' vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
-fails 64 'no vial to move' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
+fails 64 'give only one' vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
+fails 64 'do not apply to a parallel beam' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
 fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb
 fails 64 'do not return' vam-optimize --angles 60 --poses sink.csv --turns 3 --set resin.absorption_per_mm=0.01 \
   --set resin.critical_dose_mj_cm3=100 part.vdb -o none.exr

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The dead-man relay on the lamp [devices §7]: closed for a print and no longer, and no light without it.
+# The dead-man relay on the lamp [devices §7]: closed during a print only, and no light without it.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 shim=$(vam-sim-stage --shim)
@@ -7,24 +7,24 @@ hold=0.4
 grey() { vam-project --pattern grey -o null: --hold $hold --light "sim:?log=$PWD/light" "$@"; }
 
 quiet 'a pattern behind a simulated relay' grey --set 'projector.relay=sim:?log=relay' --log events
-is 'it was closed for it, and opened' "$(grep -oE '"event":"(closed|open)"' relay | tr -d '\n')" '"event":"closed""event":"open"'
-ok 'its heartbeat was heard' test "$(grep -c '"text":"H"' relay)" -ge 5
+is 'closed for the pattern, then opened' "$(grep -oE '"event":"(closed|open)"' relay | tr -d '\n')" '"event":"closed""event":"open"'
+ok 'heartbeats are received' test "$(grep -c '"text":"H"' relay)" -ge 5
 ok 'log and relay are marked as simulated' grep -q '"event":"relay".*simulated' events
 
-# A printer file names it; without an answer nothing shines.
+# With a relay in the printer file there is no light without its reply.
 printf '[projector]\nrelay = "relay:%s/line"\n' "$PWD" >printer.toml
 rm light; hold=5
 fails 69 'line' grey
 fails 64 'unknown scheme|use one of' grey --set projector.relay=usb:1
 fails 64 'unknown option' grey --set 'projector.relay=sim:?colour=1'
 : >light
-for fault in 'silent@A' 'error@A'; do fails 75 'does not close; there is no light without it' grey --set "projector.relay=sim:?fault=$fault"; done
-stage_up --protocol gcs; fails 75 'relay does not answer within 3 s' env LD_PRELOAD=$shim vam-project --pattern grey -o null: --set "projector.relay=relay:$PWD/stage"; stage_down
-is 'no light in all this' "$(grep -c '"bits":4' light 2>/dev/null)" 0
+for fault in 'silent@A' 'error@A'; do fails 75 'does not close; the light stays off without it' grey --set "projector.relay=sim:?fault=$fault"; done
+stage_up --protocol gcs; fails 75 'no reply from the relay within 3 s' env LD_PRELOAD=$shim vam-project --pattern grey -o null: --set "projector.relay=relay:$PWD/stage"; stage_down
+is 'no light in any of these' "$(grep -c '"bits":4' light 2>/dev/null)" 0
 fails 76 'relay' grey --set 'projector.relay=sim:?fault=garbage@H:3'
-ok 'dark when it answers nonsense' sh -c 'tail -n 2 light | grep -Eq "\"bits\":0|asleep"'
+ok 'dark after a malformed reply' sh -c 'tail -n 2 light | grep -Eq "\"bits\":0|asleep"'
 
 python3 "$VAM_SOURCE/tests/device/relay_trials.py" "${VAM_TRIALS:-10}" >table; status=$?
 cat table
-is 'it opened in time, by order or by itself' $status 0
+is 'it opened in time, on command or by itself' $status 0
 done_testing

@@ -134,6 +134,34 @@ small_printer() {  # a projector of 64 x 8 pixels of 0.26 mm; 36 frames a turn a
   printf '%s\n' '[projector]' 'columns = 64' 'rows = 8' 'pixel_mm = 0.26' 'axis_column = 31.5' 'axis_row = 5' 'fps = 1'
 }
 
+camera_bench() {  # camera_bench STAGE SPEED: printer.toml of a stage, a projector and a GigE Vision camera to be calibrated
+  cat >printer.toml <<TOML
+[projector]
+columns = 208
+rows = 96
+pixel_mm = 0.1
+axis_column = 103.5
+axis_row = 47
+telecentric = true
+[vial]
+radius_mm = 9
+[bath]
+index = 1.53
+window_mm = 12
+[stage]
+device = "$1"
+speed_deg_s = $2
+[camera]
+device = "aravis:127.0.0.1"
+pixel_mm = 0.15
+exposure_us = 2500
+fps = 50
+[calibration]
+folder = "cal"
+instrument = "simulated"
+valid_hours = 1
+TOML
+}
 done_testing() {
   echo "1..$number"
   [ "$number" -gt 0 ] && [ "$failures" -eq 0 ]

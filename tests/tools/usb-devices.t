@@ -1,6 +1,6 @@
 #!/bin/sh
 # USB devices through the real libusb, on simulated buses: the Tic stage, and the DLPC350 and DLPC900 light engines,
-# with what may be wrong with them in turn. All run beside each other: most of it is waiting.
+# with each possible fault in turn. All run in parallel, as most of the time is waiting.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes
 touch second
@@ -19,7 +19,7 @@ asleep() { tail -n 1 "$1/truth" | grep -c '"event":"asleep"'; }
 grey='vam-project --pattern grey -o null: --hold'
 
 begin found tic: vam-stage identify --device 'tic:?steps_per_deg=100'
-begin moved tic: vam-stage move --device 'tic:00312345?steps_per_deg=100' --home --to 20 --speed 90
+begin moved tic: vam-stage move --device 'tic:00312345?steps_per_deg=100' --home --angle 20 --speed 90
 begin foreign tic: vam-stage identify --device 'tic:999?steps_per_deg=100'
 begin missing dlpc350: $grey 0.05 --light dlpc900:
 for engine in dlpc350 dlpc900; do
@@ -42,14 +42,14 @@ await grep -q '"bits":4' killed/truth
 holder=$(cat "$VAM_LOCK_DIR"/*)
 fails 75 "in use by process $holder;" on dlpc900: second $grey 0.05 --light dlpc900:
 kill -9 "$holder"; wait $first 2>/dev/null
-is 'a killed user leaves it dark' "$(bits killed)" '"bits":0 "bits":4 "bits":0 '
-is 'and asleep' "$(asleep killed)" 1
+is 'dark after its user was killed' "$(bits killed)" '"bits":0 "bits":4 "bits":0 '
+is 'and in standby' "$(asleep killed)" 1
 
 wait
 ended found 0 ''
 is 'a Tic is found' "$(json found/out model) $(json found/out serial)" 'Tic T825 00312345'
 ended moved 0 ''
-holds 'to where it was sent' "$(tail -n 1 moved/truth | json /dev/stdin angle_deg) == 20"
+holds 'to the requested angle' "$(tail -n 1 moved/truth | json /dev/stdin angle_deg) == 20"
 ended foreign 69 'no such device'
 ended missing 69 'no such device'
 for engine in dlpc350 dlpc900; do
@@ -57,7 +57,7 @@ for engine in dlpc350 dlpc900; do
   is "$engine: off, on, off" "$(bits $engine)" '"bits":0 "bits":4 "bits":0 '
   is "$engine: with linear grey and the requested current" \
     "$(grep '"bits":4' $engine/truth | grep '"linear":true' | grep -c '"current_percent":\[33.3,33.3,33.3\]')" 1
-  is "$engine: and asleep at the end" "$(asleep $engine)" 1
+  is "$engine: and in standby at the end" "$(asleep $engine)" 1
 done
 ended asked-too-much 64 'current of 60 % is above the limit of 50 %'
 ended found-too-bright 76 'LED current is 47.1 %, above the limit of 40 %'
@@ -72,6 +72,6 @@ ended late 75 'sent no report .LIBUSB_ERROR_TIMEOUT'
 for name in garbage truncated wrong-sender; do ended $name 76 'answered with another command'; done
 for name in silent late garbage truncated wrong-sender; do
   is "$name: dark again" "$(bits $name)" '"bits":0 "bits":4 "bits":0 '
-  is "$name: and asleep" "$(asleep $name)" 1
+  is "$name: and in standby" "$(asleep $name)" 1
 done
 done_testing

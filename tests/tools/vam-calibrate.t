@@ -20,25 +20,25 @@ fails 64 'FRAMES: missing' vam-calibrate edges
 fails 66 'missing' vam-calibrate edges missing
 fails 64 'REVERSE: missing' vam-calibrate lag turn
 fails 64 '--flips: missing' vam-calibrate latency ramp
-fails 64 'needs --pixel' vam-calibrate beam beam
+fails 64 'requires --pixel' vam-calibrate beam beam
 fails 64 'omit --first and --spacing' vam-calibrate beam beam --side --spacing 1
 fails 65 'ramp/00000.png: has 12 x 8 pixels, the frames have 160 x 32' vam-calibrate beam beam --side --dark ramp/00000.png
-fails 65 'at least 32 are needed' vam-calibrate beam ramp --side
-fails 65 'looks at 45 degrees to the beam' vam-calibrate beam beam --side --set camera.azimuth_deg=45
+fails 65 'at least 32 are required' vam-calibrate beam ramp --side
+fails 65 'the camera is at 45 degrees to the beam' vam-calibrate beam beam --side --set camera.azimuth_deg=45
 fails 64 'no calibration.folder' vam-calibrate check
 fails 65 'cannot be split into 16 levels' vam-calibrate response ramp --steps 16
 for azimuth in 0 -45 100 180; do
-  fails 65 "looks at $azimuth degrees to the beam" vam-calibrate edges sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
+  fails 65 "the camera is at $azimuth degrees to the beam" vam-calibrate edges sweep --pitch 4 --width 2 --set camera.azimuth_deg=$azimuth
 done
-fails 65 'no height shows light' vam-calibrate edges flat --pitch 4 --width 2
-fails 65 '8 rows; at least 16' vam-calibrate beam ramp --pixel 0.0035 --spacing 1.27
+fails 65 'at no height is there light' vam-calibrate edges flat --pitch 4 --width 2
+fails 65 '8 rows; at least 16' vam-calibrate beam ramp --pixel 0.0035 --first 0 --spacing 1.27
 
 # Over-exposed frames are refused by every scan: their curve would be smooth and wrong.
 $scans ramp bright full=80000
-fails 65 'response: bright/00060.png: 100 % of the pixels are over-exposed, at most 0.01 % may be; capture with a shorter' \
+fails 65 'response: bright/00060.png: 100 % of the pixels are over-exposed .limit 0.01 %.; capture with a shorter' \
   vam-calibrate response bright
 for scan in edges flat axis; do
-  fails 65 "$scan: bright/.* over-exposed" vam-calibrate $scan bright $([ $scan = axis ] && echo --angle-step 10)
+  fails 65 "$scan: bright/.* over-exposed" vam-calibrate $scan bright $([ $scan = axis ] && echo --view-step 10)
 done
 
 # Without a folder the record is printed.
@@ -57,7 +57,7 @@ vial = "A7"
 valid_hours = 12
 TOML
 vam-calibrate edges sweep --pitch 4 --width 2 2>errors
-is 'edges of one stage angle, with a warning' "$? $(grep -c 'of one stage angle, where .* stands for the rotation axis' errors)" '0 1'
+is 'edges of one stage angle, with a warning' "$? $(grep -c 'swept at one stage angle: .* recorded as the rotation axis' errors)" '0 1'
 near 'edges: the middle' "$(value cal/current-edges.json axis_column)" 249.3 0.1
 near 'edges: the radius' "$(value cal/current-edges.json radius)" 12.4 0.0062
 is 'edges: the fields of a value' "$(json cal/current-edges.json values.axis_column.unit) $(json cal/current-edges.json values.radius.unit)" 'px mm'
@@ -67,40 +67,40 @@ is 'response: the exposure is recorded' "$(json cal/current-response.json settin
 near 'response: half grey' "$(awk -F, '$1 == 128 { print $2 }' cal/cal-lab-1-response-*.csv)" 0.229 0.003
 quiet 'flat' vam-calibrate flat flat
 near 'flat: unevenness' "$(json cal/current-flat.json flat.unevenness)" 0.09 0.02
-quiet 'axis' vam-calibrate axis turn --angle-step 10
+quiet 'axis' vam-calibrate axis turn --view-step 10
 near 'axis: the column' "$(value cal/current-axis.json axis_column)" 61.25 0.02
 near 'axis: the wobble' "$(value cal/current-axis.json wobble)" 2 0.02
 near 'axis: its phase' "$(value cal/current-axis.json wobble_phase)" 40 1
-vam-capture --device 'sim:?pace=virtual&speed_deg_s=90&lit_s=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
-  --speed 90 --every 10 -o turn.exr && vam-calibrate axis turn.exr --heights 3 --set calibration.folder= >simulated.json
+vam-capture --device 'sim:?pace=virtual&speed=90&lit=0.01&part=cylinder:x=2,diameter=1.5,height=6' --binning 4 \
+  --speed 90 --view-step 10 -o turn.exr && vam-calibrate axis turn.exr --heights 3 --set calibration.folder= >simulated.json
 is 'a record of simulated frames is marked, one of others is not' \
   "$(json simulated.json simulated) $(grep -c simulated cal/current-axis.json)" 'true 0'
 is 'records are read-only' "$(find cal -name 'cal-*.json' -perm 0444 | wc -l)" 4
 
-# The tools take them up.
+# The tools use the records.
 vam-project --print-printer -o in-force.toml
-is 'axis_column is the measured one' "$(sed -n 's/^axis_column = \([0-9.]*\).*/\1/p' in-force.toml | head -n 1)" "$(value cal/current-edges.json axis_column)"
-ok 'so is the response' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-force.toml
+is 'axis_column is that of the record' "$(sed -n 's/^axis_column = \([0-9.]*\).*/\1/p' in-force.toml | head -n 1)" "$(value cal/current-edges.json axis_column)"
+ok 'the response, too' grep -q '^response = "cal/cal-lab-1-response-.*csv"' in-force.toml
 ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.toml
-ok 'which opens' exrheader cal/cal-lab-1-flat-*.exr
+ok 'which can be read' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: warning: vam-capture check is now vam-calibrate check true'
 cp -rL cal copied
 ok 'a folder copied with its links followed' vam-calibrate check --set calibration.folder=copied
 ok 'check' vam-calibrate check --need 'edges, response'
 vam-calibrate check >state
-is 'what is in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
+is 'the records in force' "$(json state edges.usable) $(json state edges.sha256)" "true $(sha256sum <cal/current-edges.json | cut -d' ' -f1)"
 
-# Stale, foreign and missing records.
+# Expired, foreign and missing records.
 fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --need latency
 fails 64 'expected one of edges' vam-calibrate check --need edge
 fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
 fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
-ok 'without them the print continues' vam-project --print-printer --set calibration.folder= -o plain.toml
-vam-calibrate axis turn --angle-step 10 --set calibration.valid_hours=1e-7
+ok 'without records a tool continues' vam-project --print-printer --set calibration.folder= -o plain.toml
+vam-calibrate axis turn --view-step 10 --set calibration.valid_hours=1e-7
 fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-printer
-quiet 'a stale record does not stop a new one' vam-calibrate axis turn --angle-step 10
-ok 'which recovers' vam-project --print-printer -o healed.toml
+quiet 'an expired record does not prevent a new one' vam-calibrate axis turn --view-step 10
+ok 'which is in force' vam-project --print-printer -o healed.toml
 
 # A vial that moved is reported and not put in force, except with --accept.
 before=$(readlink cal/current-edges.json)
@@ -108,11 +108,11 @@ vam-calibrate edges moved --pitch 4 --width 2 2>errors
 is 'a vial that moved by 2 px is status 1' $? 1
 ok 'which reports the distance' grep -q 'moved by 2\.* px\|moved by [12]\.[0-9]* px' errors
 is 'the record in force stays' "$(readlink cal/current-edges.json)" "$before"
-is 'the other is kept, too' "$(kept edges)" 2
+is 'the new one is kept, too' "$(kept edges)" 2
 vam-calibrate edges moved --pitch 4 --width 2 --accept 2>errors
 is 'accepted' "$? $(grep -c 'warning.*moved' errors)" '0 1'
 near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
 echo malformed >cal/current-beam.json
 fails 65 'is not a vam-calibration/1 record' vam-project --print-printer
-fails 73 'cannot make the folder' vam-calibrate axis turn --angle-step 10 --set calibration.folder=printer.toml/cal
+fails 73 'cannot make the folder' vam-calibrate axis turn --view-step 10 --set calibration.folder=printer.toml/cal
 done_testing

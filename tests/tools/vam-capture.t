@@ -1,21 +1,22 @@
 #!/bin/sh
 # vam-capture: series, resumed folders, marks of lost frames, and bad input.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-sim='sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004'
+sim='sim:?pace=virtual&lit=0.1&speed=90&noise=0.004'
 exr="python3 $VAM_SOURCE/tests/tools/exr.py"
 take="vam-capture --device $sim --binning 12 --fps 10"
 
 fails 64 'number of images' $take --log why -o views.exr
-fails 64 'a stream cannot go to a folder' $take --live -o views/
-fails 64 'have no angles' $take --every 10 --log why -o views/
-fails 64 'needs --every' $take --frames 3 --turns 2 -o views.exr
-fails 64 'conflicts with --turns' $take --every 10 --speed 90 --turns 2 --frames 3 -o views.exr
+fails 64 'a folder cannot hold a stream' $take --live -o views/
+fails 64 'have no angles' $take --view-step 10 --log why -o views/
+fails 64 'turns: requires --view-step' $take --frames 3 --turns 2 -o views.exr
+fails 64 'conflicts with --turns' $take --view-step 10 --speed 90 --turns 2 --frames 3 -o views.exr
 fails 64 'conflicts with --follow' $take --frames 3 --follow - --speed 90 -o views.exr
 fails 64 'unknown scheme' vam-capture --device usb:1 --frames 1 -o views.exr
-$take --frames 2 -o former.exr
-vam-capture --device 'sim:?pace=virtual&lit=0.1&speed=90&noise=0.004' --binning 12 --fps 10 --frames 2 -o present.exr
+$take --frames 2 -o present.exr
+vam-capture --device 'sim:?pace=virtual&lit_s=0.1&speed_deg_s=90&noise=0.004' --binning 12 --fps 10 --frames 2 -o former.exr 2>said
 is "sim: has the options of vam-sim-camera, and former names" "$($exr sum present.exr)" "$($exr sum former.exr)"
-rm former.exr present.exr
+ok 'with a warning' grep -q 'warning: .*: option lit_s is now lit$' said
+rm former.exr present.exr said
 fails 64 'unknown option colums' vam-capture --device 'sim:?colums=3' --frames 1 --log why -o views.exr
 fails 64 'out of range' vam-capture --exposure 0 --frames 1 -o views.exr
 fails 66 'missing' vam-capture --device replay:missing --frames 1 -o views.exr
@@ -23,12 +24,12 @@ fails 66 'cannot open' $take --frames 1 --follow missing -o views.exr
 fails 69 'cannot open' vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr
 fails 64 'neither binning' vam-capture --device v4l2:/dev/null --binning 2 --frames 1 -o views.exr
 vam-capture --device v4l2:/dev/no-video --frames 1 -o views.exr --log why 2>said
-is 'what ended it is logged' "$(json why event) $(json why status)" 'error 69'
+is 'the error is logged' "$(json why event) $(json why status)" 'error 69'
 rm why
 fails 73 'cannot be written' $take --frames 1 --log missing/log -o views.exr
 
-# The camera is the printer file's; a simulated one never stands in for it, and what it takes is marked.
-fails 64 'camera: none is named; give --device or camera.device .*; sim: is a simulated one' vam-capture --frames 1 --log why -o views.exr
+# The camera is that of the printer file; a simulated one is used only if it is named, and its frames are marked.
+fails 64 'camera: no device is set; give --device, or camera.device in the printer file, .*; sim: is a simulated one' vam-capture --frames 1 --log why -o views.exr
 printf '[camera]\ndevice = "v4l2:/dev/no-video"\n' >camera.toml
 fails 69 'no-video' vam-capture --printer camera.toml --frames 1 -o views.exr
 fails 64 "camera.device: 'usb:1': unknown device scheme; use one of aravis:, v4l2:, replay:, sim:" vam-capture --set camera.device=usb:1 --frames 1 -o views.exr
@@ -38,26 +39,26 @@ $take --frames 1 --compression none -o marked.exr
 is 'and in a stack' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr marked.exr vam:history | grep -c 'frames of a simulated camera')" 1
 
 for name in x.png x.vdb x.mkv; do
-  fails 64 "'$name': frames go to .exr, a folder .* or -, not to .${name#x.}" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
+  fails 64 "'$name': frames are written to .exr, a folder .* or -, not to .${name#x.}" vam-capture --device 'sim:?pace=virtual' --frames 2 -o $name
 done
 
 # A stack, and the same frames out of it again.
 quiet 'a stack of frames' $take --frames 12 -o views.exr
 quiet 'from a recording' vam-capture --device replay:views.exr --frames 12 -o again.exr --compression none
-quiet 'and once more' vam-capture --device replay:again.exr --frames 12 -o twice.exr --compression none
+quiet 'and again' vam-capture --device replay:again.exr --frames 12 -o twice.exr --compression none
 quiet 'a stack on a pipe' sh -c 'vam-capture --device replay:views.exr --frames 12 | cat >piped.exr'
 python3 "$VAM_SOURCE/tests/tools/exr.py" sum again.exr >sum1
 python3 "$VAM_SOURCE/tests/tools/exr.py" sum piped.exr >sum2
 same 'has the same pixels' sum1 sum2
 is 'of this size' "$(cut -d' ' -f1-3 sum1)" '12 60 45'
 
-# A stage that stands at a known angle.
-fails 64 'a fixed stage angle conflicts with --follow, --speed and --every' $take --angle 90 --speed 3 --frames 1 -o no.exr
-$take --angle 270 --frames 1 --compression none -o stands.exr
-is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr stands.exr vam:angle_deg)" 270
+# A stage at a fixed, known angle.
+fails 64 'a fixed stage angle conflicts with --follow, --speed and --view-step' $take --angle 90 --speed 3 --frames 1 -o no.exr
+$take --angle 270 --frames 1 --compression none -o fixed.exr
+is 'its angle is recorded' "$(python3 "$VAM_SOURCE/tests/tools/exr.py" attr fixed.exr vam:angle_deg)" 270
 
-# Lost and incomplete frames: said, counted, marked.
-lossy='sim:?pace=virtual&lose=3,4&cut=6'
+# Lost and incomplete frames are reported, counted and marked.
+lossy='sim:?pace=virtual&drop=3,4&incomplete=6'
 vam-capture --device "$lossy" --binning 12 --frames 10 -o lossy.exr --report lossy.json --log lossy.log --compression none 2>said
 is 'a capture with losses has status 0' $? 0
 ok 'lost frames are reported' grep -q '2 frames dropped and 1 incomplete' said
@@ -76,11 +77,11 @@ is 'every image has its number, and the incomplete one its mark' "$(tail -n 1 ma
 fails 75 '2 frames dropped and 1 incomplete' vam-capture --device "$lossy" --binning 12 --frames 10 --max-lost 2 -o lost.exr
 
 fails 75 'gap.exr: 1 of 20 frames are missing .*; a folder .* keeps the captured frames' \
-  vam-capture --device 'sim:?pace=virtual&lose=10' --binning 12 --fps 10 --speed 90 --every 9 --turns 0.5 -o gap.exr
+  vam-capture --device 'sim:?pace=virtual&drop=10' --binning 12 --fps 10 --speed 90 --view-step 9 --turns 0.5 -o gap.exr
 
-# A folder holds what came; the same command again takes what is missing, and only that.
+# A folder keeps the captured frames; repeating the command captures only the missing ones.
 vam-capture --device "$lossy" --binning 12 --frames 10 -o folder/ 2>said
-is 'a folder with holes is an error' "$? $(grep -c '3 of 10 frames are missing' said)" '75 1'
+is 'missing frames are an error' "$? $(grep -c '3 of 10 frames are missing' said)" '75 1'
 is 'its dropped frames are in the manifest' "$(grep -c '"dropped":\[3,4\]' folder/manifest.jsonl)" 1
 is 'the incomplete one is marked' "$(grep '"complete":false' folder/manifest.jsonl | grep -o '"number":[0-9]*')" '"number":6'
 vam-capture --device "replay:views.exr" --frames 10 -o folder/ 2>said
@@ -90,13 +91,13 @@ cp -r whole half; rm half/000003.png half/00001*.png
 sed -e '5d' -e '12,13d' whole/manifest.jsonl >half/manifest.jsonl
 printf '{"frame":10,"file":"0000' >>half/manifest.jsonl
 quiet 'resumes' vam-capture --device replay:views.exr --frames 12 -o half/
-is 'and took only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -l <whole/manifest.jsonl)))" 0
+is 'and captures only the missing frames' "$(($(wc -l <half/manifest.jsonl) - $(wc -l <whole/manifest.jsonl)))" 0
 sort half/manifest.jsonl >half.lines; sort whole/manifest.jsonl >whole.lines
 same 'the manifests agree' half.lines whole.lines
 for file in whole/*.png; do cmp -s "$file" "half/$(basename "$file")" || echo "$file"; done >different
 is 'the images are identical' "$(cat different)" ''
 touch -d '2001-01-01' half/*.png
-quiet 'a complete folder is left alone' vam-capture --device replay:views.exr --frames 12 -o half/
+quiet 'a complete folder is not changed' vam-capture --device replay:views.exr --frames 12 -o half/
 is 'no image was rewritten' "$(find half -name '*.png' -newermt 2002-01-01)" ''
 mkdir other; touch other/file
 fails 73 'contains files of another kind' vam-capture --device replay:views.exr --frames 12 -o other/
@@ -106,40 +107,40 @@ shrinking() { vam-capture --device "sim:?pace=virtual$1" --binning 12 --frames 6
 shrinking '&shrink=4' 2>said
 is 'another size' "$? $(grep -c ': sends images of 60 x 22 pixels instead of 60 x 45;' said) $(wc -l <said)" '76 1 1'
 is 'four frames are kept' "$(grep -c '"complete":true' shrunk/manifest.jsonl) $(ls shrunk | grep -c png)" '4 4'
-quiet 'the rest is taken' shrinking ''
+quiet 'the remaining frames are captured' shrinking ''
 is 'all six' "$(grep -c '"complete":true' shrunk/manifest.jsonl)" 6
 vam-capture --device 'sim:?pace=virtual' --binning 20 --frames 4 -o coarse/
 cp -r whole differs; cp coarse/000003.png differs/
 fails 65 'differs: frame 3 has 36 x 27 pixels instead of 60 x 45' vam-capture --device replay:differs --frames 12 -o no.exr
 
-# Killed at any moment: what the manifest lists is there, and the rest can be taken.
+# Killed at any moment: every listed image exists, and the remaining frames can be captured.
 vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/ & victim=$!
 tries=0; until [ -s killed/manifest.jsonl ] && [ "$(wc -l <killed/manifest.jsonl)" -gt 4 ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.01; done
 kill -KILL $victim; wait $victim 2>/dev/null
 for file in $(grep -o '[0-9]*\.png' killed/manifest.jsonl); do cmp -s "killed/$file" "whole/$file" || echo "$file"; done >different
 is 'after kill -9 every listed image is complete' "$(cat different)" ''
-quiet 'and the rest is taken' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
+quiet 'and the remaining frames are captured' vam-capture --device 'replay:views.exr?pace=real' --frames 12 -o killed/
 for file in whole/*.png; do cmp -s "$file" "killed/$(basename "$file")" || echo "$file"; done >different
 is 'with the same result' "$(cat different)" ''
 
 # Angles: one frame nearest to every multiple; a live stream into vam-ost.
-quiet 'by angle' $take --speed 90 --every 9 --turns 1.1 -o turn/
-is 'as many as fit the turns' "$(grep -c '"frame"' turn/manifest.jsonl)" 44
+quiet 'by angle' $take --speed 90 --view-step 9 --turns 1.1 -o turn/
+is 'the number of multiples in the turns' "$(grep -c '"frame"' turn/manifest.jsonl)" 44
 python3 - >worst <<'PY'
 import json
 lines = [json.loads(line) for line in open("turn/manifest.jsonl")][1:]
 print(max(abs(line["angle_deg"] - 9 * line["frame"]) for line in lines))
 PY
 holds 'each within half a frame of its angle' "$(cat worst) <= 4.5"
-echo "vam-capture --device '$sim' --binning 12 --fps 10 --speed 90 --every 9 --turns 1.2 --live |
+echo "vam-capture --device '$sim' --binning 12 --fps 10 --speed 90 --view-step 9 --turns 1.2 --live |
   vam-ost --live -o live/ --log live.log" >live.sh
 quiet 'live frames reach vam-ost' sh live.sh
 holds 'which saw a turn' "$(grep -c turns live.log) >= 1"
 sed -i '/"frame":0,/d' turn/manifest.jsonl  # there was no print yet
 quiet 'a capture folder is read by vam-ost with its angles' vam-ost turn -o seen.vdb
 
-vam-capture --device 'sim:?speed_deg_s=90' --binning 12 --frames 500 -o stopped.exr --log begun 2>said & tool=$!
+vam-capture --device 'sim:?speed=90' --binning 12 --frames 500 -o stopped.exr --log begun 2>said & tool=$!
 tries=0; until [ -s begun ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.02; done
 kill -TERM $tool; wait $tool 2>/dev/null
-is 'a signal ends it, and leaves nothing' "$? $(ls | grep -c stopped)" '143 0'
+is 'a signal ends the capture, which leaves no file' "$? $(ls | grep -c stopped)" '143 0'
 done_testing

@@ -14,18 +14,18 @@ PY
 box 6 6 3 >a.off
 vam-slice a.off --voxel 0.3 -o part.vdb
 vam-sinogram part.vdb -o sino.exr
-ok 'part and sinogram are whole' vam-check part.vdb sino.exr
+ok 'part and sinogram are intact' vam-check part.vdb sino.exr
 cp .log/out chain
-is 'and sealed' "$(grep -c ', sealed [0-9a-f]\{16\}$' chain)" 2
+is 'part and sinogram are sealed' "$(grep -c ', sealed [0-9a-f]\{16\}$' chain)" 2
 part=$(sed -n "s/^part.vdb: grid 'target', sealed //p" chain)
 is 'the sinogram names its part' "$(grep "^  $part  vam-slice .*  (part.vdb)\$" chain | sort -u | wc -l)" 1
-is 'and itself' "$(grep -c '^  [0-9a-f]\{16\}  vam-sinogram .*  (sino.exr)$' chain)" 1
-is 'another part has another seal' "$(vam-slice a.off --voxel 0.4 -o b.vdb && vam-check b.vdb | grep -c "$part")" 0
+is 'the chain names the sinogram' "$(grep -c '^  [0-9a-f]\{16\}  vam-sinogram .*  (sino.exr)$' chain)" 1
+is 'another part has a different seal' "$(vam-slice a.off --voxel 0.4 -o b.vdb && vam-check b.vdb | grep -c "$part")" 0
 
 flip sino.exr -500 bad.exr
 fails 65 'bad.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); make it again' vam-check bad.exr
 fails 65 'bad.exr: image [0-9]* changed' vam-resample bad.exr -o frames.exr
-ok 'headers alone do not see it' vam-check --fast bad.exr
+ok '--fast checks headers only' vam-check --fast bad.exr
 python3 - <<'PY'
 data = open('sino.exr', 'rb').read()
 at = data.find(b'vam:pixel_mm\0double\0') + 24
@@ -34,12 +34,12 @@ PY
 fails 65 'head.exr: the header of part 0 changed' vam-check --fast head.exr
 flip part.vdb -40 bad.vdb
 fails 65 "bad.vdb: .*(grid 'target' changed|damaged)" vam-check bad.vdb
-ok 'heads of a volume' vam-check --fast part.vdb
+ok 'headers of a volume' vam-check --fast part.vdb
 
 vam-check bad.exr part.vdb head.exr >out 2>err
 is 'all files are checked' "$? $(grep -c 'part.vdb' out) $(wc -l <err) $(grep -c 'warning: head.exr' err)" '65 2 2 1'
 vam-sinogram part.vdb | vam-check >out
-is 'a pipe is held to its seals' "$? $(grep -c '^stdin: stack of [0-9]* images, sealed [0-9a-f]\{16\}$' out)" '0 1'
+is 'a pipe is verified against its seals' "$? $(grep -c '^stdin: stack of [0-9]* images, sealed [0-9a-f]\{16\}$' out)" '0 1'
 vam-sinogram part.vdb >pipe.exr
 flip pipe.exr -2000 cut.exr
 fails 65 'stdin: image [0-9]* changed|stdin: the seals' sh -c 'vam-check <cut.exr'
@@ -47,18 +47,18 @@ head -c -16 pipe.exr >cut.exr
 fails 65 'is cut off' vam-check cut.exr
 
 python3 "$VAM_SOURCE/tests/tools/exr.py" make foreign.exr
-is 'a file of another program is read, and said to be unsealed' "$(vam-check foreign.exr | head -n 1) $?" \
+is 'a file of another program is reported as unsealed' "$(vam-check foreign.exr | head -n 1) $?" \
   'foreign.exr: stack of 3 images, unsealed 0'
-ok 'by the check alone' vam-resample foreign.exr -o r.exr
-is 'a mesh, too' "$(vam-check a.off)" 'a.off: file of another kind, unsealed'
+ok 'other tools read an unsealed file' vam-resample foreign.exr -o r.exr
+is 'a mesh is unsealed' "$(vam-check a.off)" 'a.off: file of another kind, unsealed'
 
 # ---- records, reports, printer files -------------------------------------------------------------------------------
 vam-slice --print-printer --set vial.radius_mm=11.5 -o printer.toml
-is 'a printer file is for people to edit' "$(vam-check printer.toml)" 'printer.toml: file of another kind, unsealed'
+is 'a printer file is unsealed by default' "$(vam-check printer.toml)" 'printer.toml: file of another kind, unsealed'
 vam-check --seal printer.toml && vam-check --seal printer.toml
-is 'until it is sealed, once' "$(grep -c '^# sealed xxh3:' printer.toml) $(vam-check printer.toml)" \
+is 'a printer file is sealed once' "$(grep -c '^# sealed xxh3:' printer.toml) $(vam-check printer.toml)" \
   '1 printer.toml: file of another kind, sealed'
-ok 'it is read' vam-slice --print-printer --printer printer.toml -o again.toml
+ok 'a sealed printer file is read' vam-slice --print-printer --printer printer.toml -o again.toml
 sed 's/^radius_mm = 11.5/radius_mm = 17.5/' printer.toml >changed.toml
 fails 65 "changed.toml: changed after it was written .* remove its last line '# sealed" vam-slice --print-printer --printer changed.toml -o x.toml
 fails 65 'changed.toml: changed' vam-check changed.toml
@@ -70,7 +70,7 @@ is 'a report is sealed' "$(vam-check r.json)" 'r.json: "vam-slice/1", sealed'
 sed 's/"voxel_mm": 0.3/"voxel_mm": 0.8/' r.json >s.json
 fails 65 's.json: changed after it was written' vam-check s.json
 python3 -c 'import json; json.dump(json.load(open("r.json")), open("t.json", "w"))'
-ok 'but not its layout' vam-check t.json
+ok 'the layout of a report is not sealed' vam-check t.json
 
 fails 66 'none.exr: cannot open' vam-check none.exr
 : >empty.vdb

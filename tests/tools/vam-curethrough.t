@@ -10,7 +10,7 @@ ok "model ordinary slices" vam-curethrough model ladder.vdb $light --section ord
 is "both gaps, 10 slices of 6000 columns each, are cured" "$(json ordinary.json cure_through.voxels)" 120000
 holds "the bottom edge is undercured" "$(json ordinary.json undercured.voxels) > 0"
 quiet "model a part from a pipe" sh -c "cat ladder.vdb | vam-curethrough model $light --report piped.json -o dose.vdb"
-is "the pipe gives the same" "$(json piped.json cure_through.voxels)" 120000
+is "a pipe gives the same" "$(json piped.json cure_through.voxels)" 120000
 ok "the dose is a volume" test -s dose.vdb
 
 # ---- corrected [CURE19 fig 4]
@@ -63,14 +63,14 @@ quiet "the response on the way out and in again" sh -c "printf 'grey,intensity\n
 is "no cure-through after the round trip" "$(json response.json cure_through.voxels)" 0
 is "no undercure after the round trip" "$(json response.json undercured.voxels)" 0
 quiet "a stack of levels" vam-curethrough correct ladder.vdb $light --quantise -o levels.exr
-ok "equals the images" vam-curethrough model levels.exr --target ladder.vdb $light --report levels.json
-is "same errors" "$(json levels.json height_error.mean_error_um)" "$(json grey.json height_error.mean_error_um)"
+ok "model the stack of grey levels" vam-curethrough model levels.exr --target ladder.vdb $light --report levels.json
+is "the stack of grey levels has the errors of the images" "$(json levels.json height_error.mean_error_um)" "$(json grey.json height_error.mean_error_um)"
 quiet "platform at the top" vam-curethrough correct ladder.vdb $light --platform top -o top.exr
-ok "and back" vam-curethrough model top.exr --target ladder.vdb --platform top $light --report top.json
-is "no cure-through either" "$(json top.json cure_through.voxels)" 0
+ok "model the slices of --platform top" vam-curethrough model top.exr --target ladder.vdb --platform top $light --report top.json
+is "no cure-through with --platform top" "$(json top.json cure_through.voxels)" 0
 quiet "omega-max" vam-curethrough correct ladder.vdb $light --omega-max inf -o inf.exr
-ok "model it" vam-curethrough model inf.exr --target ladder.vdb $light --report inf.json
-is "still no cure-through" "$(json inf.json cure_through.voxels)" 0
+ok "model slices without a limit" vam-curethrough model inf.exr --target ladder.vdb $light --report inf.json
+is "no cure-through without a limit" "$(json inf.json cure_through.voxels)" 0
 quiet "layer by layer" vam-curethrough correct ladder.vdb $light --exposure-mode layered --print-speed 100 -o layered.exr
 ok "its dose" vam-curethrough model layered.exr --target ladder.vdb $light --report layered.json
 is "no undercure layer by layer" "$(json layered.json undercured.voxels)" 0
@@ -88,9 +88,9 @@ holds "the darker resin keeps narrower gaps open" \
   "$(json catalogue.json catalogue.2.narrowest_gap_um) < $(json catalogue.json catalogue.0.narrowest_gap_um)"
 is "nothing prints beyond the speed limit" "$(json catalogue.json catalogue.1.prints)" false
 sed 's/full_cure/critical/' resins.csv >former.csv
-ok "the former column" vam-curethrough correct ladder.vdb $light --catalogue former.csv --print-speeds 1000,8000 --report former.json
-grep -q 'former.csv:1: column critical_dose_mj_cm3 is now full_cure_dose_mj_cm3' .log/*; report $? "is read with a warning"
-is "to the same figures" "$(json former.json catalogue.2.narrowest_gap_um)" "$(json catalogue.json catalogue.2.narrowest_gap_um)"
+ok "a catalogue with a former column" vam-curethrough correct ladder.vdb $light --catalogue former.csv --print-speeds 1000,8000 --report former.json
+grep -q 'former.csv:1: column critical_dose_mj_cm3 is now full_cure_dose_mj_cm3' .log/*; report $? "a former column is read with a warning"
+is "a former column gives the same figures" "$(json former.json catalogue.2.narrowest_gap_um)" "$(json catalogue.json catalogue.2.narrowest_gap_um)"
 
 # ---- working curve, response, sweep
 printf 'exposure_mj_cm2,thickness_um\n20,370\n20,381\n50,1168\n50,1175\n130,2004\n130,1996\n' >curve.csv
@@ -98,13 +98,13 @@ ok "working curve" vam-curethrough working-curve curve.csv --plot curve.png --re
 holds "h_a" "$(json curve.json absorbance_height_um) > 1900 && $(json curve.json absorbance_height_um) < 2100"
 is "the logarithm is stated" "$(json curve.json logarithm_base)" 10
 printf 'grey,reading\n0,1.2\n64,6.3\n128,25\n192,58\n255,111\n' >diode.csv
-ok "response" vam-curethrough response diode.csv --dark 1 -o table.csv --plot response.png --report diode.json
+ok "response" vam-curethrough response diode.csv --dark-reading 1 -o table.csv --plot response.png --report diode.json
 is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
 quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-irradiance 110 --response table.csv -o x.exr
 ok "sweep" vam-curethrough sweep dc=4..6,omega_max=1/inf $light --plot sweep.png --report sweep.json
-holds "least error where the assumed dose is the real one" "$(json sweep.json points.2.ratio) < 0.001"
-holds "larger errors below" "$(json sweep.json points.0.ratio) > 0.1"
-holds "larger errors above" "$(json sweep.json points.4.ratio) > 0.1"
+holds "the error is least if the assumed dose is the true one" "$(json sweep.json points.2.ratio) < 0.001"
+holds "larger errors below the true dose" "$(json sweep.json points.0.ratio) > 0.1"
+holds "larger errors above the true dose" "$(json sweep.json points.4.ratio) > 0.1"
 
 # ---- wrong inputs
 fails 64 'no command' vam-curethrough
@@ -127,8 +127,8 @@ fails 64 'ladder.vdb is a part itself; give slices' vam-curethrough model ladder
 fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
 mkdir letters; echo hello >letters/letter.txt
 fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters
-fails 64 'the table goes to standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
+fails 64 'the table is printed on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
 fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
 ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
-fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --threshold 1 -o no.exr
+fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --min-coverage 1 -o no.exr
 done_testing

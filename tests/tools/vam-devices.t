@@ -1,5 +1,5 @@
 #!/bin/sh
-# vam-devices: every kind of device is found with its device string and with what stands in its way, in 3 s.
+# vam-devices: every kind of device is found with its device string and with the reason why it cannot be used, in 3 s.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0  # what is preloaded for the simulated bus keeps 16 bytes
 unset DISPLAY WAYLAND_DISPLAY
@@ -14,48 +14,48 @@ for try in 1 2 3; do  # a busy machine may hold up one
   best=$(awk "BEGIN { took = $(date +%s%N) - $start; print (took < $best ? took : $best) }")
   awk "BEGIN { exit !($best < 3e9) }" && break
 done
-is 'it lists what is there, silently' "$status $(cat err)" '0 '
+is 'the list of devices, without messages' "$status $(cat err)" '0 '
 holds 'in 3 s' "$best < 3e9"
-is 'every kind, also where there is none' "$(cut -c1-8 list | tr -d ' ' | sort -u | grep -c .)" 4
+is 'every kind, also one without devices' "$(cut -c1-8 list | tr -d ' ' | sort -u | grep -c .)" 4
 is 'and in a report' "$(json found.json schema)" vam-devices/1
 fails 64 'unknown option|unexpected|not expected' vam-devices --aks
 fails 64 '' vam-devices ttyUSB0
 fails 73 'missing' vam-devices --report missing/x.json
 
-# A stage on a serial port: free, asked, in use, without permission, and no stage at all.
+# A stage on a serial port: free, probed, in use, without permission, and no stage at all.
 shim=$(vam-sim-stage --shim)
 stage_up
 list --port "$PWD/stage"
 is 'a port that the system does not list' "$(row "gcs:$PWD/stage")" ''
-ok 'can be named' grep -q "^stage *gcs:$PWD/stage$" list
+ok 'can be given' grep -q "^stage *gcs:$PWD/stage$" list
 for protocol in gcs grbl zaber; do
   stage_down; stage_up --protocol $protocol
-  LD_PRELOAD=$shim vam-devices --port "$PWD/stage" --ask >list 2>err
-  ok "$protocol: it tells who it is" grep -Eq "^stage +$protocol:$PWD/stage +[A-Z].*simulated" list
+  LD_PRELOAD=$shim vam-devices --port "$PWD/stage" --probe >list 2>err
+  ok "$protocol: it reports its identity" grep -Eq "^stage +$protocol:$PWD/stage +[A-Z].*simulated" list
   is "$protocol: and does not move" "$(grep -c '"event":"moving"' truth)" 0
 done
 stage_down; stage_up
 LD_PRELOAD=$shim vam-stage follow --device "gcs:$PWD/stage" >/dev/null & user=$!
 await sh -c 'grep -q . "$VAM_LOCK_DIR"/* 2>/dev/null && grep -q POS truth'
 list --port "$PWD/stage"
-ok 'a stage in use names its user' grep -q "! .*/pts/.*in use by process $user\|! $PWD/stage: in use by process $user" list
+ok 'a stage in use: its user is named' grep -q "! .*/pts/.*in use by process $user\|! $PWD/stage: in use by process $user" list
 kill -TERM $user; wait $user 2>/dev/null
 stage_down
 : >port; chmod 660 port
 if [ "$(id -u)" = 0 ] && chgrp dialout port 2>/dev/null; then
   chmod 711 . && setpriv --reuid 65534 --regid 65534 --clear-groups vam-devices --port "$PWD/port" >list 2>err
-  ok 'a port without permission names the group to join' grep -q '! not permitted to this user; run `sudo usermod -aG dialout' list
+  ok 'a port without permission: the group to join is named' grep -q '! not permitted to this user; run `sudo usermod -aG dialout' list
 else
   echo '# not root, or no group dialout: nothing is tried without permission'
 fi
 list --port "$PWD/nowhere"
-ok 'a port that is not there' grep -q "! $PWD/nowhere: No such file" list
+ok 'a port that does not exist' grep -q "! $PWD/nowhere: No such file" list
 
 # USB: stage and light engines.
 bus tic:;     ok 'a Tic' grep -q '^stage *tic:00312345?steps_per_deg=N  Pololu' list
 bus dlpc350:; ok 'a DLPC350' grep -q '^light *dlpc350:LCR4500  Texas' list
 bus dlpc900:; ok 'a DLPC900' grep -q '^light *dlpc900:' list
-is 'none is told anything' "$(grep -cv '"bits":0\|asleep' told 2>/dev/null)" 0
+is 'no command is sent' "$(grep -cv '"bits":0\|asleep' told 2>/dev/null)" 0
 
 # Screens: of a card, of another program's card, of a desktop.
 mkdir -p card/dri; touch card/dri/card0

@@ -17,6 +17,16 @@ ok "the simulated print matches the part" vam-score dose.vdb --target part.vdb -
 vam-resample virtual.exr --set projector.telecentric=true | vam-dose --like part.vdb -o wrong.vdb
 fails 1 iou vam-score wrong.vdb --target part.vdb --require 'iou>=0.95'
 
+# Grey levels: black and white, each pixel to the nearer one or with errors that cancel.
+peak=$(python3 -c 'import json; print(json.load(open("report.json"))["full_scale"])')
+for grey in '' '--bits 1' '--bits 1 --dither 1' '--bits 1 --dither 9'; do
+  vam-dose frames.exr --like part.vdb --full-scale $peak $grey | vam-score --target part.vdb | awk '/^pw / { print $2 }'
+done >windows
+holds "diffusion is nearer to the window of all greys, and turns are nearer still" \
+  "$(sed -n 2p windows) < $(sed -n 3p windows) && $(sed -n 3p windows) < $(sed -n 4p windows) && $(sed -n 4p windows) > $(sed -n 1p windows) - 0.01"
+fails 64 '--bits.*--full-scale' vam-dose --bits 8 frames.exr --like part.vdb -o out.vdb
+fails 64 '--dither.*--bits' vam-dose --full-scale 1 --dither 2 frames.exr --like part.vdb -o out.vdb
+
 # Streams and threads
 vam-dose <frames.exr --like part.vdb >stdin.vdb
 ok "stdin to stdout" vam-score stdin.vdb --target part.vdb
@@ -67,7 +77,7 @@ ok "point spread and diffusion" vam-dose frames.exr --like part.vdb --set resin.
 holds "sqrt(0.3^2 + 2 * 0.0005 * 36)" "($(json blur.json blur_sigma_mm) - 0.3549648)^2 < 1e-12"
 holds "the blur lowers the least part dose" "$(json blur.json part_dose_per_turn_min_relative) < $(json report.json part_dose_per_turn_min_relative)"
 ok "--no-blur" vam-dose frames.exr --like part.vdb --set resin.psf_mm=0.3 --no-blur --report sharp.json -o sharp.vdb
-is "neglects the blur" "$(json sharp.json part_dose_per_turn_min_relative)" "$(json report.json part_dose_per_turn_min_relative)"
+is "--no-blur neglects the blur" "$(json sharp.json part_dose_per_turn_min_relative)" "$(json report.json part_dose_per_turn_min_relative)"
 
 # Negative intensities
 vam-sinogram part.vdb --filter ram-lak | vam-resample --negative keep >negative.exr
@@ -78,7 +88,7 @@ is "negative intensities set to 0 are reported" "$(grep -c 'set to 0' .log/err)"
 vam-slice --shape handle --insert-shape screwdriver --voxel 0.4 -o fine.vdb
 vam-optimize --angles 90 fine.vdb -o fine.exr
 quiet "a handle around a screwdriver" vam-dose fine.exr --like fine.vdb --report fine.json -o fine-dose.vdb
-ok "its score" vam-score fine-dose.vdb --target fine.vdb --report fine-score.json
+ok "the dose around an insert is scored" vam-score fine-dose.vdb --target fine.vdb --report fine-score.json
 holds "98 % of its voxels are correct" "1 - $(json fine-score.json ver) >= 0.98 && $(json fine-score.json iou) >= 0.995"
 is "no part voxel is in shadow" "$(json fine.json dark_part_voxels)" 0
 holds "only an insert has a shadow" "$(grep -c dark_part_voxels report.json) == 0"
@@ -108,7 +118,7 @@ vam-slice --shape cylinder:diameter=6,height=4 --insert-shape hollow-cylinder:ou
   --extent writable --voxel 0.4 -o hidden.vdb
 vam-sinogram hidden.vdb --filter ram-lak --negative clip -o hidden.exr
 ok "a part within a tube" vam-dose hidden.exr --like hidden.vdb --report hidden.json -o hidden-dose.vdb
-is "voxels in shadow are reported" "$(grep -c 'shadow from all sides' .log/err)" 1
+is "voxels in shadow are reported" "$(grep -c 'the insert shadows .* from all stage angles' .log/err)" 1
 holds "all part voxels are in shadow" "$(json hidden.json dark_part_voxels) == $(json hidden.json part_voxels) && $(json hidden.json part_voxels) > 0"
 holds "they receive no dose" "$(json hidden.json part_dose_per_turn_mean_relative) == 0"
 

@@ -19,20 +19,20 @@ vam-resample sino.exr --printer coarse.toml -o seen.exr
 vam-project seen.exr --printer coarse.toml -o views
 is 'as many views as angles' "$(ls views | grep -c png)" 60
 
-quiet 'a folder of views' vam-ost views --angle-step 6 $rig -o scatter.vdb --report ost.json --projections sums.png
+quiet 'a folder of views' vam-ost views --view-step 6 $rig -o scatter.vdb --report ost.json --projections sums.png
 holds 'the axis is where it was put' "$(json ost.json axis_column_px) > 165.9 && $(json ost.json axis_column_px) < 166.1"
 holds 'and upright' "$(json ost.json axis_tilt_deg) > -0.05 && $(json ost.json axis_tilt_deg) < 0.05"
 quiet 'threshold of a standard' vam-calibrate resin scatter.vdb --diameter 6 -o resin.json
 holds 'the circle is seen at its size' "$(json resin.json apparent_diameter_mm) > 5.7 && $(json resin.json apparent_diameter_mm) < 6.3"
-quiet 'with the record' vam-ost views --angle-step 6 $rig --resin resin.json --mesh print.ply -o again.vdb
+quiet 'with the record' vam-ost views --view-step 6 $rig --resin resin.json --mesh print.ply -o again.vdb
 quiet 'the print is the design' vam-sdf print.ply design.vdb --align icp --require 'rms<=0.15'
 
-quiet 'live' vam-ost views --angle-step 6 $rig --live --resin resin.json --target design.vdb \
+quiet 'live' vam-ost views --view-step 6 $rig --live --resin resin.json --target design.vdb \
   -o live --log log.jsonl --projections now.png --page now.html
 is 'one volume a turn' "$(ls live)" scatter-0000.vdb
 is 'one line per volume' "$(grep -c missing_percent log.jsonl)" 1
 grep -q 'now.png' now.html; report $? 'the page shows the image'
-event=$(vam-ost views --angle-step 6 $rig --live --resin resin.json --target design.vdb --until 'iou>=0.5')
+event=$(vam-ost views --view-step 6 $rig --live --resin resin.json --target design.vdb --until 'iou>=0.5')
 echo "$event" | grep -q '"event":"stop"'; report $? 'a stop event when the condition holds'
 
 # What follows sees a standard through glass and resin by traced rays, with noise: 3 % of the brightest in each pixel.
@@ -42,7 +42,7 @@ render=$VAM_BUILD/render_views
 "$render" boat:length=8,wall=0.6 boat.exr noise=0.2 offset=7.4 tilt=0.5 angles=60 columns=320 rows=128 pixel=0.06 step=0.15
 quiet 'traced views with noise' vam-ost boat.exr $glass --binning 2 -o boat.vdb --report boat.json
 holds 'the axis is off by 7.4 px of the camera' "$(json boat.json axis_column_px) > 166.7 && $(json boat.json axis_column_px) < 167.1"
-quiet 'which can be said' vam-ost boat.exr $glass --binning 2 --axis "$(json boat.json axis_column_px)" -o said.vdb --report said.json
+quiet 'which can be given' vam-ost boat.exr $glass --binning 2 --axis-column "$(json boat.json axis_column_px)" -o said.vdb --report said.json
 is 'and is reported as it was said' "$(json said.json axis_column_px)" "$(json boat.json axis_column_px)"
 holds 'and leans by 0.5 deg' "$(json boat.json axis_tilt_deg) > 0.45 && $(json boat.json axis_tilt_deg) < 0.55"
 "$render" cylinder:diameter=6,height=4 standard.exr noise=0.2
@@ -77,7 +77,7 @@ vam-slice --shape cylinder:diameter=4,height=4 --voxel 0.1 --stretch-z 1 -o four
 quiet 'vam-sdf takes the same record' vam-sdf other.vdb four.vdb --resin glass.json --align icp --require 'rms<=0.08'
 vam-ost other.exr $glass | vam-sdf - four.vdb --resin glass.json --align icp --require 'rms<=0.08'
 report $? 'also through a pipe'
-quiet 'binned by four, by MLEM' vam-ost other.exr $glass --binning 4 --statistical 10 -o coarse.vdb --report coarse.json
+quiet 'binned by four, by MLEM' vam-ost other.exr $glass --binning 4 --mlem-iterations 10 -o coarse.vdb --report coarse.json
 is 'makes voxels of four pixels' "$(json coarse.json voxel_mm)" 0.48
 
 # A print that grows: nothing at first, then three turns; live through a pipe until it is done.
@@ -108,25 +108,25 @@ vam-ost gap.exr --live $glass --isovalue 0.5 -o gap --log gap.jsonl 2>errors
 report $? 'a gap costs a live print no more than its turn'
 is 'with a warning' "$(grep -c 'warning: no volume after .* turns: views: the turn is incomplete' errors)" 1
 is 'which is reported' "$(grep -c '"waiting":"views: the turn is incomplete, no frame for 54 deg' gap.jsonl) $(ls gap | wc -l)" '1 2'
-fails 65 'no volume' vam-ost views --angle-step 2 $rig --live
-fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --angle-step 20 $rig --live
+fails 65 'no volume' vam-ost views --view-step 2 $rig --live
+fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --view-step 20 $rig --live
 
-fails 64 'give their distance with --angle-step' vam-ost views -o x.vdb
-fails 64 'mesh: requires --isovalue or --resin' vam-ost views --angle-step 6 --mesh p.ply -o x.vdb
-fails 64 "'p.obj' must end in .ply or .stl" vam-ost views --angle-step 6 --isovalue 1 --mesh p.obj -o x.vdb
-fails 64 'every: requires --live' vam-ost views --angle-step 6 --every 90 -o x.vdb
-fails 64 'until: requires --target' vam-ost views --angle-step 6 --live --isovalue 1 --until 'iou>=0.5'
-fails 64 'report: is of one volume' vam-ost views --angle-step 6 --live --report x.json
-fails 64 'angle-step: is 0' vam-ost views --angle-step 0 -o x.vdb
-fails 64 'requires --projections' vam-ost views --angle-step 6 --live --page p.html
+fails 64 'have no angles; give their angular step' vam-ost views -o x.vdb
+fails 64 'mesh: requires --isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
+fails 64 "'p.obj' must end in .ply or .stl" vam-ost views --view-step 6 --isovalue 1 --mesh p.obj -o x.vdb
+fails 64 'volume-step: requires --live' vam-ost views --view-step 6 --volume-step 90 -o x.vdb
+fails 64 'until: requires --target' vam-ost views --view-step 6 --live --isovalue 1 --until 'iou>=0.5'
+fails 64 'report: describes one volume' vam-ost views --view-step 6 --live --report x.json
+fails 64 'view-step: is 0' vam-ost views --view-step 0 -o x.vdb
+fails 64 'requires --projections' vam-ost views --view-step 6 --live --page p.html
 fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: warning: vam-ost threshold is now vam-calibrate resin'
 same 'with the same record' resin.json former.json
-fails 65 'no print at this threshold' vam-ost views --angle-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
-fails 65 'the turn is incomplete' vam-ost views --angle-step 2 $rig -o x.vdb
+fails 65 'no print at this threshold' vam-ost views --view-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
+fails 65 'the turn is incomplete' vam-ost views --view-step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
-fails 65 'not a record' vam-ost views --angle-step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
+fails 65 'not a record' vam-ost views --view-step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
 fails 66 'absent' vam-ost absent.exr -o x.vdb
 cat >flat.py <<'PY'
 import struct, sys, zlib
@@ -141,8 +141,8 @@ first=$(ls views | head -n 1); last=$(ls views | grep png | tail -n 1)
 python3 flat.py "dark/$first" 333 40 0
 python3 flat.py "saturated/$first" 333 40 255
 python3 flat.py "sizes/$last" 300 40 100
-fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --angle-step 6 $rig -o x.vdb
-fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --angle-step 6 $rig -o x.vdb
-fails 65 'dark, every pixel' vam-ost dark --angle-step 6 $rig -o x.vdb
+fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --view-step 6 $rig -o x.vdb
+fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --view-step 6 $rig -o x.vdb
+fails 65 'dark, every pixel' vam-ost dark --view-step 6 $rig -o x.vdb
 
 done_testing

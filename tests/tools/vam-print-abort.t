@@ -1,6 +1,6 @@
 #!/bin/sh
-# A print that is ended, from outside or by the death of one of its tools: dark and still in time, the right status, and
-# a summary of it.
+# A print that is ended, from outside or by the end of one of its tools: dark and at standstill in time, with the right
+# status and a summary.
 # In memory: a disk that is busy with others would hold up the screen.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
@@ -13,7 +13,7 @@ end_by() {  # end_by SIGNAL: of the print
 in_time() {  # by the logs of light engine and table, which itself takes 20 ms to brake
   dark=$(grep bits leds | tail -n 1 | json /dev/stdin t_monotonic_s)
   still=$(grep '"standing"' truth | tail -n 1 | json /dev/stdin t_monotonic_s)
-  holds "$run: dark and still within 100 ms" "$dark - $ended_s < 0.1 && $still - $ended_s > 0 && $still - $ended_s < 0.1"
+  holds "$run: dark and at standstill within 100 ms" "$dark - $ended_s < 0.1 && $still - $ended_s > 0 && $still - $ended_s < 0.1"
 }
 child() { pgrep -P $printing -x "$1"; }
 

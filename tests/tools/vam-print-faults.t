@@ -1,14 +1,14 @@
 #!/bin/sh
-# A print whose stage answers wrongly, in turn by every kind of fault: it ends dark and still, with the right status.
+# A print whose stage replies wrongly, by every kind of fault in turn: it ends dark and at standstill, with the right status.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 . "$VAM_SOURCE/tests/tools/printlib.sh"
 
 screen_up 64 48
-# Each kind of wrong answer of the stage, a second into the light of the print.
+# Each kind of wrong reply, one second after the light came on.
 spoilt() {  # spoilt NAME STATUS REGEX FAULT
   begin "$1" --fault "$4"
-  ok "$1: was under way" lit
+  ok "$1: the print has begun" lit
   aborted "$2" 'stage failed' "$3"
 }
 spoilt garbage 76 'was answered' garbage@POS?:250

@@ -43,7 +43,7 @@ fails 64 'plan: slices.exr contains slices' vam-project slices.exr $screen --pla
 fails 64 'from: slices.exr contains slices' vam-project slices.exr $screen --from 90 -o null: --log why
 fails 64 'shown once, by time' vam-project slices.exr $screen --turns 2 -o null: --log why
 vam-slice --shape disc-grid --voxel 0.4 | vam-sinogram --filter ram-lak --negative clip | vam-resample | vam-project --bits 8 --speed 120 --fps 2 -o turn.exr
-fails 65 'frames of stage angles' vam-project turn.exr -o x/
+fails 65 'contains frames at stage angles' vam-project turn.exr -o x/
 fails 65 'voxels of 0.05 mm are not the projector.s pixels of 0.065 mm' vam-project slices.exr -o x/
 fails 65 'row -[0-9]+ do not fit in 240 x 200' vam-project levels $screen --set projector.axis_row=3 -o x/
 rm levels/frames.csv

@@ -31,21 +31,21 @@ PY
 same "video and images have the same pixels" images.sums video.sums
 
 # The printer that it was computed for.
-fails 65 'part.exr: was computed for another printer: projector.axis_column 31.5, now 32; vial.radius_mm 12.7, now 6; compute it again .* --accept-printer' \
+fails 65 'part.exr: computed for another printer: projector.axis_column 31.5, now 32; vial.radius_mm 12.7, now 6; compute it for this printer, .* --accept-printer' \
   vam-project part.exr -o other.exr --set vial.radius_mm=6 --set projector.axis_column=32
 ok "a difference can be accepted" vam-project part.exr -o other.exr --set vial.radius_mm=6 --accept-printer --report other.json
 is "with a warning, and in the report" "$(grep -c 'warning.*vial.radius_mm 12.7, now 6; accepted' .log/err) $(json other.json printer_differences)" "1 ['vial.radius_mm 12.7, now 6']"
 is "frames name the printer that shows them" "$($exr attr other.exr vam:printer | grep -c 'vial.radius_mm=6')" 1
-quiet "a new calibration of the axis makes no other printer" vam-project part.exr -o near.exr --set projector.axis_column=31.6
+quiet "a new calibration of the axis does not make another printer" vam-project part.exr -o near.exr --set projector.axis_column=31.6
 $exr make silent.exr space=projector width=64 height=36 count=3 printer=none
-ok "a sinogram that does not say" vam-project silent.exr -o silent/
-is "is warned of" "$(grep -c 'silent.exr: does not say for which printer' .log/err)" 1
+ok "a sinogram without vam:printer" vam-project silent.exr -o silent/
+is "gives a warning" "$(grep -c 'silent.exr: the attribute vam:printer is missing' .log/err)" 1
 $exr make garbled.exr space=projector width=64 height=36 count=3 'printer=vial.radius_mm=wide'
 fails 65 'garbled.exr: vam:printer:1: not TOML' vam-project garbled.exr -o garbled/
-ok "what vam-optimize writes serves its printer" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-optimize --iterations 1 -o own.exr && vam-project own.exr -o own/"
-fails 65 'own.exr: was computed for another printer: vial.radius_mm 12.7, now 6' vam-project own.exr -o others/ --set vial.radius_mm=6
-ok "and so does vam-resample" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-sinogram --angles 90 --negative clip | vam-resample -o own2.exr"
-fails 65 'own2.exr: was computed for another printer: resin.index 1.53, now 1.5' vam-project own2.exr -o others/ --set resin.index=1.5
+ok "a sinogram of vam-optimize is accepted by its printer" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-optimize --iterations 1 -o own.exr && vam-project own.exr -o own/"
+fails 65 'own.exr: computed for another printer: vial.radius_mm 12.7, now 6' vam-project own.exr -o others/ --set vial.radius_mm=6
+ok "one of vam-resample, too" sh -c "vam-slice --shape disc-grid:diameter=6,height=1 --voxel 0.26 | vam-sinogram --angles 90 --negative clip | vam-resample -o own2.exr"
+fails 65 'own2.exr: computed for another printer: resin.index 1.53, now 1.5' vam-project own2.exr -o others/ --set resin.index=1.5
 
 # Transposition: row 5 is slice 0, rows go up; the sinogram's row n is frame n.
 brightest=$($exr get pipe.exr 0 44 3)
@@ -55,11 +55,23 @@ is "rows are slices, z up" \
   "$(for s in 2 1 0; do $exr get part.exr $s 44 0; done | awk "BEGIN { printf \"0.00000 \" } { printf \"%.5f \", \$1 / $unit } END { printf \"0.00000 \" }")"
 holds "frame 9 is angle 9" "($($exr get pipe.exr 9 31 5) / $brightest - $($exr get part.exr 0 31 9) / $unit)^2 < 1e-12"
 
+# Error diffusion: black and white frames, different in each of four turns, whose sum is the required intensity.
+vam-project part.exr --turns 4 --multiplier 0.5 -o smooth.exr --compression none
+quiet "frames that differ from turn to turn" vam-project part.exr --turns 4 --multiplier 0.5 --bits 1 --dither 4 -o dither.exr --compression none
+light() { $exr sum "$1" | awk '{ print $4 }'; }
+holds "their sum is that of grey frames" "($(light dither.exr) / $(light smooth.exr) - 1)^2 < 0.03^2"
+vam-project part.exr --turns 8 --multiplier 0.5 --bits 1 --dither 4 -o dither/
+is "the second turn differs, the fifth does not" \
+  "$(cmp -s dither/00003.png dither/00039.png; echo $?) $(for i in 00003 00147; do $png sum dither/$i.png; done | uniq | wc -l)" "1 1"
+fails 64 '--dither 2: does not divide the 3 turns' vam-project part.exr --turns 3 --dither 2 -o out/
+fails 64 '--dither 2: a turn has 32.7273 frames, not a whole number' vam-project part.exr --turns 2 --speed 11 --dither 2 -o out/
+fails 64 '--dither' vam-project part.exr --dither 0 -o out/
+
 # Time
 vam-project part.exr --turns 2.5 --speed 20 --report time.json >/dev/null
 is "two and a half turns at 20 deg/s" "$(json time.json frames) $(json time.json duration_s) $(json time.json step_deg)" "45 45.0 20.0"
 vam-project part.exr --turns 2 >twice.exr
-is "the second turn is the first again" "$($exr get twice.exr 40 30 5)" "$($exr get twice.exr 4 30 5)"
+is "the second turn repeats the first" "$($exr get twice.exr 40 30 5)" "$($exr get twice.exr 4 30 5)"
 
 # Place
 $exr make middle.exr space=projector width=64 height=36 count=3 reach=0
@@ -86,7 +98,7 @@ vam-project part.exr --set projector.response=curve.csv -o curved/
 holds "the inverse response" "$($png get curved/00000.png 44 5) > 140 && $($png get curved/00000.png 44 5) < 160"
 is "the straight line" "$($png get frames/00000.png 44 5)" 85
 vam-project part.exr --full-scale 6 -o half/
-is "--full-scale halves" "$($png get half/00000.png 44 3)" 127
+is "twice --full-scale halves the intensity" "$($png get half/00000.png 44 3)" 127
 ok "clipping succeeds" vam-project part.exr --multiplier 3 -o clipped/ --report clipped.json
 is "and is reported in one line" "$(grep -c 'exceed full intensity' .log/err)" 1
 holds "and in the report" "$(json clipped.json clipped_fraction) > 0.1"

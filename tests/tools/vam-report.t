@@ -10,34 +10,34 @@ vam-score dose.vdb --target part.vdb --report score.json >table
 vam-view part.vdb -o part.png
 
 ok 'a page of a whole print' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o report.html
-is 'begins with the verdict of vam-score' "$(sed -n 's/.*<p class="verdict [a-z]*">\(.*\)<.p>/\1/p' report.html)" "$(sed -n 's/^verdict *//p' table)"
-is 'loads nothing' "$(grep -Eoc 'src="[^d]|href=|@import|url\(|https?:' report.html)" 0
+is 'the page begins with the verdict of vam-score' "$(sed -n 's/.*<p class="verdict [a-z]*">\(.*\)<.p>/\1/p' report.html)" "$(sed -n 's/^verdict *//p' table)"
+is 'the page loads nothing' "$(grep -Eoc 'src="[^d]|href=|@import|url\(|https?:' report.html)" 0
 for words in 'Part and print' 'target, sections across z' 'dose, sections across y' 'Projections' 'Sinograms' \
   'Dose in part and void' 'Convergence' 'score.json, vam-score/1' 'vam-optimize 0' 'part.png'; do
   ok "it has: $words" grep -q -- "$words" report.html
 done
-ok 'the same bytes again' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o again.html
-is 'but for the name of the file' "$(sed 's/again\.html/report.html/g' again.html | cmp - report.html && echo same)" same
+ok 'the same page again' vam-report part.vdb light.exr dose.vdb light.json score.json trace.csv part.png -o again.html
+is 'the pages are identical except for the file name' "$(sed 's/again\.html/report.html/g' again.html | cmp - report.html && echo same)" same
 mkdir folder && cp part.vdb dose.vdb score.json part.off folder
-ok 'of a folder' vam-report folder -o folder.html --title 'A box'
-is 'with its title' "$(grep -c '<title>A box</title>' folder.html)" 1
-ok 'of a part alone' vam-report part.vdb -o alone.html
-is 'without a verdict' "$(grep -c 'class="verdict' alone.html)" 0
-ok 'of frames' sh -c 'vam-project light.exr -o frames.exr && vam-report frames.exr -o frames.html'
-is 'that play' "$(grep -c '>play<' frames.html)" 1
+ok 'a page of a folder' vam-report folder -o folder.html --title 'A box'
+is 'the page has its title' "$(grep -c '<title>A box</title>' folder.html)" 1
+ok 'a page of a part only' vam-report part.vdb -o alone.html
+is 'the page of a part has no verdict' "$(grep -c 'class="verdict' alone.html)" 0
+ok 'a page of frames' sh -c 'vam-project light.exr -o frames.exr && vam-report frames.exr -o frames.html'
+is 'frames can be played' "$(grep -c '>play<' frames.html)" 1
 vam-report part.vdb | head -c 100 >/dev/null; report 0 'to head'
 
 hostile='<img src=x onerror=document.title=1>&"'\''.vdb'
 cp part.vdb "$hostile"
 printf '%s\n' '{"</script><script>document.title=2</script>": "<b onmouseover=x>", "list": ["<i>"]}' >bad.json
-ok 'hostile names' vam-report "$hostile" bad.json --title '</title><script>document.title=3</script>' -o hostile.html
-is 'become no elements' "$(grep -Ec '<img src=x|<b onm|<i>|<script>document' hostile.html)" 0
+ok 'a page of files with hostile names' vam-report "$hostile" bad.json --title '</title><script>document.title=3</script>' -o hostile.html
+is 'hostile names create no elements' "$(grep -Ec '<img src=x|<b onm|<i>|<script>document' hostile.html)" 0
 
 fails 64 'FILE: ' vam-report
-fails 64 'more than once; name files' vam-report -
+fails 64 'more than once; give files' vam-report -
 fails 66 'nothing.vdb' vam-report nothing.vdb
-fails 65 'part.off: is no volume' vam-report part.off
-mkdir empty && fails 65 'empty: holds no volume' vam-report empty
+fails 65 'part.off: is not a volume' vam-report part.off
+mkdir empty && fails 65 'empty: contains no volume' vam-report empty
 fails 64 'report.pdf' vam-report part.vdb -o report.pdf
 sed 's/"ver": [^,]*/"ver": 0.5/' score.json >edited.json
 fails 65 'edited.json' vam-report part.vdb edited.json -o x.html
@@ -50,10 +50,10 @@ fails 65 'cut.exr: is cut off' vam-report cut.exr
 printf 'iteration,ver,pw\n0,nan,1\n' >nan.csv
 fails 65 "ver 'nan' is not a number" vam-report nan.csv
 python3 -c 'print("{\"seal\":\"xxh3:00\",\"a\":" + "[" * 100000 + "]" * 100000 + "}")' >deep.json
-fails 65 'deep.json: is no volume' vam-report deep.json
+fails 65 'deep.json: is not a volume' vam-report deep.json
 vam-slice part.off --voxel 0.3 -o other.vdb
 fails 65 'voxel' vam-report other.vdb dose.vdb -o x.html
-fails 64 '--sections' vam-report part.vdb --sections 0
+fails 64 '--max-sections' vam-report part.vdb --max-sections 0
 fails 74 '/dev/full' vam-report part.vdb -o /dev/full
 
 # As a browser shows it, over file://. The policy forbids what a test adds, so that it stands in a copy without it.
@@ -67,7 +67,7 @@ look() {
     --user-data-dir="$PWD/.log/browser" "$@" 2>.log/browser.err
 }
 look --dump-dom "file://$PWD/report.html" >/dev/null
-is 'no complaint on its console' "$(grep -c CONSOLE .log/browser.err)" 0
+is 'no message on the console of the browser' "$(grep -c CONSOLE .log/browser.err)" 0
 {
   sed 's/<meta http-equiv="Content-Security-Policy"[^>]*>//; s|</body></html>||' report.html
   cat <<'PAGE'
@@ -93,6 +93,6 @@ document.getElementById('judged').textContent =
 PAGE
 } >judged.html
 look --dump-dom "file://$PWD/judged.html" >dom.html
-is 'the slider moves, both bodies are drawn, and turn' "$(grep -o '<p id="judged">[^<]*' dom.html)" \
+is 'the slider moves; both bodies are drawn and rotate' "$(grep -o '<p id="judged">[^<]*' dom.html)" \
   '<p id="judged">judged true true true true true'
 done_testing

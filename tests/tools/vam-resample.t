@@ -43,7 +43,7 @@ vam-resample --explain --row 0 --set projector.axis_column=512 | awk -F, '$1 == 
 holds "the ray through the axis climbs by Snell's law" "$(awk '{ z = 24.9275; D = 119.808; s = z / sqrt(D * D + z * z)
   climb = s / sqrt(1.53 ^ 2 - s * s); height = z * (D - 12.7) / D + 12.7 * climb
   print ($1 ^ 2 + ($2 - height) ^ 2 + ($3 - climb) ^ 2 + $4 ^ 2) }' ray) < 1e-14"
-is "level rays do not" "$(vam-resample --explain --row 0 --set projector.telecentric_rows=true | awk -F, '$7 > 0' | wc -l)" 1
+is "horizontal rays do not climb" "$(vam-resample --explain --row 0 --set projector.telecentric_rows=true | awk -F, '$7 > 0' | wc -l)" 1
 is "the middle row is that of the map" \
   "$(vam-resample --explain --row 383 --set projector.axis_row=383 | awk -F, 'NR > 1 { print $3 "," $5 "," $8 "," $9 }' | cksum)" \
   "$(vam-resample --explain | awk -F, 'NR > 1 { print $1 "," $2 "," $3 "," $4 }' | cksum)"
@@ -52,8 +52,8 @@ fails 64 'does not apply' vam-resample --explain --to virtual --row 3 -o x.csv
 fails 64 'rows are 0 ... 767' vam-resample --explain --row 768 -o x.csv
 $exr make tall.exr width=64 height=60 pixel=0.26 row=0.26 count=51
 vam-resample tall.exr -o tall-p.exr 2>tall.err
-is "a part whose light strays is resampled with one line on stderr" "$(wc -l <tall.err)" 1
-grep -Eq "tall.exr: the projector's rays climb, by up to 2\.[34].* voxels" tall.err; report $? "which says by how much"
+is "a part that is too tall for horizontal rays is resampled with one warning" "$(wc -l <tall.err)" 1
+grep -Eq "tall.exr: the projector's rays climb, by up to 2\.[34].* voxels" tall.err; report $? "the warning states the deviation"
 quiet "level rays need none" vam-resample --set projector.telecentric_rows=true tall.exr -o level.exr
 quiet "parallel ones neither" vam-resample --set projector.telecentric=true tall.exr -o level.exr
 quiet "nor do a few slices" vam-resample virtual.exr -o few.exr
@@ -73,9 +73,9 @@ holds "linear and cubic agree on a smooth part" "($($exr get linear.exr 1 600 7)
 # Camera
 $exr make camera.exr space=camera width=301 height=60 pixel=0.1 row=0.1 value=1
 vam-resample --to virtual camera.exr >back.exr
-is "as many columns as the camera sees" "$($exr sum back.exr | cut -d' ' -f1-3)" "3 167 60"
+is "as many detector bins as the camera sees" "$($exr sum back.exr | cut -d' ' -f1-3)" "3 167 60"
 holds "no weights by default" "($($exr get back.exr 0 80 3) - 1)^2 < 1e-12"
-vam-resample --to virtual --fresnel --voxel 0.2 --columns 41 camera.exr >glass.exr
+vam-resample --to virtual --fresnel --bin-width 0.2 --detector-bins 41 camera.exr >glass.exr
 holds "Fresnel losses are compensated" "($($exr get glass.exr 0 20 3) - 1 / 0.95611555)^2 < 1e-10"
 
 # 5,000 slices in constant memory
@@ -87,8 +87,8 @@ cp short.exr in.exr; few=$(peak vam-resample --set projector.columns=64 --set pr
 $exr make in.exr count=5000 width=16 height=16 pixel=1
 many=$(peak vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5)
 vam-resample --set projector.columns=64 --set projector.pixel_mm=0.5 <in.exr | tee teed.exr | $exr sum - >sum
-is "5,000 slices pass" "$(cut -d' ' -f1-3 sum)" "5000 64 16"
-is "tee leaves a whole stack" "$($exr sum teed.exr)" "$(cat sum)"
+is "a stack of 5000 slices is resampled" "$(cut -d' ' -f1-3 sum)" "5000 64 16"
+is "tee writes a complete stack" "$($exr sum teed.exr)" "$(cat sum)"
 echo "# peak memory: $few kB for 50 slices, $many kB for 5,000"
 if sanitized; then echo '# AddressSanitizer keeps what is freed: not judged'; else
   holds "in constant memory, but for the parts' headers (4 kB each)" "$many - $few < 20000 + 4 * 5000"
@@ -109,8 +109,8 @@ fails 65 'cover 180 deg' vam-resample half.exr -o x.exr
 fails 64 'to' vam-resample --to camera virtual.exr -o x.exr
 fails 64 'interpolation' vam-resample --interpolation spline virtual.exr -o x.exr
 fails 64 'does not apply' vam-resample --to virtual --no-fresnel camera.exr -o x.exr
-fails 64 'does not apply' vam-resample --voxel 1 virtual.exr -o x.exr
-fails 64 'voxel' vam-resample --to virtual --voxel 0 camera.exr -o x.exr
+fails 64 'does not apply' vam-resample --bin-width 1 virtual.exr -o x.exr
+fails 64 'bin-width' vam-resample --to virtual --bin-width 0 camera.exr -o x.exr
 fails 64 'radius' vam-resample --set vial.radius_mm=-1 virtual.exr -o x.exr
 fails 65 'window' vam-resample --set bath.index=1.5 virtual.exr -o x.exr
 fails 64 'also the input' vam-resample virtual.exr -o virtual.exr

@@ -5,25 +5,27 @@ vam-slice --shape hollow-cylinder --voxel 0.2 -o other.vdb || exit 1
 
 # The coverage itself is a perfect dose.
 quiet "a perfect dose" vam-score --grid target part.vdb --report perfect.json
-holds "its window is the whole dose, but for rounding" "$(json perfect.json pw) > 0.998"
+holds "its process window is the whole dose, except for rounding" "$(json perfect.json pw) > 0.998"
 is "no voxel is wrong" "$(json perfect.json ver)" 0.0
 is "the print is the part" "$(json perfect.json iou)" 1.0
 ok "its own target, given by name" vam-score --grid target part.vdb --target part.vdb
 ok "stdin" sh -c 'vam-score --grid target --target part.vdb <part.vdb'
-ok "JSON on stdout is the report's figures" sh -c 'vam-score --json --grid target part.vdb >out.json'
-is "same numbers" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
+ok "a report on stdout" sh -c 'vam-score --report - --grid target part.vdb >out.json'
+is "the former --json is a report on stdout" "$(vam-score --json --grid target part.vdb 2>warning)" "$(vam-score --report - --grid target part.vdb)"
+is "with a warning" "$(cat warning)" "vam-score: warning: --json is now --report -"
+is "the report on stdout has the figures of the file" "$(json out.json mean_part)" "$(json perfect.json mean_part)"
 is "a line for each figure" "$(vam-score --grid target part.vdb | grep -c '^[a-z]')" 17
-ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0, of [0-9]+ voxels; with the [0-9]+ that the surface cuts [-+0-9.e]+, VER "'
-is "which counts what it says" "$(json perfect.json with_surface.voxels)" \
+ok "the last line is the verdict" sh -c 'vam-score --grid target part.vdb | tail -n 1 | grep -Eq "^verdict +will print: process window [+]0.99[0-9]* of the largest dose, VER 0, of [0-9]+ voxels; including [0-9]+ voxels cut by the surface [-+0-9.e]+, VER "'
+is "the verdict counts part and surface voxels" "$(json perfect.json with_surface.voxels)" \
   $(($(json perfect.json part_voxels) + $(json perfect.json void_voxels) + $(json perfect.json surface_voxels)))
 quiet "surface voxels as figures of their own" vam-score --grid target part.vdb --surface --report all.json
-is "the same" "$(json all.json pw)" "$(json perfect.json with_surface.pw)"
+is "the verdict has the window of --surface" "$(json all.json pw)" "$(json perfect.json with_surface.pw)"
 
 quiet "met conditions" vam-score --grid target part.vdb --require 'ver<=0.01, pw>=0'
 vam-score --grid target part.vdb --require 'pw>1.5,ver<=0' >table 2>why
 is "an unmet condition is status 1" $? 1
-ok "with the reason" grep -Eq "^vam-score: pw = [0-9.]+, but pw>1.5 is required$" why
-holds "after the table" "$(wc -l <table) > 10"
+ok "an unmet condition is reported with its value" grep -Eq "^vam-score: pw = [0-9.]+, but pw>1.5 is required$" why
+holds "the table is printed before the reason" "$(wc -l <table) > 10"
 quiet "at a critical dose" vam-score --grid target part.vdb --critical-dose 0.5 --report at.json
 is "all of the part cures" "$(json at.json cured_part)" 1.0
 
@@ -35,7 +37,7 @@ is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quali
 fails 64 "no figure is called 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
 fails 64 'cured_wrong: the critical dose is not known; give --critical-dose' \
   vam-score --grid target part.vdb --require 'ver<=1,cured_wrong<=1'
-quiet "known, it is judged" vam-score --grid target part.vdb --critical-dose 0.5 --require 'cured_wrong<=0'
+quiet "a condition on a known figure is evaluated" vam-score --grid target part.vdb --critical-dose 0.5 --require 'cured_wrong<=0'
 fails 64 'duration_s: the exposure is not known' vam-score --grid target part.vdb --critical-dose 0.5 --require 'duration_s<9'
 fails 64 'efficiency: requires the projections' vam-score --grid target part.vdb --require 'efficiency>0'
 fails 64 "is not a number" vam-score --grid target part.vdb --require 'ver<=x'
@@ -43,10 +45,10 @@ fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'isovalue' vam-score --grid target part.vdb --isovalue -1
 fails 64 'is also the input' vam-score --grid target part.vdb --mesh part.vdb
 fails 64 'standard output holds the figures' vam-score --grid target part.vdb --mesh -
-fails 64 'as --reach does; name another file' vam-score --grid target part.vdb --reach one.ply --mesh ./one.ply
+fails 64 'as --lit-fraction does; name another file' vam-score --grid target part.vdb --lit-fraction one.ply --mesh ./one.ply
 fails 65 "no grid 'dose'" vam-score part.vdb
 fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
-fails 65 'nothing prints' vam-score --grid target part.vdb --mesh none.ply --isovalue 7
+fails 65 'nothing prints at a dose of 7 .*; choose an --isovalue below' vam-score --grid target part.vdb --mesh none.ply --isovalue 7
 fails 66 'absent.vdb' vam-score absent.vdb
 fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb
 head -c 2000 part.vdb >cut.vdb

@@ -6,15 +6,15 @@ box 4 6 1 >box.off
 awk 'NR < 3 { print; next } NF == 3 { print -1.01 * $2 + 10, 1.01 * $1 + 20, 1.01 * $3 + 30; next } { print }' box.off >moved.off
 
 quiet 'a box against itself' vam-sdf box.off box.off --align none --report same.json
-holds 'deviates by nothing' "$(json same.json print_to_design.rms_mm) < 1e-9"
+holds 'a box does not deviate from itself' "$(json same.json print_to_design.rms_mm) < 1e-9"
 quiet 'a moved and enlarged box' vam-sdf moved.off box.off --fit-scale --report moved.json -o moved.ply --histogram moved.csv
-holds 'is found again' "$(json moved.json hausdorff_mm) < 1e-3"
-holds 'with its growth' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
+holds 'the alignment recovers the move' "$(json moved.json hausdorff_mm) < 1e-3"
+holds 'the fitted scale is that of the box' "$(json moved.json alignment.scale) * 1.01 > 0.9999 && $(json moved.json alignment.scale) * 1.01 < 1.0001"
 quiet 'the histogram as an image' vam-sdf moved.off box.off --histogram moved.png
-quiet 'without scale' vam-sdf moved.off box.off --report rigid.json
+quiet 'an alignment without scale' vam-sdf moved.off box.off --report rigid.json
 # Grown by 1 % about the centre: the faces stand out by 0.02, 0.03 and 0.005.
-holds 'the growth shows' "$(json rigid.json hausdorff_mm) > 0.02 && $(json rigid.json hausdorff_mm) < 0.045"
-holds 'outwards' "$(json rigid.json print_to_design.mean_mm) > 0.004"
+holds 'without scale the enlargement is a deviation' "$(json rigid.json hausdorff_mm) > 0.02 && $(json rigid.json hausdorff_mm) < 0.045"
+holds 'the deviation is outwards' "$(json rigid.json print_to_design.mean_mm) > 0.004"
 head -c 400 moved.ply | grep -aq scalar_distance; report $? 'the PLY has the scalar CloudCompare reads'
 is 'the histogram is of the whole area' "$(awk -F, 'NR > 1 { s += $3 } END { printf "%.0f", s }' moved.csv)" 100
 
@@ -22,7 +22,7 @@ vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
 quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --report volume.json
 # The bigger sphere stands on the same plane: its centre is 0.2 higher. Mean over the sphere 0.2 + d^2/(3R) = 0.204.
-holds 'two spheres of different size' "$(json volume.json print_to_design.mean_mm) > 0.19 && $(json volume.json print_to_design.mean_mm) < 0.22"
+holds 'the deviation of two spheres is the difference of their radii' "$(json volume.json print_to_design.mean_mm) > 0.19 && $(json volume.json print_to_design.mean_mm) < 0.22"
 
 quiet 'a condition that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
 fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --require 'rms<=0.001'

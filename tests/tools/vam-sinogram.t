@@ -48,8 +48,8 @@ vam-sinogram --filter ram-lak --absorption 0.2 --at-wall --set vial.radius_mm=10
 holds "intensity at the wall" "($($exr get wall.exr $middle $centre 0) / $($exr get axis.exr $middle $centre 0) - 7.389)^2 < 0.01^2"
 
 # --- sizes and streams ---
-vam-sinogram --columns 31 --angles 7 part.vdb | $exr sum - | cut -d' ' -f2,3 >size
-is "number of columns and angles" "$(cat size)" "31 7"
+vam-sinogram --detector-bins 31 --angles 7 part.vdb | $exr sum - | cut -d' ' -f2,3 >size
+is "number of detector bins and angles" "$(cat size)" "31 7"
 vam-sinogram <part.vdb >stdin.exr
 is "stdin and file give the same pixels" "$($exr sum stdin.exr)" "$($exr sum pipe.exr)"
 taskset -c 0 vam-sinogram --filter hann part.vdb >one.exr  # the history, and so the seal, has the options
@@ -67,7 +67,7 @@ fails 65 'cut.vdb' vam-sinogram cut.vdb -o x.exr
 fails 65 'noise.vdb' vam-sinogram noise.vdb -o x.exr
 fails 65 'target' vam-sinogram --grid dose part.vdb -o x.exr
 fails 64 'angles' vam-sinogram --angles 0 part.vdb -o x.exr
-fails 64 'columns' vam-sinogram --columns 0 part.vdb -o x.exr
+fails 64 'detector-bins' vam-sinogram --detector-bins 0 part.vdb -o x.exr
 fails 64 'filter' vam-sinogram --filter ramp part.vdb -o x.exr
 fails 64 'cutoff' vam-sinogram --filter hann --cutoff 0 part.vdb -o x.exr
 fails 64 'requires --filter' vam-sinogram --cutoff 0.5 part.vdb -o x.exr

@@ -77,62 +77,62 @@ volume 1000 vam-slice quads.obj --unit cm --scale 0.5 --voxel 0.25
 volume 216 vam-slice cube.stl --fit 6 --voxel 0.25
 volume 64 sh -c 'vam-slice --voxel 0.25 "$@" <cube.stl' -
 ok "repairs are reported" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
-ok "votes are reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 open edges remain; the inside test is a vote"'
+ok "votes are reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 boundary edges remain; the inside test is a vote"'
 quiet "a closed mesh needs no warning" vam-slice cube.stl --voxel 0.5 -o out.vdb
 ok "the largest size that fits" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
-holds "it fills the circle but for half a voxel's diagonal" \
+holds "it fills the circle except for half the diagonal of a voxel" \
   "($(json report.json radius_mm) + 0.25 / sqrt(2) - $(json report.json writable_radius_mm))^2 < 1e-12"
 ok "the writable circle" vam-slice cube.stl --extent writable --voxel 0.25 -o out.vdb --report report.json
-is "its voxels" "$(json report.json voxels.0)" 70
+is "its voxels fill the circle" "$(json report.json voxels.0)" 70
 
-ok "up" vam-slice --shape box:x=2,y=4,z=6 --up y --mirror x --voxel 0.25 -o out.vdb --report report.json
+ok "the y axis of the file upwards" vam-slice --shape box:x=2,y=4,z=6 --up y --mirror x --voxel 0.25 -o out.vdb --report report.json
 holds "y points up" "($(json report.json size_mm.2) - 4)^2 < 1e-12"
 says() {  # says REGEX COMMAND...: succeeds with one warning that matches
   regex=$1; shift
   ok "warns '$regex': $*" sh -c '"$@" 2>said && [ "$(wc -l <said)" -eq 1 ]' - "$@"
   ok "so it says" grep -Eq -- "warning: .*$regex" said
 }
-says 'metres.obj: no voxel .*is the file in m ' vam-slice metres.obj --voxel 0.1 -o out.vdb
-says 'inches.obj: the part is only 0.6 mm large; is the file in cm .--unit cm. or in .--unit in.' \
+says 'metres.obj: no voxel .*is its unit m[?]' vam-slice metres.obj --voxel 0.1 -o out.vdb
+says 'inches.obj: the part is only 0.6 mm large; is its unit cm or in[?]' \
   vam-slice inches.obj --voxel 0.1 -o out.vdb
-quiet "a size that is requested" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
-says 'no voxel .*covered to 0.33 at most.; --voxel' \
+quiet "a requested size causes no warning" vam-slice inches.obj --scale 1 --voxel 0.1 -o out.vdb
+says 'no voxel .*covered to 0.33 at most.; voxels of' \
   vam-slice --shape box:x=4,y=4,z=0.1 --stretch-z 1 --voxel 0.15 -o out.vdb
 
 # The height in the image: level with the lens, in the image, or as requested
 place() { vam-slice --shape cone:bottom=8,height=6 --voxel 0.25 "$@" -o out.vdb --report report.json && json report.json place.mm; }
 stretch=$(json gyroid.json stretch_z)
 is "level with the lens" "$(place)" 0.0
-holds "as high as requested, in whole voxels" "($(place --place 3) - 12 * 0.25 / $stretch)^2 < 1e-12"
-is "by the option" "$(json report.json place.by)" option
+holds "the part is raised by the requested height, in whole voxels" "($(place --place 3) - 12 * 0.25 / $stretch)^2 < 1e-12"
+is "the report states that an option set the place" "$(json report.json place.by)" option
 low="--set projector.axis_row=767"
 holds "in an image that begins at the lens" "$(place $low) > 2.9 && $(place $low) < 3.3"
-is "by default" "$(json report.json place.by)" default
+is "the report states that the place is the default" "$(json report.json place.by)" default
 holds "auto puts the base of a cone level with the lens" "$(place --place auto) > 2.8 && $(json report.json place.mm) < 3.3"
-is "by auto" "$(json report.json place.by)" auto
-quiet "a mesh, too" vam-slice cube.stl --voxel 0.25 --place auto $low -o out.vdb
-ok "an insert goes along" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 --place 2 -o out.vdb
-fails 65 'spans z = -57.*; --place auto finds a height in them' vam-slice --shape cone --voxel 0.25 --place -50 -o x.vdb
+is "the report states that the place was chosen" "$(json report.json place.by)" auto
+quiet "a mesh is placed by auto" vam-slice cube.stl --voxel 0.25 --place auto $low -o out.vdb
+ok "an insert is raised with the part" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 --place 2 -o out.vdb
+fails 65 'spans z = -57.*; --place auto finds a height within them' vam-slice --shape cone --voxel 0.25 --place -50 -o x.vdb
 fails 64 "'high' is neither a height in mm nor auto" vam-slice --shape cone --voxel 0.25 --place high -o x.vdb
 fails 64 'omit --any-height' vam-slice --shape cone --voxel 0.25 --place auto --any-height -o x.vdb
 
 # Inserts
 ok "a shaft in a handle" vam-slice --shape handle --insert-shape screwdriver --voxel 0.25 -o insert.vdb
-ok "two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
+ok "target and insert are two grids" sh -c 'vdb_print insert.vdb | grep -q "^insert" && vdb_print insert.vdb | grep -q "^target"'
 ok "a mesh as insert, longer than the part" vam-slice cube.stl --insert hollow.stl --voxel 0.25 -o insert.vdb
 
 cutting="vam-slice --shape box:x=6,y=6,z=4 --insert-shape box:x=2,y=2,z=8 --voxel 0.25"
 quiet "an insert cut out of the part" $cutting --cut-insert 0 --report report.json -o insert.vdb
-holds "takes its volume" "($(json report.json volume_mm3) - (144 - 16))^2 < 1e-4"
-holds "they touch and share nothing" "$(json report.json insert.contact_voxels) > 500 && $(json report.json insert.shared_mm3) < 1e-6"
-is "in all slices of the part" "$(json report.json insert.slices_of_part)" "$(json report.json voxels.2)"
+holds "the part loses the volume of the insert" "($(json report.json volume_mm3) - (144 - 16))^2 < 1e-4"
+holds "part and insert touch and do not overlap" "$(json report.json insert.contact_voxels) > 500 && $(json report.json insert.shared_mm3) < 1e-6"
+is "the insert is in all slices of the part" "$(json report.json insert.slices_of_part)" "$(json report.json voxels.2)"
 quiet "with a clearance" $cutting --cut-insert 0.25 --report report.json -o insert.vdb
 # The faces move by one voxel, the edges by 0.59 of a voxel's square for the 0.79 of a quarter of a circle.
-holds "its volume" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
-says 'takes up 16 mm3 of the part; --cut-insert 0 subtracts it' $cutting -o insert.vdb
-says 'small.stl: misses the part; it is 1 x 1 x 1 mm large, its middle at .5, 0, 0. mm; check --insert-unit' \
+holds "the clearance is subtracted, too" "($(json report.json volume_mm3) - (144 - 4 * (6.25 - 4 * 0.414 * 0.25^2)))^2 < 0.05^2"
+says 'overlaps the part by 16 mm3; --cut-insert 0 subtracts it' $cutting -o insert.vdb
+says 'small.stl: misses the part; it measures 1 x 1 x 1 mm and is centred at .5, 0, 0. mm; check --insert-unit' \
   vam-slice cube.stl --insert small.stl --insert-scale 0.25 --insert-at 5,0,0 --voxel 0.25 -o insert.vdb
-says 'takes up' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert small.stl --insert-unit cm --insert-scale 0.05 \
+says 'overlaps the part' vam-slice cube.stl --fit 8 --rotate 0,0,90 --insert small.stl --insert-unit cm --insert-scale 0.05 \
   --voxel 0.25 --report report.json -o insert.vdb
 holds "the insert keeps its size" "($(json report.json insert.size_mm.0) - 2)^2 + ($(json report.json insert.size_mm.2) - 2)^2 < 1e-9"
 holds "the part has its own" "($(json report.json size_mm.2) - 8)^2 < 1e-9"
@@ -177,14 +177,14 @@ fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
 fails 65 'no size' vam-slice point.stl -o x.vdb
 fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
-fails 65 'not closed.*open edges' vam-slice lidless.stl --fill exact -o x.vdb
+fails 65 'not closed.*boundary edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
-fails 65 'leave out --no-centre; --scale 0.0572 or --fit-writable fits it' vam-slice far.stl --no-centre -o x.vdb
+fails 65 'omit --no-centre; --scale 0.0572 or --fit-writable fits it' vam-slice far.stl --no-centre -o x.vdb
 fails 65 '; --scale 2.91 or --fit-writable fits it, --extent' vam-slice cube.stl --scale 5 -o x.vdb
-ok "which it does" vam-slice cube.stl --scale 2.91 -o x.vdb
+ok "the stated scale fits" vam-slice cube.stl --scale 2.91 -o x.vdb
 fails 65 '; --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
 fails 65 '; --voxel 1.51 fits it' vam-slice stack --voxel 4 -o x.vdb
-ok "images, too" vam-slice stack --voxel 1.51 -o x.vdb
+ok "the stated voxel fits images" vam-slice stack --voxel 1.51 -o x.vdb
 fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
 fails 65 'array.npy: is a NumPy array .*, not a mesh; one of' vam-slice array.npy -o x.vdb
 fails 65 'rows cover' vam-slice --shape cylinder:height=60 -o x.vdb

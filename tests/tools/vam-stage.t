@@ -5,46 +5,46 @@ shim=$(vam-sim-stage --shim)
 stage() { command=$1; shift; LD_PRELOAD=$shim vam-stage "$command" --device "gcs:$PWD/stage" "$@"; }
 turning() { tail -n 1 truth | grep -q '"speed_deg_s":1\.0'; }
 
-# Bad options touch nothing.
+# Wrong options open nothing.
 fails 64 'no command' vam-stage
 fails 64 'unknown scheme' vam-stage identify --device usb:1 --log events
 fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
 fails 64 'out of range' vam-stage spin --turns 0
 fails 64 "'0' is not one of 1, -1" vam-stage spin --direction 0 --log events
-fails 65 "200 deg/s exceeds the stage's maximum of 90; give a lower --speed" vam-stage move --device sim: --home --to 9 --speed 200
+fails 65 "200 deg/s exceeds the stage's maximum of 90; give a lower --speed" vam-stage move --device sim: --home --angle 9 --speed 200
 fails 64 'not a number' vam-stage spin --device 'sim:?jitter_ms=much'
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
 fails 73 'cannot be written' vam-stage identify --log missing/log
 
-# The stage is the printer file's; a simulated one never stands in for it.
+# The stage is that of the printer file; a simulated one is used only if it is named.
 mkdir lab; printf '[stage]\ndevice = "grbl:/dev/nope"\nturns = 3\n' >lab/printer.toml
 printf '[stage]\ndevice = "usb:1"\n' >lab/odd.toml
-fails 64 'stage: none is named; give --device or stage.device .*; sim: is a simulated one' vam-stage home --log why
+fails 64 'stage: no device is set; give --device, or stage.device in the printer file, .*; sim: is a simulated one' vam-stage home --log why
 (cd lab && vam-stage home) 2>said
-is './printer.toml names it' "$? $(grep -c "^vam-stage: /dev/nope: not a serial port" said)" '69 1'
+is 'the stage of ./printer.toml' "$? $(grep -c "^vam-stage: /dev/nope: not a serial port" said)" '69 1'
 fails 69 '/dev/nope' env VAM_PRINTER=lab/printer.toml vam-stage home
 fails 69 '/dev/nope' vam-stage home --printer lab/printer.toml
 fails 65 "odd.toml:2: stage.device: 'usb:1': unknown device scheme" vam-stage home --printer lab/odd.toml
 fails 65 'use one of gcs:, tic:, grbl:, zaber:, sim:' vam-slice --shape gyroid --printer lab/odd.toml --fit-writable -o no.vdb
 fails 64 "camera.device: 'webcam': unknown device scheme" vam-stage home --set camera.device=webcam
 for scheme in $(vam-stage home --help | tr ' ,' '\n\n' | sed -n 's/^\([a-z0-9]*\):[A-Z][A-Z]*$/\1/p' | sort -u) sim; do
-  ok "the printer file knows $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
+  ok "the printer file accepts $scheme:" vam-stage home --print-printer --set "stage.device=$scheme:x"
 done
-ok 'options may stand before the command' vam-stage --device sim: identify
-ok '--device goes before it' vam-stage identify --device sim: --printer lab/printer.toml --log events
+ok 'options may precede the command' vam-stage --device sim: identify
+ok '--device overrides the printer file' vam-stage identify --device sim: --printer lab/printer.toml --log events
 is 'a simulated stage is marked in the log' "$(grep -c '"device":"sim:".*"simulated":true' events)" 1
 rm events
 
 # The simulator inside the tool.
 ok 'identify' vam-stage identify --device sim:
 vam-stage identify --set stage.device=sim: >about
-is 'the model, marked' "$(json about model) $(json about simulated)" 'C-863.11 true'
+is 'the model is marked as simulated' "$(json about model) $(json about simulated)" 'C-863.11 true'
 ok 'ports' vam-stage ports
-quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --to 20 --speed 80
-fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --to 20
+quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --angle 20 --speed 80
+fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --angle 20
 vam-stage follow --device sim: --duration 0.2 --rate 50 >samples
-is 'follow takes its samples' "$(wc -l <samples)" 10
+is 'follow prints its samples' "$(wc -l <samples)" 10
 holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
 
 # The same controller behind a serial line.
@@ -55,12 +55,23 @@ fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move -
 quiet 'home over the line' stage home
 stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
 is 'spin has status 0' $? 0
-is 'silently' "$(cat errors)" ''
-holds 'its angle ends past the turn' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
-holds 'and began before the run-up' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90"
-ok 'the stage stands still' stood
+is 'and prints no message' "$(cat errors)" ''
+holds 'the last angle is beyond the turn' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+holds 'the first angle is before the run-up' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90"
+ok 'the stage is at standstill' stood
 is 'two events' "$(wc -l <events)" 2
 ok 'with both times' grep -Eq '"utc":"20[0-9-]+T[0-9:.]+Z","t_monotonic_s":[0-9.]+,"event":"end"' events
+
+# A controller has no reference after power-on, and setting its zero creates none.
+stage_down
+stage_up --acceleration 5000 --max-speed 720
+for try in 1 2; do
+  fails 65 'not referenced: .*--home, or run `vam-stage home`' stage spin --speed 360 --run-up 0.25
+  fails 65 'not referenced' stage spin --speed 360 --plan
+done
+fails 65 'not referenced' stage move --angle 3
+is 'no motion and no setting' "$(grep -Ec '"moving"|POS 1' truth)" 0
+stage home
 
 # A second user is refused at once, with the pid of the first.
 LD_PRELOAD=$shim vam-stage spin --device "gcs:$PWD/stage" --speed 1 >/dev/null &
@@ -68,7 +79,7 @@ first=$!
 await turning
 if chrt -r 2 true 2>/dev/null; then
   urgency() { chrt -p "$1" | sed -n 's/.*priority: //p'; }
-  is 'it goes before other programs, and its guardian before it' "$(urgency $first) $(urgency "$(pgrep -P $first)")" '1 2'
+  is 'real-time priority, that of the guardian higher' "$(urgency $first) $(urgency "$(pgrep -P $first)")" '1 2'
 else
   echo '# no leave for real-time priorities: not tried'
 fi
@@ -76,14 +87,14 @@ start=$(date +%s%N)
 fails 75 "in use by process $first;" stage status
 holds 'within a second' "$(date +%s%N) - $start < 1e9"
 kill -9 $first 2>/dev/null; wait $first
-is 'a killed user is killed' $? 137
+is 'a user of the device is killed' $? 137
 sleep 0.1
 ok 'the device is free again' stage status
 stage status >state
-is 'and the stage stands still' "$(json state moving)" false
+is 'and the stage is at standstill' "$(json state moving)" false
 stage_down
 
-# The simulated line is anybody's, one user after the other. Nothing is refused to root, who becomes nobody for this.
+# Any user can open the simulated line, one after the other. Root, who has all permissions, becomes nobody for this.
 anybody() { if [ "$(id -u)" -eq 0 ]; then setpriv --reuid=65534 --regid=65534 --clear-groups "$@"; else "$@"; fi; }
 mkdir plain; chmod 777 plain; chmod 755 .
 cat >twice.sh <<'SH'
@@ -99,40 +110,43 @@ else
   echo '# nobody may not run these programs: not tried'
 fi
 
-# Baud rates are found, and a silent line is not waited for.
+# Baud rates are detected, and the wait for a silent line is bounded.
 stage_up --baud 9600
 stage identify >about
 is 'the baud rate is found' "$(json about model)" C-863.11
 LD_PRELOAD=$shim vam-stage identify --device "gcs:$PWD/stage?baud=115200" 2>errors
-is 'the wrong one is a wrong answer or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
+is 'a wrong baud rate gives a malformed reply or none' "$(case $? in 75 | 76) echo refused ;; esac)" refused
 stage_down
 
-# The second controller of a daisy chain: all is addressed to it, the guardian's order to stop included.
+# The second controller of a daisy chain: every command is addressed to it, the stop command of the guardian included.
 stage_up --address 2 --acceleration 5000 --max-speed 720
 LD_PRELOAD=$shim vam-stage spin --home --device "gcs:$PWD/stage?address=2" --speed 1 >/dev/null &
 chained=$!
 await turning
 kill -9 $chained; wait $chained 2>/dev/null
 await stood
-ok 'killed, it leaves a stage in a chain standing' stood
+ok 'after SIGKILL a stage in a chain is at standstill' stood
 stage_down
 
-# A GRBL board that its port resets has lost its position.
+# A GRBL board that is reset when its port is opened has lost its position.
 stage_up --protocol grbl --reset-at-open
-fails 65 'not referenced: its zero may be anywhere; give --home, or run `vam-stage home`' \
-  env LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 60
+for try in 1 2 3; do
+  fails 65 'not referenced: the position of its zero is unknown; give --home, or run `vam-stage home`' \
+    env LD_PRELOAD=$shim vam-stage spin --device "grbl:$PWD/stage" --speed 60
+done
+is 'no motion, and the board is not unlocked' "$(grep -Ec '"moving"|[$]X' truth)" 0
 stage_down
 
 # A GRBL board instead.
 stage_up --protocol grbl --acceleration 5000 --max-speed 720
 fails 64 'not one of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"
 LD_PRELOAD=$shim vam-stage spin --home --device "grbl:$PWD/stage" --speed 360 --run-up 0.25 --rate 1 >samples
-is 'one sample per second is not taken for a hang' $? 0
-holds 'GRBL turns too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
-ok 'and stands' stood
+is 'one sample per second does not count as a hang' $? 0
+holds 'GRBL rotates, too' "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+ok 'and is at standstill' stood
 stage_down
 
-# A Zaber stage, the second of its chain: it turns only when it is homed, and is told all by its address.
+# A Zaber stage, the second of its chain: it moves only when homed, and every command has its address.
 for old in '' --old-firmware; do
   stage_up --protocol zaber $old --address 2 --acceleration 5000
   zaber() { verb=$1; shift; LD_PRELOAD=$shim vam-stage $verb --device "zaber:$PWD/stage?address=2" "$@"; }
@@ -141,23 +155,23 @@ for old in '' --old-firmware; do
   fails 76 'BADAXIS' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?address=2&axis=2"
   fails 64 'axis' env LD_PRELOAD=$shim vam-stage identify --device "zaber:$PWD/stage?axis=X"
   zaber spin --home --speed 360 --run-up 0.25 --rate 1 >samples
-  holds "Zaber${old:+ ($old)} turns too" "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
-  ok 'and stands' stood
+  holds "Zaber${old:+ ($old)} rotates, too" "$(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+  ok 'and is at standstill' stood
   LD_PRELOAD=$shim vam-stage spin --device "zaber:$PWD/stage?address=2" --speed 1 >/dev/null & chained=$!
   await turning
   kill -9 $chained; wait $chained 2>/dev/null
   await stood
-  ok 'killed, it leaves a Zaber stage standing' stood
+  ok 'after SIGKILL a Zaber stage is at standstill' stood
   stage_down
 done
 fails 64 'steps_per_deg' vam-stage identify --device tic:
 fails 69 'no such device|not available' vam-stage identify --device 'tic:?steps_per_deg=10'
 
-# Injected faults: the error names the fault, and the stage stands still.
+# Injected faults: the error names the fault, and the stage is at standstill.
 spoilt() {  # spoilt STATUS REGEX FAULT
-  stage_up --acceleration 5000 --max-speed 720 --fault "$3"
-  fails "$1" "$2" stage spin --speed 360 --run-up 0.25
-  case $3 in unplug*) ;; *) await stood; ok "$3: the table stands" stood ;; esac
+  stage_up --acceleration 5000 --max-speed 720 --start-angle 1 --fault "$3"
+  fails "$1" "$2" stage spin --home --speed 360 --run-up 0.25
+  case $3 in unplug*) ;; *) await stood; ok "$3: the stage is at standstill" stood ;; esac
   stage_down
 }
 spoilt 76 'was answered' garbage@POS?:20
@@ -171,6 +185,6 @@ spoilt 69 'unplugged' power-loss@POS?:20
 spoilt 76 'was expected' block@POS?:80
 spoilt 76 'is blocked' block@POS?:2
 
-# A full disk behind the samples.
+# A full disk as output.
 fails 74 'write failed' sh -c 'vam-stage follow --device sim: --duration 1 >/dev/full'
 done_testing

@@ -1,53 +1,54 @@
 #!/bin/sh
-# A print that is watched: the line on a terminal, the page that renews itself, in a real browser where there is one.
+# The line on a terminal and the page that refreshes itself, in a real browser if there is one.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-printf '[camera]\ndevice = "sim:?lit_s=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
-print() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 "$@"; }
+printf '[camera]\ndevice = "sim:?lit=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
+print() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 "$@"; }
 
-fails 66 'nowhere: is no folder' vam-status nowhere
-fails 66 'frames.exr: is no folder' vam-status frames.exr
+fails 66 'nowhere: not a folder' vam-status nowhere
+fails 66 'frames.exr: not a folder' vam-status frames.exr
 mkdir empty
 fails 65 'empty: has no events.jsonl' vam-status empty
-fails 64 '--folow: unknown option; did you mean --follow' vam-status empty --folow
-fails 64 '^vam-print: --page: takes no value' vam-print frames.exr --display null: --page=x
+fails 64 '--wach: unknown option; did you mean --watch' vam-status empty --wach
+fails 64 '^vam-print: --run-page: takes no value' vam-print frames.exr --display null: --run-page=x
 
-# On a terminal: the line, renewed in place, and the page beside it.
-script -qefc "TERM=dumb vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --views 20 --turns 3 --page --run run" typed \
+# On a terminal: the line, refreshed in place, and the page.
+script -qefc "TERM=dumb vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 --turns 3 --run-page --run run" typed \
   >/dev/null 2>&1 & printing=$!
 await test -s run/page.html
 sleep 3
 if vam-status run >line; then cp run/page.html during.html; fi
 wait $printing; is 'a print that is watched has status 0' $? 0
-ok 'the line tells the state' grep -Eq '^(getting ready|running up, dark|printing)  turn [0-9.]+ of 3  angle [0-9.]+ deg  dose given [0-9.]+ %  missed [0-9]+ of [0-9]+ blanks' line
-holds 'it was renewed on the terminal' "$(tr '\r' '\n' <typed | grep -c 'dose given') > 2"
-is 'at last' "$(vam-status run | sed 's/  angle .* deg\(  dose given [0-9.]* %\).*/\1/')" 'ended: done  turn 3.00 of 3  dose given 100.0 %'
-is 'the same with --follow, once' "$(vam-status run --follow | grep -c .)" 1
+ok 'the line states the progress' grep -Eq '^(preparing|run-up, dark|printing)  turn [0-9.]+ of 3  angle [0-9.]+ deg  dose delivered [0-9.]+ %  missed [0-9]+ of [0-9]+ vertical blanks' line
+holds 'the line is refreshed on the terminal' "$(tr '\r' '\n' <typed | grep -c 'dose delivered') > 2"
+is 'at the end' "$(vam-status run | sed 's/  angle .* deg\(  dose delivered [0-9.]* %\).*/\1/')" 'ended: done  turn 3.00 of 3  dose delivered 100.0 %'
+is 'the same with --watch, once' "$(vam-status run --watch | grep -c .)" 1
 ok 'the page is among the hashes' grep -q page.html run/SHA256SUMS
-ok 'and as it was' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
-is 'no longer renewed' "$(grep -c http-equiv=.refresh during.html) $(grep -c http-equiv=.refresh run/page.html)" '1 0'
+ok 'and unchanged' sh -c 'cd run && sha256sum --check --quiet SHA256SUMS'
+is 'and no longer refreshed' "$(grep -c http-equiv=.refresh during.html) $(grep -c http-equiv=.refresh run/page.html)" '1 0'
 print --run quiet >out 2>err
-is 'not on a terminal, nothing is printed and no page made' "$? $(cat out err | grep -c .) $(ls quiet | grep -c html)" '0 0 0'
+is 'without a terminal no line is printed and no page written' "$? $(cat out err | grep -c .) $(ls quiet | grep -c html)" '0 0 0'
 
-# How far: half of the flips. The dose is that of the light that was given, by vam-dose on the same log.
+# Progress after half of the flips: the dose is that of vam-dose on the same log.
 cp -r run half
+rm half/SHA256SUMS  # which a print writes at its end
 sed -i '/"event":"end"/d' half/events.jsonl
 head -n $(($(wc -l <run/flips.jsonl) / 2)) run/flips.jsonl >half/flips.jsonl
 last=$(tail -n 1 half/flips.jsonl | grep -o '"angle_deg":[-0-9.e]*' | cut -d: -f2)
 printf '{"t_monotonic_s":1,"angle_deg":%s,"sigma_deg":0}\n{"t_mono' "$last" >half/angles.jsonl
 touch half/events.jsonl
-given=$(vam-status half | sed 's/.*dose given \([0-9.]*\) %.*/\1/')
+given=$(vam-status half | sed 's/.*dose delivered \([0-9.]*\) %.*/\1/')
 ok 'vam-dose on it' vam-dose frames.exr --shown half --printer half/printer.toml --report dose.json -o dose.vdb
-holds 'dose given' "($given / 100 - $(json dose.json shown_turns) / 3) ^ 2 < 0.01 ^ 2"
+holds 'dose delivered' "($given / 100 - $(json dose.json shown_turns) / 3) ^ 2 < 0.01 ^ 2"
 touch -d '1 hour ago' half/*.jsonl
-ok 'a print that was killed' sh -c 'vam-status half | grep -q "^not ended, but silent for 3[56]"'
+ok 'a print that was killed' sh -c 'vam-status half | grep -q "^no log entry for 3[56][0-9][0-9] s; end not logged"'
 echo '{"turns":1.5,"missing_percent":34.25,"iou":0.5}' >half/ost.jsonl
 ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
 
-# Names are data: of the folder, of records, of an outcome.
+# Names of folder, records and outcome are escaped.
 hostile='<img src=x onerror=document.title=1>&amp;"'
 mv half "$hostile"
 cat >"$hostile/calibration.json" <<'JSON'
@@ -55,13 +56,13 @@ cat >"$hostile/calibration.json" <<'JSON'
  "<b onmouseover='x'>": {"utc": 7, "valid_until": [], "status": null}}
 JSON
 ok 'a page of hostile names' vam-status "$hostile" --page page.html
-is 'has none of their elements' "$(grep -Ec '<img src=x|<b onm|document\.title=2</script>' page.html)" 0
+is 'contains no element of theirs' "$(grep -Ec '<img src=x|<b onm|document\.title=2</script>' page.html)" 0
 rm "$hostile/sinogram.exr"
 vam-status "$hostile" --page bare.html 2>bare.err
-is 'a page without sinogram, which is reported' "$? $(grep -c 'the page has no images of the light' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
+is 'a page without sinogram, which is reported' "$? $(grep -c 'the page is written without projections and dose' bare.err) $(grep -c '<svg' bare.html)" '0 1 0'
 fails 74 '/dev/full: ' vam-status run --page /dev/full
 vam-status run --page - | head -c 100 >/dev/null; report 0 'a page to head'
-is 'nothing of it on a terminal line to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1
+is 'no line on standard output to a full disk' "$(vam-status run 2>&1 >/dev/full | grep -c .)" 1
 
 # As a browser shows it, over file://, with the images.
 browser=$(command -v chromium || command -v google-chrome)
@@ -72,8 +73,8 @@ fi
 look() { timeout 60 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$PWD/.log/browser" "$@" 2>.log/browser.err; }
 dom() { look --dump-dom "$@" >dom.html; }
 dom "file://$PWD/page.html"
-is 'the title is text' "$(grep -c '<title>not ended, but silent for [0-9]* s - &lt;img src=x onerror=document.title=1&gt;&amp;amp;"</title>' dom.html)" 1
-is 'no element is made of a name' "$(grep -Ec '<b onm|<img src="x"' dom.html)" 0
+is 'the title is text' "$(grep -c '<title>no log entry for [0-9]* s; end not logged - &lt;img src=x onerror=document.title=1&gt;&amp;amp;"</title>' dom.html)" 1
+is 'no name becomes an element' "$(grep -Ec '<b onm|<img src="x"' dom.html)" 0
 look --screenshot="$PWD/page.png" --window-size=1100,1200 "file://$PWD/during.html" >/dev/null
 python3 - <<'PY' >colours
 import subprocess, struct, zlib
@@ -109,7 +110,7 @@ violet = sum(1 for row in rows for x in range(0, len(row), step) if 55 < row[x] 
 print(width, height, red > 20, violet > 2000)
 PY
 is 'the mark and the dose are drawn' "$(cat colours)" '1100 1200 True True'
-# It renews itself: a browser that has it open shows what is written later.
+# The page refreshes itself: an open browser shows a later version.
 sed 's/content="2"/content="1"/' during.html >renewed.html
 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$PWD/.log/open" --remote-debugging-port=0 \
   "file://$PWD/renewed.html" >/dev/null 2>&1 & viewer=$!
@@ -118,8 +119,8 @@ titles() {
     .log/open/DevToolsActivePort 2>/dev/null
 }
 shows() { titles | grep -q "$1"; }
-await shows '"title": "[a-z, ]* - run"'; report $? 'a browser has the page open'
+await shows '"title": "[a-z, -]* - run"'; report $? 'a browser has the page open'
 sed -i 's/<title>/<title>later /' renewed.html
-await shows '"title": "later [a-z, ]* - run"'; report $? 'and shows what is written later'
+await shows '"title": "later [a-z, -]* - run"'; report $? 'and shows what is written later'
 kill $viewer; wait $viewer 2>/dev/null
 done_testing

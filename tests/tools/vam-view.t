@@ -41,9 +41,9 @@ is "a frame by its angle, also of a folder with an index" "$($png sum folder90.p
 
 # Dose with outline and histogram; here the part's own coverage stands for a dose
 ok "the outline of the part" vam-view part.vdb --target part.vdb -o outlined.png
-holds "is drawn" "$($png sum outlined.png) != $($png sum axial.png)"
-ok "the histogram" vam-view part.vdb --grid target --target part.vdb --histogram -o histogram.png
-is "is a figure" "$($png size histogram.png)" "900 600 8 3"
+holds "the outline is drawn" "$($png sum outlined.png) != $($png sum axial.png)"
+ok "the histogram" vam-view part.vdb --grid target --target part.vdb --dose-histogram -o histogram.png
+is "the histogram is a figure" "$($png size histogram.png)" "900 600 8 3"
 
 # NRRD
 ok "export of a volume" vam-view part.vdb --export part.nrrd
@@ -74,9 +74,9 @@ fails 65 'cut' vam-view cut.exr -o x.png
 head -c 2000 frames.mkv >cut.mkv
 fails 65 'cut.mkv' vam-view cut.mkv -o x.png
 fails 65 'no axial section at 90 mm' vam-view part.vdb --at 90 -o x.png
-fails 65 'has none at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
+fails 65 'has no image at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
 fails 65 'target' vam-view part.vdb --grid dose -o x.png
-fails 65 'need a volume' vam-view sino.exr --histogram -o x.png
+fails 65 'require a volume' vam-view sino.exr --dose-histogram -o x.png
 mkdir hollow
 fails 65 'no PNG or TIFF' vam-view hollow -o x.png
 fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png

@@ -26,7 +26,7 @@ fails 65 'light reaches only 16.98;' vam-optimize $few --geometry parallel disc.
 # The projector's own rays know from which angles light comes.
 vam-optimize $few --iterations 1 --angles 24 disc.vdb -o out.exr 2>err
 is 'it is reported from how many angles the rim is lit' "$?:$(cat err)" \
-  '0:vam-optimize: warning: disc.vdb: reaches 4.111 mm from the axis, beyond the writable radius of 3.395 mm; there light comes from 62.5 % of the angles'
+  '0:vam-optimize: warning: disc.vdb: reaches 4.111 mm from the axis, beyond the writable radius of 3.395 mm; its outermost voxels are lit from 62.5 % of the stage angles'
 # A part that is narrower, but whose voxels are not.
 brim='--shape cylinder:diameter=16.59,height=2 --voxel 0.4'
 fails 65 'its voxels reach 8.528 mm \(21.32 voxels\) from the axis, beyond the writable radius of 8.301 mm' vam-slice $brim -o out.vdb
@@ -36,13 +36,13 @@ fails 65 'beside its columns 0 ... 199' vam-optimize disc.vdb --set projector.co
 # A square bar in a vial in air, its corners at 1.15 R/n, in resin that absorbs: printable from 60 angles.
 glass='--set vial.wall_mm=0.5 --set projector.telecentric=true --set resin.absorption_per_mm=0.05'
 bar='--shape box:x=13.5,y=13.5,z=2 --voxel 0.4'
-fails 65 'beyond the writable radius of 8.301 mm .*; --scale 0.839 or --fit-writable fits it, --extent resin allows it' vam-slice $bar -o bar.vdb
+fails 65 'beyond the writable radius of 8.301 mm .*; --scale 0.839 or --fit-writable fits it, --extent resin accepts it' vam-slice $bar -o bar.vdb
 fails 64 'omit --extent resin' vam-slice $bar --fit-writable --extent resin -o bar.vdb
 fails 65 "beyond the resin's edge at 12.2 mm" vam-slice $bar $glass --scale 1.5 --extent resin -o bar.vdb
 quiet 'a bar beyond the writable radius' vam-slice $bar $glass --extent resin -o bar.vdb
 vam-optimize bar.vdb $glass --angles 60 -o bar.exr 2>err
 vam-dose bar.exr $glass --like bar.vdb -o dose.vdb
-ok 'it prints' vam-score dose.vdb --target bar.vdb $glass --require 'ver<=0,pw>=0.05' --reach reach.vdb --report score.json
-vam-score reach.vdb --grid reach --target bar.vdb $glass --json >reach.json
+ok 'it prints' vam-score dose.vdb --target bar.vdb $glass --require 'ver<=0,pw>=0.05' --lit-fraction reach.vdb --report score.json
+vam-score reach.vdb --grid lit_fraction --target bar.vdb $glass --report - >reach.json
 holds 'its corners are lit from five sixths of the angles' "$(json reach.json min_part) > 0.78 && $(json reach.json min_part) < 0.88"
 done_testing

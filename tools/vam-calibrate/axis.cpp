@@ -1,6 +1,8 @@
 // vam-calibrate axis: the rotation axis in the camera's frames, over a turn.
 #include "metrology/calibrate/axis.hpp"
 
+#include <algorithm>
+
 #include "base/text.hpp"
 #include "vam-calibrate/scan.hpp"
 
@@ -14,6 +16,7 @@ BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer) {
     for (std::size_t b = 0; b < middles.size(); ++b) turn.scan.middle[b].push_back(middles[b]);
     turn.scan.angle_deg.push_back(frame.angle_deg);
     turn.time_s.push_back(frame.time_s);
+    turn.time_sigma_s = std::max(turn.time_sigma_s, frame.time_sigma_s);
     turn.scan.rows = frame.image.height;
     turn.pixel_mm = frame.pixel_mm;
   });
@@ -27,7 +30,7 @@ Finding scan_axis(const ScanOptions& options, const model::Printer& printer) {
   Finding finding;
   const char* method = "first harmonic over the turn";
   finding.value("axis_column", found.column, "px", method);
-  finding.value("tilt", found.tilt_deg, "deg", "line through the axes by row");
+  finding.value("tilt", found.tilt_deg, "deg", "line through the axis columns by row");
   finding.value("wobble", found.wobble_px, "px", method);
   finding.value("wobble_phase", found.phase_deg, "deg", method);
   finding.value("wobble_mm", {found.wobble_px.value * pixel_mm, found.wobble_px.sigma * pixel_mm, found.wobble_px.n},

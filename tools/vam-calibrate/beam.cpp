@@ -2,6 +2,7 @@
 #include "metrology/calibrate/beam.hpp"
 
 #include "base/error.hpp"
+#include "base/image_size.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/image/view_source.hpp"
@@ -30,23 +31,21 @@ class Dark {
   }
 
  private:
-  static std::string size_text(const Image& image) {
-    return std::to_string(image.width) + " x " + std::to_string(image.height);
-  }
   std::string path_;
   Image image_;
 };
 
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
-  if (options.pixel_mm <= 0 || options.step_mm == 0) {
-    throw Error{Fault::usage,
-                "beam: needs --pixel, the sensor's pitch, and --first and --spacing, the positions of the planes; or "
-                "--side"};
+  if (options.pixel_mm <= 0 || !options.first_mm || options.step_mm.value_or(0) == 0) {
+    throw Error{
+        Fault::usage,
+        "beam: requires --pixel, the pitch of the sensor, and --first and --spacing, the positions of the planes; or "
+        "--side"};
   }
   const Dark dark(options.dark);
   metrology::BeamWidths widths;
   each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) {
-    const double plane_mm = options.first_mm + options.step_mm * frame.shown;
+    const double plane_mm = *options.first_mm + *options.step_mm * frame.shown;
     Image lit = frame.image;
     dark.take_off(lit);
     const auto px = metrology::line_width_px(lit, "plane at " + format_number(plane_mm) + " mm");
@@ -57,7 +56,7 @@ metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Pr
 }
 
 metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Printer& printer) {
-  if (options.step_mm != 0 || options.first_mm != 0) {
+  if (options.step_mm || options.first_mm) {
     throw Error{Fault::usage, "beam: --side covers all planes; omit --first and --spacing"};
   }
   metrology::FrameMean frames;

@@ -33,11 +33,11 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
     options.accept ? finding.warn_because(reason) : finding.fail_because(reason + " (--accept)");
   };
   if (std::abs(change) > allowed_radius_change) {
-    tell("the radius changed by " + format_number(100 * change, 3) + " % against " + before->path +
-         "; a different vial needs its own calibration.vial");
+    tell("the radius changed by " + format_number(100 * change, 3) + " % since " + before->path +
+         "; a different vial requires its own calibration.vial");
   }
   if (std::abs(shift_px) > allowed_shift_px) {
-    tell("the centre of the vial moved by " + format_number(shift_px, 3) + " px against " + before->path);
+    tell("the centre of the vial moved by " + format_number(shift_px, 3) + " px since " + before->path);
   } else if (std::abs(shift_px) > 3 * sigma_px) {
     finding.warn_because("the centre of the vial moved by " + format_number(shift_px, 3) + " px, " +
                          format_number(std::abs(shift_px) / sigma_px, 3) + " sigma");
@@ -88,8 +88,8 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
                              Finding& finding, double pixel_mm) {
   if (all.size() == 1) {
     finding.warn_because(
-        "the sweep is of one stage angle, where the vial's middle stands for the rotation axis, which a "
-        "vial that wobbles misses; sweep at 0, 90, 180 and 270");
+        "swept at one stage angle: the centre of the vial is recorded as the rotation axis, which ignores its wobble; "
+        "sweep at 0, 90, 180 and 270 degrees");
     return all.front();
   }
   std::vector<stats::Measured> column, tilt, edge, radius, blur;
@@ -100,7 +100,7 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
     radius.push_back(edges.radius_mm);
     blur.push_back(edges.blur_px);
   }
-  const char* method = "first harmonic of the vial's middle";
+  const char* method = "first harmonic of the vial's centre";
   const auto circle = metrology::find_wobble(angles, column, "edges");
   finding.value("wobble", circle.radius, "px", method);
   finding.value("wobble_phase", circle.phase_deg, "deg", method);
@@ -133,7 +133,8 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
     all.push_back(metrology::find_edges(scan, printer));
     positions = scan.column.size();
   }
-  if (all.empty()) throw Error{Fault::data, options.from + ": no frame shows one line of the sweep; see --flips"};
+  if (all.empty())
+    throw Error{Fault::data, options.from + ": no frame shows a single line of the sweep; check --flips"};
   Finding finding;
   const auto found = combine(angles, all, finding, printer.projector.pixel_mm);
   const char* method =
@@ -141,7 +142,7 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   finding.value("axis_column", found.axis_column, "px", method);
   finding.value("edge", found.edge_px, "px", method);
   finding.value("radius", found.radius_mm, "mm", "tangent column to radius");
-  finding.value("tilt", found.tilt_deg, "deg", "line through the middles by height");
+  finding.value("tilt", found.tilt_deg, "deg", "line through the centres by height");
   finding.value("line_blur", found.blur_px, "px", method);
   finding.facts["settings"] = {{"pitch_px", options.pitch_px},
                                {"width_px", options.width_px},

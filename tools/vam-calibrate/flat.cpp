@@ -47,7 +47,7 @@ Finding scan_flat(const ScanOptions& options, const model::Printer& printer) {
                                 info.height = image.height;
                                 info.count = 1;
                                 info.pixel_mm = info.row_mm = printer.camera.pixel_mm * printer.camera.binning;
-                                info.units = "part of the mean";
+                                info.units = "fraction of the mean";
                                 io::StackWriter writer(path, info);
                                 writer.write(image);
                                 writer.commit();

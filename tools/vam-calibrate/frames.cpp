@@ -34,8 +34,8 @@ void refuse_over_exposed(const ScanOptions& options, const Image& image, const s
   const double share = static_cast<double>(over) / static_cast<double>(image.size());
   if (over <= allowed_few || share <= allowed_share) return;
   throw Error{Fault::data, options.command + ": " + name + ": " + format_number(100 * share, 3) +
-                               " % of the pixels are over-exposed, at most " + format_number(100 * allowed_share) +
-                               " % may be; capture with a shorter --exposure, less gain or less light"};
+                               " % of the pixels are over-exposed (limit " + format_number(100 * allowed_share) +
+                               " %); capture with a shorter --exposure, less gain or a lower intensity"};
 }
 
 }  // namespace
@@ -67,13 +67,14 @@ void each_frame(const ScanOptions& options, const model::Printer& printer, Frame
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
   // Where angles are not needed, frames without are at none.
-  const double step_deg = wanted == Frames::turned ? options.step_deg : std::numeric_limits<double>::quiet_NaN();
+  const double step_deg =
+      wanted == Frames::turned ? options.step_deg.value_or(0) : std::numeric_limits<double>::quiet_NaN();
   io::ViewSource source(options.from, step_deg);
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
   for (int n = 0; source.next(frame); ++n) {
     refuse_over_exposed(options, frame.image, frame.name);
-    ScanFrame scan{std::move(frame.image), frame.time_s, frame.angle_deg, pixel_mm, n};
+    ScanFrame scan{std::move(frame.image), frame.time_s, frame.time_sigma_s, frame.angle_deg, pixel_mm, n};
     if (!flips.empty()) {
       if (frame.time_s == 0) {
         throw Error{Fault::usage, frame.name + ": has no time, required by --flips; use frames of vam-capture"};

@@ -1,32 +1,89 @@
 // vam-calibrate lag: how late the camera's time stamps are, from a bead that turns one way and then the other.
 #include "metrology/calibrate/lag.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <vector>
+
 #include "base/text.hpp"
+#include "device/os/angle_sample.hpp"
+#include "io/stream/stream.hpp"
+#include "metrology/calibrate/stage_course.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {
 
 namespace {
-constexpr double wanted_sigma_ms = 0.5;
+
+constexpr double margin_s = 0.1;  // of the samples before the first and after the last frame
+
+struct Turn {
+  metrology::CameraAxis axis;
+  double speed_deg_s = 0;
+};
+
+std::vector<metrology::StagePoint> read_points(const std::string& path) {
+  std::vector<metrology::StagePoint> points;
+  if (path.empty()) return points;
+  long number = 0;
+  for (const auto& line : split(io::read_all(path), '\n')) {
+    ++number;
+    if (line.empty()) continue;
+    const device::AngleSample sample = device::parse_angle_line(line, number);
+    points.push_back({sample.t_s, sample.angle_deg, sample.sigma_deg});
+  }
+  return points;
 }
+
+metrology::StageCourse course_of(const std::vector<metrology::StagePoint>& points, const std::vector<double>& time_s) {
+  const auto [first, last] = std::minmax_element(time_s.begin(), time_s.end());
+  std::vector<metrology::StagePoint> during;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(during), [&](const metrology::StagePoint& point) {
+    return point.t_s >= *first - margin_s && point.t_s <= *last + margin_s;
+  });
+  return metrology::StageCourse(during);
+}
+
+// What the frames of a turn have in common, the camera's clock and with the stage's samples its course, moves the phase
+// as a whole.
+Turn measure(const ScanOptions& options, const model::Printer& printer,
+             const std::vector<metrology::StagePoint>& points) {
+  BeadTurn frames = read_turn(options, printer);
+  std::vector<double>& angle_deg = frames.scan.angle_deg;
+  std::optional<metrology::StageCourse> course;
+  if (!points.empty()) {
+    course = course_of(points, frames.time_s);
+    std::transform(frames.time_s.begin(), frames.time_s.end(), angle_deg.begin(),
+                   [&](double t_s) { return course->angle_deg(t_s); });
+  }
+  Turn turn{metrology::find_camera_axis(frames.scan), metrology::turning_speed_deg_s(frames.time_s, angle_deg)};
+  stats::Measured& phase = turn.axis.phase_deg;
+  phase.sigma = std::hypot(phase.sigma, turn.speed_deg_s * frames.time_sigma_s);
+  if (course) {
+    const auto weight = metrology::phase_weights(angle_deg, phase.value);
+    phase.sigma = std::hypot(phase.sigma, course->sigma_deg(frames.time_s, weight));
+  }
+  return turn;
+}
+
+}  // namespace
 
 Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
   ScanOptions other = options;
   other.from = options.reverse;
-  const BeadTurn forwards = read_turn(options, printer);
-  const BeadTurn backwards = read_turn(other, printer);
-  const auto speed = [](const BeadTurn& turn) {
-    return metrology::turning_speed_deg_s(turn.time_s, turn.scan.angle_deg);
-  };
-  const auto one = metrology::find_camera_axis(forwards.scan);
-  const auto two = metrology::find_camera_axis(backwards.scan);
-  const auto lag = metrology::camera_lag_ms(one, speed(forwards), two, speed(backwards));
+  const auto points = read_points(options.angles);
+  const Turn one = measure(options, printer, points);
+  const Turn two = measure(other, printer, points);
+  const auto lag = metrology::camera_lag_ms(one.axis, one.speed_deg_s, two.axis, two.speed_deg_s);
   Finding finding;
-  finding.value("camera_lag", lag, "ms", "bead turned both ways");
-  finding.facts["settings"] = {{"forwards_deg_s", speed(forwards)}, {"backwards_deg_s", speed(backwards)}};
-  if (lag.sigma > wanted_sigma_ms) {
+  finding.value("camera_lag", lag, "ms", "bead turned in both directions");
+  finding.facts["settings"] = {{"forwards_deg_s", one.speed_deg_s}, {"backwards_deg_s", two.speed_deg_s}};
+  if (lag.sigma > wanted_delay_sigma_ms) {
     finding.fail_because("standard deviation is " + format_number(lag.sigma, 3) + " ms, above " +
-                         format_number(wanted_sigma_ms) + "; turn faster, or put the bead further from the axis");
+                         format_number(wanted_delay_sigma_ms) +
+                         "; use a higher --speed, or place the bead farther from the axis");
   }
   return finding;
 }

@@ -39,7 +39,7 @@ std::string hash_of(const std::string& path) {
 
 Json hashes(const ScanOptions& options) {
   Json json = Json::object();
-  for (const auto& path : {options.from, options.reverse, options.flips, options.dark}) {
+  for (const auto& path : {options.from, options.reverse, options.angles, options.flips, options.dark}) {
     if (!path.empty() && path != "-") json[fs::path(path).filename().string()] = hash_of(path);
   }
   return json;
@@ -75,7 +75,8 @@ std::string stranger(const Json& record, const Json& devices) {
   for (const auto& [name, device] : devices.items()) {
     const std::string now = device.value("serial", "");
     const std::string then = known.value(name, Json::object()).value("serial", now);
-    if (then != now) return "was made with the " + name + " " + then + ", this is " + now + "; run vam-calibrate";
+    if (then != now)
+      return "was measured with the " + name + " " + then + ", but the one in use is " + now + "; run vam-calibrate";
   }
   return "";
 }

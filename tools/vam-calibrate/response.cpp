@@ -22,7 +22,7 @@ std::map<int, std::vector<double>> by_level(const ScanOptions& options, std::map
   if (!options.flips.empty()) return readings;
   if (readings.size() % static_cast<std::size_t>(options.steps) != 0) {
     throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames cannot be split into " +
-                                 std::to_string(options.steps) + " levels of equal length; see --steps"};
+                                 std::to_string(options.steps) + " levels of equal length; check --steps"};
   }
   const int each = static_cast<int>(readings.size()) / options.steps;
   std::map<int, std::vector<double>> levels;
@@ -41,10 +41,10 @@ Finding finding_of(const metrology::ResponseCurve& curve, const std::string& ins
     csv += format_number(curve.grey[i]) + "," + format_number(curve.intensity[i].value, 9) + "\n";
     levels.push_back({{"grey", curve.grey[i]},
                       {"value", curve.intensity[i].value},
-                      {"unit", "of full"},
+                      {"unit", "fraction of full"},
                       {"sigma", curve.intensity[i].sigma},
                       {"n", curve.intensity[i].n},
-                      {"method", "camera mean, monotone"}});
+                      {"method", "mean of the camera image, monotone"}});
   }
   finding.facts["response"] = levels;
   finding.products.push_back({"response", ".csv", [csv](const std::string& path) { io::write_text(path, csv); }});

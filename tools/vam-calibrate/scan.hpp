@@ -20,17 +20,19 @@ struct ScanOptions {
   std::string command;
   std::string from;     // the frames
   std::string reverse;  // lag: those of the turn the other way
+  std::string angles;   // lag: the samples of the stage during both turns
   std::string flips;    // log of vam-project from the time of the capture
   std::string dark;
   bool accept = false;
   int heights = 5;
   int pitch_px = optics::sweep_line_px, width_px = optics::sweep_line_px,
-      steps = optics::PatternPlan{}.steps;         // of the pattern
-  double first_mm = 0, step_mm = 0, pixel_mm = 0;  // beam: planes and the sensor's pitch
-  bool side = false;                               // beam: frames of a camera beside the vial
-  double step_deg = 0;                             // axis: frames without recorded angles
-  std::string devices;                             // identities of the devices in use
-  std::vector<std::string> needed;                 // check: lists of scans
+      steps = optics::PatternPlan{}.steps;  // of the pattern
+  std::optional<double> first_mm, step_mm;  // beam: planes
+  double pixel_mm = 0;                      // and the sensor's pitch
+  bool side = false;                        // beam: frames of a camera beside the vial
+  std::optional<double> step_deg;           // axis: frames without recorded angles
+  std::string devices;                      // identities of the devices in use
+  std::vector<std::string> needed;          // check: lists of scans
   cli::PrinterOptions printer;
 };
 
@@ -53,10 +55,11 @@ void measure_resin(const ResinOptions& options);
 
 struct ScanFrame {
   Image image;
-  double time_s = 0;     // middle of the exposure
-  double angle_deg = 0;  // NaN: not known
-  double pixel_mm = 0;   // at the axis, as the frames say, else the printer
-  int shown = 0;         // pattern frame during the whole exposure: by the flips, else the frame's own number
+  double time_s = 0;        // middle of the exposure
+  double time_sigma_s = 0;  // shared by the frames of a capture; 0: not known
+  double angle_deg = 0;     // NaN: not known
+  double pixel_mm = 0;      // at the axis, as the frames say, else the printer
+  int shown = 0;            // pattern frame during the whole exposure: by the flips, else the frame's own number
 };
 
 /// What a scan needs of its frames: any angle, one each, or also those during which the pattern changed.
@@ -80,6 +83,7 @@ struct Showing {
 struct BeadTurn {
   metrology::TurnScan scan;
   std::vector<double> time_s;  // of each frame
+  double time_sigma_s = 0;     // that they share, the largest stated
   double pixel_mm = 0;
 };
 /// Throws Error: no_input, data, usage (frames without angles).
@@ -97,7 +101,8 @@ class Finding;
 [[nodiscard]] Finding scan_latency(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_beam(const ScanOptions& options, const model::Printer& printer);
 [[nodiscard]] Finding scan_flat(const ScanOptions& options, const model::Printer& printer);
-inline constexpr double wanted_axis_sigma_px = 0.1;  // of an axis, the vial's or the camera's
+inline constexpr double wanted_axis_sigma_px = 0.1;   // of an axis, the vial's or the camera's
+inline constexpr double wanted_delay_sigma_ms = 0.5;  // of a delay, the camera's or the projector's
 
 // ---- record.cpp: from result to record
 

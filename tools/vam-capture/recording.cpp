@@ -25,6 +25,7 @@ device::CameraFeed folder_feed(const std::string& place) {
     frame.levels = io::read_image((std::filesystem::path(place) / io::capture_file_name(record.place)).string());
     frame.number = record.number;
     frame.time_s = record.t_monotonic_s;
+    frame.time_sigma_s = record.time_sigma_s.value_or(0);
     frame.device_s = record.device_s;
     frame.complete = record.complete;
     frame.angle_deg = record.angle_deg;
@@ -78,6 +79,7 @@ device::CameraFeed stack_feed(const std::string& place) {
     frame.number = about.has_number ? about.number : next;
     frame.complete = !about.incomplete;
     if (about.has_time) frame.time_s = about.time_s;
+    frame.time_sigma_s = about.time_sigma_s;
     if (about.has_angle || reader->info().angle_step_deg != 0) frame.angle_deg = about.angle_deg;
     ++next;
     return true;

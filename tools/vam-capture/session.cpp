@@ -37,8 +37,8 @@ constexpr const char* simulated_frames = "frames of a simulated camera";  // in 
 void require_stack_or_folder(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension();
   if (path == "-" || path.starts_with("/dev/") || ending.empty() || ending == ".exr") return;
-  throw Error{Fault::usage,
-              "--output: '" + path + "': frames go to .exr, a folder (end its name in /) or -, not to " + ending};
+  throw Error{Fault::usage, "--output: '" + path +
+                                "': frames are written to .exr, a folder (name ending in /) or -, not to " + ending};
 }
 
 bool is_folder(const std::string& path) { return path != "-" && !std::filesystem::path(path).has_extension(); }
@@ -52,14 +52,14 @@ device::CapturePlan plan_of(const Options& o, const model::Printer& printer) {
   if (o.max_lost) plan.max_lost = *o.max_lost;
   plan.frames = o.frames.value_or(0);
   if (!o.every_deg) {
-    if (o.turns) throw Error{Fault::usage, "--turns: needs --every; else give --frames"};
+    if (o.turns) throw Error{Fault::usage, "--turns: requires --view-step; give it, or --frames instead"};
     return plan;
   }
   const double places = 360 * o.turns.value_or(1) / *o.every_deg;
   if (o.frames && o.turns)
-    throw Error{Fault::usage, "--frames: conflicts with --turns, which determines the number of frames"};
+    throw Error{Fault::usage, "--frames: conflicts with --turns, which determines the number of frames; omit one"};
   if (!o.frames) plan.frames = std::lround(places);
-  if (plan.frames < 1) throw Error{Fault::usage, "--every: no multiple within --turns; give a smaller angle"};
+  if (plan.frames < 1) throw Error{Fault::usage, "--view-step: exceeds --turns; give a smaller angle"};
   return plan;
 }
 
@@ -113,14 +113,16 @@ void check(const Options& o, const model::Printer& printer) {
   if (!o.follow.empty() && o.speed_deg_s)
     throw Error{Fault::usage, "--speed: conflicts with --follow, which provides the angle"};
   if (o.angle_deg && (!o.follow.empty() || o.speed_deg_s || o.every_deg)) {
-    throw Error{Fault::usage, "--angle: a fixed stage angle conflicts with --follow, --speed and --every"};
+    throw Error{Fault::usage, "--angle: a fixed stage angle conflicts with --follow, --speed and --view-step"};
   }
   if (o.every_deg && o.follow.empty() && !o.speed_deg_s && !is_recording(device_of(o, printer))) {
-    throw Error{Fault::usage, "--every: camera frames have no angles; give --follow or --speed"};
+    throw Error{Fault::usage, "--view-step: camera frames have no angles; give --follow or --speed"};
   }
-  if (is_folder(o.output) && o.live) throw Error{Fault::usage, "--live: a stream cannot go to a folder"};
+  if (is_folder(o.output) && o.live)
+    throw Error{Fault::usage, "--live: a folder cannot hold a stream; give a file, a FIFO or -"};
   if (is_folder(o.output) || o.live || o.frames || o.every_deg) return;
-  throw Error{Fault::usage, "--frames: a stack needs the number of images in advance; give it, or --live, or a folder"};
+  throw Error{Fault::usage,
+              "--frames: required for a stack, whose header states the number of images; give it, --live or a folder"};
 }
 
 // For whoever watches a capture that keeps no files.
@@ -162,6 +164,7 @@ std::unique_ptr<device::Camera> open_camera(const Options& options, const model:
     settings.exposure_us = settings.exposure_us.value_or(printer.camera.exposure_us);
     settings.fps = settings.fps.value_or(printer.camera.fps);
     settings.binning = settings.binning.value_or(printer.camera.binning);
+    settings.stamp = printer.camera.stamp;
     if (!settings.gain) settings.gain = printer.camera.gain;
     if (!settings.black_level) settings.black_level = printer.camera.black_level;
   }

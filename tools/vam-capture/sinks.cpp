@@ -24,6 +24,7 @@ model::ImageInfo about(const device::Shot& shot, double z_mm) {
   info.angle_deg = shot.angle ? shot.angle->angle_deg : 0;
   info.has_time = true;
   info.time_s = shot.frame.time_s;
+  info.time_sigma_s = shot.frame.time_sigma_s;
   info.has_number = true;
   info.number = static_cast<int>(shot.frame.number);
   info.incomplete = !shot.frame.complete;
@@ -80,6 +81,7 @@ class FolderStore final : public FrameStore {
     record.place = shot.place;
     record.number = shot.frame.number;
     record.t_monotonic_s = shot.frame.time_s;
+    if (shot.frame.time_sigma_s > 0) record.time_sigma_s = shot.frame.time_sigma_s;
     record.device_s = shot.frame.device_s;
     if (shot.angle) {
       record.angle_deg = shot.angle->angle_deg;

@@ -87,7 +87,7 @@ void write_exact(const CorrectOptions& options, const Job& job, const optics::Sl
   }
 }
 
-// Grey levels, chosen from the last slice up; all are kept until the stack can be written from the first down.
+// Grey levels, chosen from the last slice upwards; all are kept until the stack can be written from the first down.
 std::vector<GreyImage> all_levels(const CorrectOptions& options, const Job& job, const resin::GreyLevels& levels,
                                   const io::FrameFolder* folder, const optics::SlicePlace& frame) {
   std::vector<float> steps;
@@ -136,8 +136,8 @@ void write_levels(const CorrectOptions& options, const Job& job, const resin::Gr
 void warn_of_gaps(const std::string& name, const Job& job) {
   if (job.gaps.infeasible_columns == 0) return;
   warn(name + ": " + std::to_string(job.gaps.infeasible_columns) + " of " + std::to_string(job.survey.columns) +
-       " columns have gaps of a single slice, in which no intensity keeps the dose below critical; they will fuse "
-       "(--mask shows them)");
+       " columns have gaps of a single slice, whose dose exceeds the full-cure dose at any intensity; these gaps will "
+       "fuse (--mask shows the columns)");
 }
 
 Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
@@ -170,40 +170,48 @@ Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
   return job;
 }
 
+/// What the slices are written to besides -o, and how.
+void declare_output(cli::App& app, CorrectOptions& options) {
+  app.option("--png", "FOLDER", options.png,
+             "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
+             "unless -o is given.")
+      .writes();
+  app.choice(
+      "--values", options.values, {"intensity", "grey"},
+      "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the response.");
+  app.flag("--quantise", options.quantise,
+           "Write the grey levels of the PNGs to the stack instead of exact values; all slices are then in memory (2 "
+           "bytes per pixel).");
+  app.flag("--full-frame", options.full_frame,
+           "Place the part in an image of projector.columns x projector.rows, with the axis at projector.axis_column, "
+           "projector.axis_row.");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+}
+
 }  // namespace
 
 void declare(cli::App& app, CorrectOptions& options) {
   app.positional("PART", options.part.path, "Target volume (OpenVDB) of vam-slice.").reads();
   cli::add_output(app, options.output);
-  app.option("--png", "FOLDER", options.png,
-             "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
-             "unless -o is given.")
-      .writes();
-  app.choice("--values", options.values, {"intensity", "grey"},
-             "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the "
-             "response.");
-  app.flag("--quantise", options.quantise,
-           "Write the grey levels of the PNGs to the stack instead of exact values; all slices are then in memory (2 "
-           "bytes per pixel).");
-  app.flag("--full-frame", options.full_frame,
-           "Place the part in an image of projector.columns x rows, the axis at axis_column, axis_row.");
-  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  declare_output(app, options);
   app.group("Correction");
   app.option("--omega-max", "DOSE", options.limit.omega_max, {1, std::numeric_limits<double>::infinity()},
-             "Maximum dose inside features, in full-cure doses; inf is no limit.");
+             "Maximum dose inside features, in full-cure doses; inf removes the limit.");
   app.flag("--strong-base", options.limit.strong_base,
            "Expose features on the platform at maximum intensity regardless of --omega-max: there is no resin behind "
            "them to cure.");
-  app.option("--clear", "DOSE", options.clear, {0, 1, true},
-             "A gap whose dose nowhere falls to this number of full-cure doses is reported as tight.");
+  app.option(
+      "--clear", "DOSE", options.clear, {0, 1, true},
+      "Dose, in full-cure doses, to which a gap must fall somewhere to be clear; other gaps are reported as tight.");
   add_part(app, options.part);
   app.option("--mask", "FILE", options.mask,
-             "PNG of the columns: 0 good or empty, 128 with a tight gap, 255 with a gap that must fuse.");
+             "PNG map of the columns: 0 empty or without such gaps, 128 with a tight gap, 255 with a gap that fuses at "
+             "any intensity.");
   app.group("Catalogue");
   app.option("--catalogue", "FILE", options.catalogue,
-             "CSV name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that compares these resins for this "
-             "part; slices are then written only with -o or --png.");
-  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Speeds of the table.")
+             "CSV of resins with the columns name,absorbance_height_um,full_cure_dose_mj_cm3: print a table that "
+             "compares them for this part. Slices are then written only with -o or --png.");
+  app.option("--print-speeds", "MM_H,...", options.speeds_mm_h, 0, "Platform speeds of the table.")
       .needs({"--catalogue"})
       .was("--speeds");
   app.default_is("20, 40, 60 and 80 % of the limit of each resin");
@@ -217,7 +225,7 @@ void run(const cli::App& root, const cli::App& app, const CorrectOptions& option
   const bool stack = app.given("--output") || (options.png.empty() && options.catalogue.empty());
   const bool images = !options.png.empty();
   if (stack && !options.catalogue.empty() && options.output == "-") {
-    throw Error{Fault::usage, "--catalogue: the table goes to standard output; give -o a file name"};
+    throw Error{Fault::usage, "--catalogue: the table is printed on standard output; give a file with -o"};
   }
   if (options.quantise && !stack) throw Error{Fault::usage, "--quantise: requires a stack; give -o"};
   Job job = prepare(root, options, stack || images);

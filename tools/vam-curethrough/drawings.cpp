@@ -157,7 +157,7 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
   const LineBand band = band_of(samples, curve, most);
   plot::Plot plot;
   plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
-               " um per decade (log10), D_gel = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
+               " um per decade (log10), D_c = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
   plot.x = {"exposure E / mJ cm-2", band.at.front(), band.at.back(), true};
   plot.y = {"cured thickness / um", 0, 1.12 * highest};
   plot.series = {{"least squares", band.at, band.line, paint::blue, plot::SeriesStyle::line},
@@ -209,7 +209,7 @@ void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& p
   const double margin = std::max(0.5, 0.05 * (factors.back() - factors.front()));
   plot::Plot plot;
   plot.title = "omega_max = " + format_number(first);
-  plot.x = {"assumed full-cure dose / gelation dose", factors.front() - margin, factors.back() + margin};
+  plot.x = {"assumed full-cure dose / gelation threshold", factors.front() - margin, factors.back() + margin};
   plot.y = {"height error, corrected / uncorrected", 0, 1.1 * most};
   for (std::size_t s = 0; s < ratios.size(); ++s) {
     const Rgb colour = colours[s % colours.size()];

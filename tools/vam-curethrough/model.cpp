@@ -1,12 +1,14 @@
-// What a stack of slices, or a part sliced in the ordinary way, really cures.
+// The cure by a stack of slices, or by the ordinary slices of a part.
 #include <algorithm>
 #include <memory>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
@@ -24,7 +26,7 @@ constexpr int block = resin::StackDose::block_slices;
 
 bool is_volume(const std::string& path) { return path == "-" || io::file_type(path) == io::FileType::volume; }
 
-// The ordinary slices of a part: full light in it, the least outside.
+// The ordinary slices of a part: maximum intensity in it, minimum outside.
 SliceSource plain_slices(const std::shared_ptr<PartFile>& part, float dark) {
   const model::Grid& grid = part->grid();
   SliceSource slices{part->name(), grid.nx, grid.ny, grid.nz, {}, part->history(), {}};
@@ -48,24 +50,20 @@ struct Inputs {
 
 // The stack's facts about its print apply where the command line gives none.
 PrintOptions with_facts(const cli::App& app, PrintOptions options, const SliceSource& slices) {
-  const auto fact = [&](const char* name) {
-    const auto found = slices.facts.find(name);
-    return found == slices.facts.end() ? std::string() : found->second;
-  };
-  if (const auto speed = parse_number(fact("vam:speed_mm_h")); speed && *speed > 0 && !app.given("--print-speed")) {
-    options.speed_mm_h = *speed;
-  }
-  if (fact("vam:exposure") == "layered" && !app.given("--exposure-mode")) options.exposure = "layered";
+  const auto speed = tool::stated_number(slices.facts, "vam:speed_mm_h");
+  if (speed && *speed > 0 && !app.given("--print-speed")) options.speed_mm_h = *speed;
+  const auto mode = slices.facts.find("vam:exposure");
+  const bool layered = mode != slices.facts.end() && mode->second == "layered";
+  if (layered && !app.given("--exposure-mode")) options.exposure = "layered";
   return options;
 }
 
 double slice_height_um(const ModelOptions& options, const Inputs& in) {
   if (in.part) return in.part->slice_um();
   if (options.slice_um) return *options.slice_um;
-  const auto fact = in.slices.facts.find("vam:slice_mm");
-  const auto height = fact == in.slices.facts.end() ? std::nullopt : parse_number(fact->second);
+  const auto height = tool::stated_number(in.slices.facts, "vam:slice_mm");
   if (height && *height > 0) return *height * 1e3;
-  throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice or --target"};
+  throw Error{Fault::usage, in.slices.name + ": the slice height is not known; give --slice-height or --target"};
 }
 
 Inputs open_inputs(const cli::App& app, const ModelOptions& options) {
@@ -95,7 +93,7 @@ Inputs open_inputs(const cli::App& app, const ModelOptions& options) {
   return in;
 }
 
-// The second reading: everything that is worth knowing of a block of slices.
+// The second reading: dose, cure map and section of a block of slices.
 class Judge {
  public:
   Judge(const ModelOptions& options, const Inputs& in) : in_(in), grid_(grid_of(in)) {
@@ -116,7 +114,7 @@ class Judge {
     std::vector<float> centres(dose_ ? grid_.slice_size() * light.size() : 0);
     parallel_for(grid_.ny, [&](int y) { judge_row(first, light, dose, y, centres); });
     if (!dose_) return;
-    const int count = static_cast<int>(light.size());
+    const int count = count_of(light);
     if (in_.part) return in_.part->write(*dose_, first, count, centres);
     dose_->write_slices(first, count, centres.data());
   }
@@ -137,14 +135,14 @@ class Judge {
     std::vector<float> below(light.size() * width);
     dose.replay_row(first, light, y, below.data());
     std::vector<float> solid(below.size());  // slices beyond the part are empty
-    const int inside = in_.part ? std::clamp(in_.part->grid().nz - first, 0, static_cast<int>(light.size())) : 0;
+    const int inside = in_.part ? std::clamp(in_.part->grid().nz - first, 0, count_of(light)) : 0;
     if (inside > 0) in_.part->columns().unpack_row(y, first, inside, solid.data(), width);
     for (std::size_t i = 0; i < light.size(); ++i) {
       const float* row = light[i].row(y);
       const float* next = below.data() + i * width;
       if (map_) map_->add_row(y, row, in_.print.limits.phi_max, next, solid.data() + i * width);
       if (y == plane_.row) keep_plane(first + static_cast<int>(i), row, next, solid.data() + i * width);
-      if (dose_) fill_centres(row, next, centres.data() + i * grid_.slice_size() + static_cast<std::size_t>(y) * width);
+      if (dose_) fill_centres(row, next, centres.data() + i * grid_.slice_size() + product(y, width));
     }
   }
 
@@ -175,7 +173,7 @@ class Judge {
 
 void read_twice(const Inputs& in, Judge& judge) {
   resin::StackDose dose(in.print.limits, in.print.limits.phi_max);
-  Progress progress("reading twice", 2L * in.slices.count);
+  Progress progress("simulating", 2L * in.slices.count);
   Image slice;
   for (int n = 0; n < in.slices.count; ++n, progress.tick()) {
     in.slices.read(n, slice);
@@ -200,16 +198,18 @@ void declare(cli::App& app, ModelOptions& options) {
                  "intensity in the part, minimum outside.")
       .reads();
   app.option("-o,--output", "FILE", options.output,
-             "Write the dose as a volume (OpenVDB grid dose, in full-cure doses, at the centres of the voxels).")
+             "Write the dose at the centres of the voxels as a volume (grid dose, in full-cure doses).")
       .writes();
-  app.option("--target", "FILE", options.part.path, "Part that the slices should give, for the cure map.")
+  app.option("--target", "FILE", options.part.path, "Target volume of the part, for the cure map.")
       .was("--part")
       .reads();
   add_part(app, options.part);
-  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height of a folder of images without --target.");
+  app.option("--slice-height", "UM", options.slice_um, cli::positive,
+             "Slice height of a folder of images without --target.")
+      .was("--slice");
   app.group("Figure");
   app.option("--section", "FILE", options.section,
-             "PNG of an x-z plane: slices, cure map, and intensity and dose along one column.")
+             "PNG of an x-z section: slices, cure map, and intensity and dose along one column.")
       .was("--plane");
   app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
       .default_is("the middle")

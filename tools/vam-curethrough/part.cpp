@@ -5,6 +5,7 @@
 
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/gate.hpp"
 
@@ -41,9 +42,11 @@ std::uint64_t reversed(std::uint64_t bits, int count) {
 }  // namespace
 
 void add_part(cli::App& app, PartOptions& options) {
-  app.choice("--platform", options.platform, {"bottom", "top"},
-             "End of the volume that adheres to the platform and is printed first; the light enters from the other.");
-  app.option("--threshold", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a part voxel.");
+  app.choice(
+      "--platform", options.platform, {"bottom", "top"},
+      "End of the volume that adheres to the platform and is printed first; the light enters from the other end.");
+  app.option("--min-coverage", "FRACTION", options.threshold, {0, 1, true}, "Minimum coverage of a voxel of the part.")
+      .was("--threshold");
 }
 
 PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
@@ -60,11 +63,10 @@ PartFile::PartFile(const PartOptions& options, resin::ExposureMode exposure)
       block.values != nullptr ? take_values(block) : fill(block);
     };
   });
-  const auto stretch = facts_.metadata.find("vam:stretch_z");
-  const auto factor = stretch == facts_.metadata.end() ? std::nullopt : parse_number(stretch->second);
-  if (factor && std::fabs(*factor - 1) > 1e-6) {
-    warn(name_ + ": stretched along z by " + format_number(*factor) +
-         " for a vial, which vam-curethrough does not use; slice with --stretch-z 1");
+  const double factor = tool::stretch_z(facts_.metadata);
+  if (std::fabs(factor - 1) > 1e-6) {
+    warn(name_ + ": stretched along z by " + format_number(factor) +
+         " for a vial, which vam-curethrough does not model; slice with --stretch-z 1");
   }
 }
 

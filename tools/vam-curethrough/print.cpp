@@ -16,9 +16,9 @@ void add_print(cli::App& app, PrintOptions& options) {
   app.option("--print-speed", "MM_H", options.speed_mm_h, cli::positive, "Speed of the platform.").was("--speed");
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
-  app.default_is("determined by resin.absorption_per_mm, else 2000");
+  app.default_is("from resin.absorption_per_mm, else 2000");
   app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive,
-             "Dose D_f that cures to full strength; five times the gelation dose is recommended.")
+             "Dose D_f of full strength; five times the gelation threshold D_c is recommended.")
       .was("--critical-dose");
   app.default_is("resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
@@ -28,10 +28,11 @@ void add_print(cli::App& app, PrintOptions& options) {
              "Irradiance at the window, at full grey.");
   app.default_is("projector.max_intensity_mw_cm2").was("--max-intensity");
   app.option("--response", "FILE", options.response,
-             "Measured grey response (CSV grey,intensity). Its first entry determines the minimum irradiance.");
-  app.default_is("projector.response, else a straight line");
+             "Measured grey response (CSV with the columns grey,intensity); its first entry determines the minimum "
+             "irradiance.");
+  app.default_is("projector.response, else a linear response");
   app.choice("--exposure-mode", options.exposure, {"continuous", "layered"},
-             "The platform moves continuously, or rests for each layer (exposed for slice height / speed).");
+             "Motion of the platform: continuous, or at rest during each layer (exposed for slice height / speed).");
   app.was("--exposure");
   cli::add_printer(app, options.printer);
 }
@@ -72,11 +73,19 @@ Print resolve(const PrintOptions& options, double slice_um) {
   return print;
 }
 
+namespace {
+
+std::string mode_name(const resin::Process& process) {
+  return process.exposure == resin::ExposureMode::layered ? "layered" : "continuous";
+}
+
+}  // namespace
+
 double frames_per_s(const resin::Process& process) { return process.speed_mm_h / 3600 / (process.slice_um * 1e-3); }
 
 Json to_json(const resin::Process& process) {
   const resin::CureLimits limits = resin::limits_of(process);
-  return {{"exposure", process.exposure == resin::ExposureMode::layered ? "layered" : "continuous"},
+  return {{"exposure", mode_name(process)},
           {"slice_um", process.slice_um},
           {"absorbance_height_um", process.absorbance_height_um},
           {"full_cure_dose_mj_cm3", process.full_cure_dose_mj_cm3},
@@ -90,7 +99,7 @@ Json to_json(const resin::Process& process) {
 }
 
 std::map<std::string, std::string> attributes(const resin::Process& process) {
-  return {{"vam:exposure", process.exposure == resin::ExposureMode::layered ? "layered" : "continuous"},
+  return {{"vam:exposure", mode_name(process)},
           {"vam:slice_mm", format_number(process.slice_um * 1e-3, 9)},
           {"vam:speed_mm_h", format_number(process.speed_mm_h, 9)},
           {"vam:fps", format_number(frames_per_s(process), 9)}};

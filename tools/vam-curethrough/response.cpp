@@ -15,7 +15,9 @@ namespace vam::curethrough {
 void declare(cli::App& app, GreyResponseOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns grey,reading; one line per measurement.").reads();
   cli::add_output(app, options.output);
-  app.option("--dark", "READING", options.dark, cli::any, "Dark reading of the photodiode; subtracted.");
+  app.option("--dark-reading", "READING", options.dark, cli::any,
+             "Reading of the photodiode without light; it is subtracted.")
+      .was("--dark");
   app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.")
       .was("--scale");
   app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.").writes();

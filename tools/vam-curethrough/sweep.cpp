@@ -36,7 +36,7 @@ std::vector<double> values_of(const std::string& text, const std::string& whole)
   const double step = more == std::string::npos ? 1 : number(text.substr(more + 2), whole);
   const double count = std::floor((high - low) / step + 1e-9);
   if (!(step > 0) || !(count >= 0 && count < 1000)) {
-    throw Error{Fault::usage, whole + ": '" + text + "' is no rising range of at most 1000 values"};
+    throw Error{Fault::usage, whole + ": '" + text + "' is not a rising range of at most 1000 values"};
   }
   for (int i = 0; i <= static_cast<int>(count); ++i) values.push_back(low + i * step);
   return values;
@@ -94,11 +94,12 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
   std::vector<int> whole;
   for (const double height : heights) {
     if (!(height >= 1 && height <= 10000) || height != std::floor(height)) {
-      throw Error{Fault::usage, "--heights: " + format_number(height) + " is not a number of slices from 1 to 10000"};
+      throw Error{Fault::usage,
+                  "--rung-heights: " + format_number(height) + " is not a number of slices from 1 to 10000"};
     }
     whole.push_back(static_cast<int>(height));
   }
-  if (whole.empty()) throw Error{Fault::usage, "--heights: no values"};
+  if (whole.empty()) throw Error{Fault::usage, "--rung-heights: no values"};
   return whole;
 }
 
@@ -106,13 +107,14 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
 
 void declare(cli::App& app, SweepOptions& options) {
   app.positional("RANGES", options.ranges,
-                 "Parameters to vary: dc, the assumed full-cure dose in gelation doses, and omega_max. Each is "
-                 "FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
-  app.option("--heights", "SLICES,...", options.heights, 0,
-             "Heights of the rungs of the ladder; each gap is as high as the next rung.");
-  app.option("--slice", "UM", options.slice_um, cli::positive, "Slice height.");
+                 "Parameters to vary: dc, the assumed full-cure dose as a multiple of the gelation threshold, and "
+                 "omega_max. Each is FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
+  app.option("--rung-heights", "SLICES,...", options.heights, 0,
+             "Heights of the rungs of the ladder; each gap is as high as the next rung.")
+      .was("--heights");
+  app.option("--slice-height", "UM", options.slice_um, cli::positive, "Slice height.").was("--slice");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
-             "Gelation dose D_gel of the working curve.");
+             "Gelation threshold D_c of the working curve.");
   app.default_is("a fifth of the full-cure dose, as in the paper");
   app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.").writes();
   add_print(app, options.print);

@@ -1,4 +1,4 @@
-// A resin's absorbance height and gelation dose from cured thicknesses.
+// A resin's absorbance height and gelation threshold from cured thicknesses.
 #include "resin/working_curve.hpp"
 
 #include "base/json.hpp"
@@ -57,7 +57,7 @@ std::string table_of(const resin::WorkingCurve& curve, const io::CsvTable& csv,
   text += line("h_a    ", curve.absorbance_height_um, curve.absorbance_height_range_um, "um per decade");
   text += "D_p    " + format_number(curve.penetration_depth_um, 5) + " um to 1/e (h_a / ln 10)\n";
   text += line("E_c    ", curve.critical_exposure_mj_cm2, curve.critical_exposure_range_mj_cm2, "mJ/cm2");
-  text += line("D_gel  ", curve.gel_dose_mj_cm3, curve.gel_dose_range_mj_cm3, "mJ/cm3");
+  text += line("D_c    ", curve.gel_dose_mj_cm3, curve.gel_dose_range_mj_cm3, "mJ/cm3");
   text += "scatter " + format_number(curve.residual_sd_um, 4) + " um about the line";
   if (curve.repeat_sd_um > 0) {
     text += ", " + format_number(curve.repeat_sd_um, 4) +

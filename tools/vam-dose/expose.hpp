@@ -6,7 +6,7 @@
 
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
-#include "light/display.hpp"
+#include "light/display_range.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "model/printer.hpp"
@@ -25,7 +25,7 @@ struct Exposed {
   score::TurnDoses doses;
   model::DoseMetrics metrics;                    // of part and void, with a target
   std::optional<model::OutsideDoses> outside;    // of the part's box, with a target
-  std::optional<std::int64_t> dark_part_voxels;  // that lie in the insert's shadow from all sides
+  std::optional<std::int64_t> dark_part_voxels;  // that the insert shadows from all stage angles
 };
 
 /// `info`: of the stack, with the poses to judge it by. Fills the volume, a batch of slices at a time, in units of

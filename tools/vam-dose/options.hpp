@@ -20,6 +20,7 @@ struct Options {
   std::string poses;
   std::optional<double> full_scale;
   std::optional<double> diffusion_time_s;
+  std::optional<int> bits, dither_turns;
   bool no_blur = false;
   bool in_plane = false;
   std::string negative = "clip";

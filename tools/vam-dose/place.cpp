@@ -8,20 +8,20 @@
 #include "light/lit_grid.hpp"
 #include "light/poses.hpp"
 #include "model/dose_metrics.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::dose_tool {
 
 model::StackInfo posed(model::StackInfo info, const Options& options) {
   const bool projector = info.space == model::Space::projector;
   if (!options.poses.empty()) {
-    if (!projector) throw Error{Fault::usage, "--poses: applies to a projector sinogram; a virtual one has no vial"};
+    if (!projector) throw Error{Fault::usage, "--poses: applies to projector sinograms; a virtual one has no vial"};
     info.poses = io::read_poses(options.poses);
     io::require_angles(options.poses, info.poses, info.height, info.angle_start_deg, info.angle_step_deg);
   }
   if (info.poses.empty()) return info;
   if (options.in_plane) {
-    throw Error{Fault::usage, "--in-plane: the rows of a stack with poses light slices that pass by; omit the option"};
+    throw Error{Fault::usage, "--in-plane: does not apply to a stack with poses; omit it"};
   }
   if (options.exposure_plan && !model::repeat(info.poses)) {
     throw Error{Fault::usage, "--exposure-plan: the poses of " + options.input +

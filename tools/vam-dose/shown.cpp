@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -11,19 +14,58 @@
 
 namespace vam::dose_tool {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// The log of a run, by whatever name; its light counts once.
+fs::path log_of(const std::string& run) {
+  return fs::weakly_canonical(fs::is_directory(run) ? fs::path(run) / "flips.jsonl" : fs::path(run));
+}
+
+void require_distinct(const std::vector<std::string>& runs) {
+  std::set<fs::path> logs;
+  for (const std::string& run : runs) {
+    if (logs.insert(log_of(run)).second) continue;
+    throw Error{Fault::usage,
+                "--shown: " + run + " is given twice, but its light was delivered once; give each run once"};
+  }
+}
+
+// A print that has ended has the hashes of its files in SHA256SUMS, one "HASH  ./NAME" a line: what was edited since
+// states another exposure than was delivered.
+void require_unchanged(const std::string& run) {
+  const fs::path folder = log_of(run).parent_path();
+  std::ifstream sums(folder / "SHA256SUMS");
+  constexpr std::size_t digits = 64;
+  for (std::string line; std::getline(sums, line);) {
+    if (line.size() < digits + 4) continue;
+    const std::string name = line.substr(digits + 4);
+    if (name != "flips.jsonl" && name != "events.jsonl" && name != "printer.toml") continue;
+    const std::string file = (folder / name).string();
+    if (io::sha256_of(file) == line.substr(0, digits)) continue;
+    throw Error{Fault::data,
+                file + ": was changed after the print (its hash is not that in SHA256SUMS); restore the original file"};
+  }
+}
+
+}  // namespace
+
 std::vector<double> shown_turns(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
   if (options.shown.empty()) return {};
   if (info.space != model::Space::projector) {
-    throw Error{Fault::usage, "--shown: applies to a projector sinogram, which a print shows"};
+    throw Error{Fault::usage, "--shown: applies to projector sinograms"};
   }
+  require_distinct(options.shown);
   const io::StageRows rows{info.height, info.angle_start_deg, info.angle_step_deg};
   if (std::abs(std::abs(rows.step_deg) * rows.count - 360) > 0.01 * std::abs(rows.step_deg)) {
-    throw Error{Fault::data, options.input + ": has " + format_number(std::abs(rows.step_deg) * rows.count) +
-                                 " degrees of stage angles; --shown needs one turn"};
+    throw Error{Fault::data, options.input + ": covers " + format_number(std::abs(rows.step_deg) * rows.count) +
+                                 " degrees of stage angles; --shown requires one turn"};
   }
   std::vector<double> turns(static_cast<std::size_t>(info.height));
   const std::string sinogram = options.input == "-" ? "" : io::sha256_of(options.input);
   for (const std::string& run : options.shown) {
+    require_unchanged(run);
     const std::string armed = io::armed_sinogram(run);
     if (!armed.empty() && !sinogram.empty() && armed != sinogram) {
       throw Error{Fault::data, options.input + ": is not the sinogram of " + run + ", whose SHA-256 begins " +

@@ -1,6 +1,5 @@
 #include "vam-dose/unit.hpp"
 
-#include <map>
 #include <optional>
 #include <string>
 
@@ -8,19 +7,14 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
-#include "optics/frames.hpp"
+#include "facts.hpp"
+#include "optics/projector_frames.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/sink.hpp"
 
 namespace vam::dose_tool {
 
 namespace {
-
-/// The relative dose at which the projections print, where they state it.
-std::optional<double> threshold_of(const std::map<std::string, std::string>& facts) {
-  const auto stated = facts.find("vam:threshold_dose");
-  return stated == facts.end() ? std::nullopt : parse_number(stated->second);
-}
 
 score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const model::Printer& printer,
                             const model::StackInfo& light, const Options& options) {
@@ -29,10 +23,11 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
                                  std::to_string(doses.void_) + " void voxels; --exposure-plan requires both"};
   }
   if (doses.min_part <= doses.max_void) {
-    warn("exposure: void receives up to " + format_number(scale * doses.max_void, 4) + " mJ/cm3 per turn, part from " +
-         format_number(scale * doses.min_part, 4) + "; there is no process window, the plan is for the best threshold");
+    warn("exposure: the void receives up to " + format_number(scale * doses.max_void, 4) +
+         " mJ/cm3 per turn, the part at least " + format_number(scale * doses.min_part, 4) +
+         "; there is no process window, and the plan is for the best threshold");
   }
-  return score::plan_exposure(doses, scale, printer, optics::turns_of(light), threshold_of(light.extra));
+  return score::plan_exposure(doses, scale, printer, optics::turns_of(light), tool::threshold_dose(light.extra));
 }
 
 }  // namespace
@@ -51,10 +46,10 @@ void convert(io::SparseVolume& volume, const Unit& unit) {
   if (unit.absolute) {
     scale(volume, unit.turn * turns);
     volume.units = "mJ/cm3";
-    const auto threshold = threshold_of(volume.metadata);
+    const auto threshold = tool::threshold_dose(volume.metadata);
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }
-  if (unit.plan) volume.metadata["vam:full_light_turns"] = format_number(turns, 9);
+  if (unit.plan) volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
 }
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,
@@ -83,7 +78,7 @@ Json figures(const Exposed& exposed, const Unit& unit, const Options& options, c
     const bool of_print = of_run && unit.absolute;
     model::Outside outside =
         exposed.outside->at(of_print ? *printer.resin.critical_dose_mj_cm3 / unit.turn
-                                     : score::aimed_dose(exposed.metrics, threshold_of(light.extra)));
+                                     : score::aimed_dose(exposed.metrics, tool::threshold_dose(light.extra)));
     outside.max_dose *= unit.turn;
     add_to(report, outside);
   }

@@ -12,6 +12,7 @@ namespace vam::optimize_tool {
 std::string job_of(const cli::App& app, const model::Printer& printer, const Options& options) {
   std::string job = io::printer_toml(printer) + app.job();
   job += "raising=" + format_number(options.raising.factor) + "\n";
+  if (options.recorded_tolerances) job += model::tolerances_text(*options.printer_tolerances) + "\n";
   for (const std::string& path : {options.response, printer.projector.response}) {
     if (path != "-" && std::filesystem::is_regular_file(path)) job += io::sha256_of(path) + "\n";
   }

@@ -7,8 +7,9 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
-#include "light/hard_faces.hpp"
+#include "light/blurred_faces.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
@@ -41,47 +42,48 @@ Room room_of(const io::SparseVolume& target, const model::Projector& projector) 
           std::max(0.0, model::z_mm(projector, -0.5) - high_mm)};
 }
 
-void warn_of(const std::vector<light::HardFace>& hard, const light::FaceRemedy& remedy, double place_mm, double scale,
-             const std::string& input) {
+void warn_of(const std::vector<light::BlurredFace>& hard, const light::FaceRemedy& remedy, double place_mm,
+             double scale, const std::string& input) {
   const auto& worst = *std::max_element(hard.begin(), hard.end(),
-                                        [](const auto& a, const auto& b) { return a.smear_voxels < b.smear_voxels; });
-  const std::string lift = remedy.smear_voxels < 0.9 * worst.smear_voxels
-                               ? "vam-slice --place " + format_number(place_mm, 3) + " makes that " +
-                                     format_number(remedy.smear_voxels, 2) + ", "
+                                        [](const auto& a, const auto& b) { return a.blur_voxels < b.blur_voxels; });
+  const std::string lift = remedy.blur_voxels < 0.9 * worst.blur_voxels
+                               ? "vam-slice --place " + format_number(place_mm, 3) + " reduces this to " +
+                                     format_number(remedy.blur_voxels, 2) + ", "
                                : "";
-  warn(input + ": climbing rays blur " + std::to_string(hard.size()) + " level face" + (hard.size() > 1 ? "s" : "") +
-       " of the part, most the one that faces " + (worst.face.up ? "up" : "down") +
-       " at z = " + format_number(scale * worst.face.z_mm, 4) + " mm, " + format_number(worst.face.width_mm, 3) +
-       " mm wide, over " + format_number(worst.smear_voxels, 2) + " voxels (" + std::to_string(worst.wrong_voxels) +
-       " are wrong); " + lift + "--rotate " + format_number(remedy.tilt_deg) + ",0,0 tilts it out of the rays");
+  warn(input + ": climbing rays blur " + std::to_string(hard.size()) + " horizontal face" +
+       (hard.size() > 1 ? "s" : "") + " of the part, most severely the " + (worst.face.up ? "upper" : "lower") +
+       " face at z = " + format_number(scale * worst.face.z_mm, 4) + " mm, " + format_number(worst.face.width_mm, 3) +
+       " mm wide, over " + format_number(worst.blur_voxels, 2) + " voxels (" + std::to_string(worst.wrong_voxels) +
+       " wrong voxels); " + lift + "--rotate " + format_number(remedy.tilt_deg) +
+       ",0,0 tilts the faces out of the rays");
 }
 
 }  // namespace
 
-void add_hard_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
-                    const io::SparseVolume& target, const Options& options) {
+void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
+                       const io::SparseVolume& target, const Options& options) {
   if (outcome.wrong.empty() || !scene.poses.empty()) return;
   const double scale = model::vertical_magnification(scene.printer);
   const double voxel_mm = scene.grid.voxel_mm;
-  report["hard_faces"] = Json::array();
+  report["blurred_faces"] = Json::array();
   if (std::all_of(outcome.wrong.begin(), outcome.wrong.end(), [](auto n) { return n == 0; })) return;
   const std::vector<light::FlatFace> faces = faces_of(target);
-  const auto hard = light::hard_faces(scene.printer, scene.grid, outcome.wrong, faces);
+  const auto hard = light::blurred_faces(scene.printer, scene.grid, outcome.wrong, faces);
   if (hard.empty()) return;
   const Room room = room_of(target, scene.printer.projector);
   const auto remedy = light::face_remedy(scene.printer, faces, hard, voxel_mm, room.least_mm, room.most_mm);
-  for (const light::HardFace& one : hard) {
-    report["hard_faces"].push_back({{"z_mm", scale * one.face.z_mm},
-                                    {"faces", one.face.up ? "up" : "down"},
-                                    {"width_mm", one.face.width_mm},
-                                    {"area_mm2", one.face.area_mm2},
-                                    {"smear_voxels", one.smear_voxels},
-                                    {"wrong_voxels", one.wrong_voxels}});
+  for (const light::BlurredFace& one : hard) {
+    report["blurred_faces"].push_back({{"z_mm", scale * one.face.z_mm},
+                                       {"faces", one.face.up ? "up" : "down"},
+                                       {"width_mm", one.face.width_mm},
+                                       {"area_mm2", one.face.area_mm2},
+                                       {"blur_voxels", one.blur_voxels},
+                                       {"wrong_voxels", one.wrong_voxels}});
   }
   const double place_mm = scale * (room.middle_mm + remedy.lift_mm);
-  report["hard_faces_remedy"] = {
-      {"place_mm", place_mm}, {"smear_voxels", remedy.smear_voxels}, {"tilt_deg", remedy.tilt_deg}};
-  warn_of(hard, remedy, place_mm, scale, options.input);
+  report["blurred_faces_remedy"] = {
+      {"place_mm", place_mm}, {"blur_voxels", remedy.blur_voxels}, {"tilt_deg", remedy.tilt_deg}};
+  warn_of(hard, remedy, place_mm, scale, io::input_name(options.input));
 }
 
 }  // namespace vam::optimize_tool

@@ -9,9 +9,9 @@
 
 namespace vam::optimize_tool {
 
-/// The field hard_faces of the report, and a warning where there are any. Nothing where rays stay level or the part
+/// The field blurred_faces of the report, and a warning where there are any. Nothing where rays stay level or the part
 /// moves.
-void add_hard_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
-                    const io::SparseVolume& target, const Options& options);
+void add_blurred_faces(Json& report, const optimize::VolumeOutcome& outcome, const Scene& scene,
+                       const io::SparseVolume& target, const Options& options);
 
 }  // namespace vam::optimize_tool

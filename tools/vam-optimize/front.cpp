@@ -1,10 +1,16 @@
 #include "vam-optimize/front.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "base/text.hpp"
-#include "optics/frames.hpp"
+#include "io/image/image_file.hpp"
+#include "io/stream/stream.hpp"
+#include "optics/projector_frames.hpp"
+#include "plot/plot.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "vam-optimize/sink.hpp"
@@ -14,35 +20,95 @@ namespace vam::optimize_tool {
 optimize::Show make_show(const model::Printer& printer, const Options& options) {
   const resin::GreyLevels levels = grey_levels(printer, options.bits.value_or(printer.projector.bits));
   return [levels, full_scale = options.full_scale,
-          feedback = options.error_feedback](const std::vector<Image>& frames) {
+          dithered = options.dither_turns.has_value()](const std::vector<Image>& frames) {
     std::vector<Image> shown;
-    optimize::Quantiser quantiser(levels, full_scale, feedback, [&](const Image& image) { shown.push_back(image); });
+    optimize::Quantiser quantiser(levels, full_scale, dithered, [&](const Image& image) { shown.push_back(image); });
     for (const Image& frame : frames) quantiser.add(frame);
     quantiser.finish();
     return shown;
   };
 }
 
-std::string front_csv(const std::vector<optimize::FrontPoint>& front, const model::Printer& printer,
-                      const model::StackInfo& info, const Options& options) {
+namespace {
+
+using optimize::FrontPoint;
+using Plans = std::vector<std::optional<score::ExposurePlan>>;  // of each limit; none where the resin is not known
+
+Plans plans_of(const std::vector<FrontPoint>& front, const model::Printer& printer, const model::StackInfo& info,
+               const Options& options) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
-  std::ostringstream csv;
-  csv << "max_intensity,duration_s,turns,pw,ver,iou,peak\n";
-  for (const optimize::FrontPoint& point : front) {
-    csv << format_number(point.max_intensity) << ",";
+  Plans plans(front.size());
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const FrontPoint& point = front[i];
     const double full_scale = options.full_scale.value_or(point.peak);
-    if (per_radian && model::repeat(info.poses) && full_scale > 0 && score::window_middle(point.metrics) > 0) {
-      const auto plan = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
-                                             options.demands.window.threshold());
-      csv << format_number(plan.seconds) << "," << plan.turns;
-    } else {
-      csv << ",";
-    }
-    for (const double figure : {point.metrics.pw, point.metrics.ver, point.metrics.iou, point.peak})
-      csv << "," << format_number(figure);
-    csv << "\n";
+    if (!per_radian || !model::repeat(info.poses) || !(full_scale > 0)) continue;
+    if (!(score::window_middle(point.metrics) > 0)) continue;
+    plans[i] = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
+                                    options.demands.window.threshold());
+  }
+  return plans;
+}
+
+std::string front_csv(const std::vector<FrontPoint>& front, const Plans& plans) {
+  std::ostringstream csv;
+  csv << "max_intensity,duration_s,turns,pw,ver,iou,peak_intensity,efficiency,pw_tolerances\n";
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const FrontPoint& point = front[i];
+    csv << format_number(point.max_intensity) << ",";
+    if (plans[i]) csv << format_number(plans[i]->seconds) << "," << plans[i]->turns;
+    if (!plans[i]) csv << ",";
+    const model::DoseMetrics& m = point.metrics;
+    for (const double figure : {m.pw, m.ver, m.iou, point.peak, point.efficiency}) csv << "," << format_number(figure);
+    csv << "," << (point.pw_tolerances ? format_number(*point.pw_tolerances) : "") << "\n";
   }
   return csv.str();
+}
+
+/// A line with its points.
+void add_curve(plot::Plot& plot, const std::string& name, const std::vector<double>& x, const std::vector<double>& y,
+               Rgb colour) {
+  plot.series.push_back({name, x, y, colour, plot::SeriesStyle::line});
+  plot.series.push_back({"", x, y, colour, plot::SeriesStyle::points});
+}
+
+/// Window above, IoU below, over the same axis.
+RgbImage front_figure(const std::vector<FrontPoint>& front, const Plans& plans) {
+  const bool timed = std::all_of(plans.begin(), plans.end(), [](const auto& plan) { return plan.has_value(); });
+  std::vector<double> x, pw, iou, pw_tolerances;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    x.push_back(timed ? plans[i]->seconds : front[i].efficiency);
+    pw.push_back(front[i].metrics.pw);
+    iou.push_back(front[i].metrics.iou);
+    if (front[i].pw_tolerances) pw_tolerances.push_back(*front[i].pw_tolerances);
+  }
+  plot::Plot windows;
+  windows.title = "Process window against print duration, in the projector's grey levels";
+  windows.x.label = timed ? "duration at full grey / s" : "mean / peak intensity (higher: shorter)";
+  const auto [least, most] = std::minmax_element(x.begin(), x.end());
+  windows.x.low = *least - 0.05 * std::abs(*most);
+  windows.x.high = 1.05 * *most;
+  windows.y.label = "process window / largest dose";
+  windows.height = 460;
+  plot::Plot overlaps;
+  overlaps.x = windows.x;
+  overlaps.y = {"IoU", std::min(0.99, *std::min_element(iou.begin(), iou.end()) - 0.01), 1.001};
+  overlaps.height = 300;
+  add_curve(windows, pw_tolerances.empty() ? "" : "nominal printer", x, pw, plot::paint::blue);
+  if (!pw_tolerances.empty()) add_curve(windows, "with all tolerances", x, pw_tolerances, plot::paint::vermilion);
+  add_curve(overlaps, "", x, iou, plot::paint::blue);
+  plot::Canvas canvas(windows.width, windows.height + overlaps.height);
+  canvas.paste(plot::draw(windows), 0, 0);
+  canvas.paste(plot::draw(overlaps), 0, windows.height);
+  return canvas.image();
+}
+
+}  // namespace
+
+void write_front(const std::string& path, const std::vector<FrontPoint>& front, const model::Printer& printer,
+                 const model::StackInfo& info, const Options& options) {
+  const Plans plans = plans_of(front, printer, info, options);
+  if (!path.ends_with(".png")) return io::write_text(path, front_csv(front, plans));
+  io::write_png(path, front_figure(front, plans));
 }
 
 }  // namespace vam::optimize_tool

@@ -35,16 +35,16 @@ Inputs read(const Options& options) {
     else if (volume.name() == "tolerance" && options.band_volume.empty())
       in.tolerance.push_back(std::move(volume));
   }
-  if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice makes one"};
+  if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
   if (!in.insert.empty()) in.insert.front().extend_to(in.grid());  // other programs leave the void around it out
   for (const auto* volumes : {&in.weight, &in.tolerance}) {
     if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
-    throw Error{Fault::data,
-                options.input + ": the grid of '" + volumes->front().name() +
-                    "' differs from the target's; slice both together (vam-slice --insert) or with the same "
-                    "--voxel and size"};
+    throw Error{
+        Fault::data,
+        options.input + ": the grid of '" + volumes->front().name() +
+            "' differs from the target's; slice both together (vam-slice --insert) or with the same --voxel and size"};
   }
   return in;
 }
@@ -58,7 +58,7 @@ Initial::Initial(const std::string& path, const model::StackInfo& want) : path_(
            " slices";
   };
   throw Error{Fault::data, path + ": " + size(is) + ", but the target needs " + size(want) +
-                               "; use the same target, --angles and --columns"};
+                               "; use the same target, --angles and --detector-bins"};
 }
 
 Image Initial::operator()(int k) {

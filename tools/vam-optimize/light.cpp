@@ -6,12 +6,14 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/pose_file.hpp"
+#include "io/stream/input_name.hpp"
 #include "light/blur.hpp"
 #include "light/make_operator.hpp"
 #include "light/poses.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/magnification.hpp"
-#include "optics/writable.hpp"
+#include "optics/lit_fraction.hpp"
+#include "optics/writable_radius.hpp"
 #include "optimize/run/volume.hpp"
 #include "tomo/fbp.hpp"
 
@@ -20,7 +22,7 @@ namespace vam::optimize_tool {
 namespace {
 
 light::VialSetup light_of(model::Printer printer, const Scene& scene, const Options& options) {
-  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  if (!options.absorbs()) printer.resin.absorption_per_mm = 0;
   light::VialSetup setup =
       light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
   if (scene.poses.empty()) return setup;
@@ -31,10 +33,19 @@ light::VialSetup light_of(model::Printer printer, const Scene& scene, const Opti
   return setup;
 }
 
+/// A wobble that was measured and that the projections do not follow.
+void warn_of_wobble(const model::Printer& printer, double voxel_mm) {
+  const auto wobble_mm = io::wobble_in_force_mm(printer.calibration);
+  if (!wobble_mm || *wobble_mm < 0.25 * voxel_mm) return;
+  warn("the vial wobbles by " + format_number(*wobble_mm, 3) + " mm (" + format_number(*wobble_mm / voxel_mm, 2) +
+       " voxels) according to " + printer.calibration.folder +
+       "/current-edges.json; compensate for it by --wobble-record");
+}
+
 model::Poses poses_of(const model::Grid& part, const model::Printer& printer, const Options& options) {
   if (options.helix_mm) return light::helix_poses(printer, part, *options.helix_mm, options.angles);
-  if (!options.wobble.empty()) {
-    const io::WobbleRecord wobble = io::read_wobble(options.wobble, printer, printer.stage.direction);
+  if (!options.wobble_record.empty()) {
+    const io::WobbleRecord wobble = io::read_wobble(options.wobble_record, printer, printer.stage.direction);
     return light::wobble_poses(wobble.radius_mm, wobble.lab_angle_deg, printer.stage.direction, options.angles);
   }
   if (options.poses.empty()) return {};
@@ -55,13 +66,28 @@ void place_poses(Scene& scene, const model::Grid& part) {
 }
 
 light::Beam beam_of(const Scene& scene, const Options& options) {
-  if (options.geometry == "vial") return light_of(scene.printer, scene, options);
+  if (options.in_vial()) return light_of(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
   model::Printer printer = scene.printer;
-  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  if (!options.absorbs()) printer.resin.absorption_per_mm = 0;
   return light::ParallelBeam{scene.turn, printer.resin.absorption_per_mm * voxel_mm,
                              model::resin_radius_mm(printer.vial) / voxel_mm,
                              options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
+}
+
+std::string reaches(const Options& options, double farthest_mm) {
+  return io::input_name(options.input) + ": reaches " + format_number(farthest_mm, 4) +
+         " mm from the axis, beyond the ";
+}
+
+/// Parts beyond the writable radius.
+void warn_of_reach(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
+  const double farthest = io::farthest_mm(target, model::coverage_rounding);
+  const double writable = optics::writable_radius_mm(printer);
+  if (optics::judged_radius_mm(printer, farthest) <= writable) return;
+  warn(reaches(options, farthest) + "writable radius of " + format_number(writable, 4) +
+       " mm; its outermost voxels are lit from " + format_number(100 * optics::lit_fraction(printer, farthest), 3) +
+       " % of the stage angles");
 }
 
 /// Rows beyond the projector's stay dark.
@@ -74,25 +100,16 @@ void require_rows(const model::Grid& grid, const light::VialSetup& setup) {
                                format_number(setup.highest_mm, 4) + " mm; check projector.axis_row"};
 }
 
-/// The radius of the resin to constrain. Where the part reaches beyond the writable radius, that is reported; beyond
-/// the resin it is refused.
+/// The radius of the resin to constrain. Throws Fault::data where the part reaches beyond the resin.
 double constrained_mm(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
-  const double writable = optics::writable_radius_mm(printer);
-  if (options.geometry != "vial") return writable;
+  if (!options.in_vial()) return optics::writable_radius_mm(printer);
   const double farthest = io::farthest_mm(target, model::coverage_rounding);
-  const double radius = optics::judged_radius_mm(printer, farthest);
-  const std::string reaches = (options.input == "-" ? "stdin" : options.input) + ": reaches " +
-                              format_number(farthest, 4) + " mm from the axis, beyond the ";
   const double edge = model::resin_radius_mm(printer.vial);
   if (farthest > edge) {
-    throw Error{Fault::data,
-                reaches + "resin's edge at " + format_number(edge, 4) + " mm; scale the part down or use a wider vial"};
+    throw Error{Fault::data, reaches(options, farthest) + "resin's edge at " + format_number(edge, 4) +
+                                 " mm; scale the part down or use a wider vial"};
   }
-  if (radius > writable) {
-    warn(reaches + "writable radius of " + format_number(writable, 4) + " mm; there light comes from " +
-         format_number(100 * optics::lit_fraction(printer, farthest), 3) + " % of the angles");
-  }
-  return radius;
+  return optics::judged_radius_mm(printer, farthest);
 }
 
 }  // namespace
@@ -102,20 +119,25 @@ Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, 
   const double radius_mm = constrained_mm(target, printer, options);
   const model::Poses poses = poses_of(grid, printer, options);
   light::require_in_reach(poses, printer, radius_mm);
-  const light::Margin margin =
-      options.geometry == "vial" ? light::lit_margin(printer, grid, radius_mm, poses) : light::Margin{};
+  const light::Margin margin = options.in_vial() ? light::lit_margin(printer, grid, radius_mm, poses) : light::Margin{};
   const model::Grid lit = light::extended(grid, margin);
   Scene scene{lit, margin, printer, model::writable_circle(lit, radius_mm), {}, poses};
-  const int columns = options.columns.value_or(tomo::columns_across(scene.circle, lit.nx));
+  const int columns = options.bins.value_or(tomo::columns_across(scene.circle, lit.nx));
   scene.turn = tomo::full_turn(lit, options.angles, columns);
   place_poses(scene, grid);
   scene.grid = light::extended(grid, scene.margin);
-  if (options.geometry == "vial" && poses.empty()) {
+  if (options.in_vial() && poses.empty()) {
     require_rows(grid, std::get<light::VialSetup>(beam_of(scene, options)));
-  } else if (options.geometry != "vial") {
+  } else if (!options.in_vial()) {
     scene.circle.radius = std::min(scene.circle.radius, 0.5 * columns);
   }
   return scene;
+}
+
+void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options) {
+  if (!options.in_vial()) return;
+  warn_of_reach(target, scene.printer, options);
+  if (scene.poses.empty()) warn_of_wobble(scene.printer, scene.grid.voxel_mm);
 }
 
 double diffusion_s(const Scene& scene, const Options& options) {
@@ -144,7 +166,7 @@ namespace {
 
 /// The voxels are those of the part as it was sliced for the printer as set.
 optimize::Scenario make_scenario(const Scene& scene, const Options& options, std::span<const Slab> inserts,
-                                 const model::Deviation& by) {
+                                 const model::PrinterDeviation& by) {
   const model::DeviatingPrinter off = model::deviate(scene.printer, *options.printer_tolerances, by);
   light::VialSetup setup = light_of(off.printer, scene, options);
   setup.angle_offset_rad += off.angle_offset_rad;
@@ -157,8 +179,8 @@ optimize::Scenario make_scenario(const Scene& scene, const Options& options, std
 std::vector<optimize::Scenario> make_scenarios(const Scene& scene, const Options& options,
                                                std::span<const Slab> inserts) {
   std::vector<optimize::Scenario> bank;
-  for (const model::Deviation& corner : model::balanced_corners()) {
-    model::Deviation opposite = corner;
+  for (const model::PrinterDeviation& corner : model::balanced_corners()) {
+    model::PrinterDeviation opposite = corner;
     for (double& one : opposite) one = -one;
     bank.push_back(make_scenario(scene, options, inserts, corner));
     bank.push_back(make_scenario(scene, options, inserts, opposite));

@@ -34,6 +34,8 @@ struct Scene {
 };
 
 [[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);
+/// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
+void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options);
 
 /// Time during which the dose diffuses.
 [[nodiscard]] double diffusion_s(const Scene& scene, const Options& options);

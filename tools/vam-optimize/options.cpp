@@ -27,6 +27,23 @@ std::string default_iterations() {
   return join(texts, ", ");
 }
 
+void declare_poses(cli::App& app, Options& options) {
+  app.group("Poses of vial and part");
+  app.option("--poses", "FILE", options.poses,
+             "Pose of the vial or the part in every frame: a table (CSV) with the columns "
+             "angle_deg,dx_mm,dy_mm,dz_mm,moves, one line per frame, 360 / --angles degrees apart, for any number of "
+             "turns. The table is stored in the stack.")
+      .reads();
+  app.option("--helix", "MM", options.helix_mm, cli::any,
+             "For parts taller than the image: lift of the vial per turn (negative: downwards), over the number of "
+             "turns in which the whole part passes the image.");
+  app.option("--wobble-record", "RECORD", options.wobble_record,
+             "Record of vam-calibrate edges or axis with the wobble of the vial, whose axis circles the rotation axis; "
+             "the projections follow it.")
+      .reads()
+      .was("--wobble");
+}
+
 void declare_constraints(cli::App& app, Options& options) {
   app.group("Target constraints");
   app.option("--dose-low", "DOSE", options.demands.window.low, cli::non_negative,
@@ -36,30 +53,29 @@ void declare_constraints(cli::App& app, Options& options) {
   app.option("--surface-margin", "MM", options.surface_margin_mm, cli::non_negative,
              "Leave voxels within this distance of the part's surface unconstrained.");
   app.was("--tolerance-mm");
-  app.flag(
-      "--free-surface", options.demands.free_surface,
-      readers("--free-surface") +
-          "do not ask for the threshold dose on the part's surface: often a wider process window, and a print that "
-          "is smaller by half a voxel all around.");
+  app.flag("--free-surface", options.demands.free_surface,
+           readers("--free-surface") +
+               "do not constrain the dose on the part's surface to the threshold: the process window is often wider, "
+               "and the print smaller by half a voxel all around.");
   app.flag("--surface", options.demands.surface,
-           "Constrain surface voxels, too: as part when at least half covered, else as void.");
+           "Constrain surface voxels, too: as part if at least half covered, else as void.");
   app.option("--weights", "FILE", options.weights,
              "Volume (VDB) with a grid 'weight', or with a single grid: relative cost of an error in each voxel. 0 "
              "leaves the voxel unconstrained.")
       .reads();
   app.default_is("the grid 'weight' of the target file, if present");
   app.flag("--grey-target", options.demands.grey,
-           "Grey target: a dose (or response) for every voxel, to be met within --band.");
+           "The target specifies a dose (or response) for every voxel, to be met within --band.");
   app.was("--grey");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
-             readers("--band", ", --grey-target") + "largest deviation of the resin's response from the target.");
+             readers("--band", ", --grey-target") + "maximum deviation of the resin's response from the target.");
   app.option("--band-volume", "FILE", options.band_volume,
              "Volume (VDB) with a grid 'tolerance', or with a single grid: --band for each voxel.")
       .reads();
   app.default_is("the grid 'tolerance' of the target file, if present").was("--tolerances");
   app.option("--resin-response", "CURVE", options.response,
              readers("--resin-response", ", --grey-target") +
-                 "response of the resin to a dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
+                 "response of the resin to the dose: linear (the dose itself), step (from LOW to HIGH), logistic, or a "
                  "CSV file with columns dose,response, which also sets LOW and HIGH.");
   app.default_is("logistic; linear with --grey-target").was("--response");
   app.option("--softness", "GAMMA", options.softness, cli::positive, "Width of the logistic response, as a dose.");
@@ -80,9 +96,9 @@ void declare_stopping(cli::App& app, Options& options) {
   app.not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.option("--checkpoint", "FILE", options.checkpoint,
-             "State of the run if interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from it with "
-             "bit-identical results; target, printer and all options that affect the result must be the same. Removed "
-             "on completion.");
+             "File for the state of a run that is interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from "
+             "it with bit-identical results; target, printer and all options that affect the result must be the same. "
+             "Removed on completion.");
   app.not_in_job().writes();
   app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.").writes();
   app.not_in_job();  // whether there is one is part of the state
@@ -90,40 +106,56 @@ void declare_stopping(cli::App& app, Options& options) {
 
 void declare_parameters(cli::App& app, Options& options) {
   app.group("Method parameters");
-  app.option("--background", "B", options.how.background, {0, 1}, readers("--background") + "target dose of the void.");
+  app.option("--void-dose", "B", options.how.void_dose, {0, 1}, readers("--void-dose") + "target dose of the void.");
+  app.was("--background");
   app.option("--min-intensity", "VALUE", options.how.min_intensity, cli::any,
              readers("--min-intensity") + "lower bound on projected intensity.");
   app.was("--floor");
-  app.choice("--negative", options.negative, {"clip", "offset"},
-             readers("--negative") +
-                 "negative intensities are set to the lower bound, or all intensities of a slice are raised by its "
-                 "minimum.");
+  app.choice(
+      "--negative", options.negative, {"clip", "offset"},
+      readers("--negative") +
+          "set negative intensities to the lower bound, or subtract the minimum of a slice from all its intensities.");
   app.option("--power", "P", options.how.power, {1, 20}, readers("--power") + "exponent of the norm.");
   app.option("--max-intensity", "VALUE", options.max_intensity, cli::non_negative,
              readers("--max-intensity") + "upper bound on projected intensity; 0 is none.");
-  app.default_is(
-      format_number(optimize::usual_of_even) +
-      " times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at every angle; "
-      "raised by half while the conditions of --until are not met");
+  app.default_is(format_number(optimize::usual_of_even) +
+                 " times the even intensity, at which the mean dose is the threshold dose if every pixel is lit at "
+                 "every angle; raised by half while the conditions of --until are not met");
   app.was("--max-light");
+}
+
+/// How long the print takes, which the brightest pixel determines.
+void declare_duration(cli::App& app, Options& options) {
   app.option("--turns", "N", options.turns, cli::positive,
              "Duration of the print, in turns at full grey: sets --max-intensity from resin.critical_dose_mj_cm3, "
              "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --diffusion-time.");
   app.flag("--shortest", options.shortest,
-           readers("--max-intensity") + "the shortest print that meets the conditions of --until: begin with " +
-               format_number(optimize::shortest_of_even) + " times the even intensity and raise the maximum by " +
+           readers("--max-intensity") +
+               "find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
+               format_number(optimize::shortest_of_even) + " times the even intensity and is raised by " +
                format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
                std::to_string(optimize::shortest_raising.next) +
-               " iterations without success. The computation takes several times as long.");
+               " iterations without success. The optimisation takes several times as long.");
   app.option("--tradeoff", "FILE", options.tradeoff,
              readers("--max-intensity") +
-                 "write the Pareto front of print duration and process window as CSV: the print at " +
-                 std::to_string(optimize::front_points) + " limits of the intensity or more, from " +
-                 format_number(optimize::shortest_of_even) + " times the even intensity on, each " +
-                 format_number(100 * (optimize::front_raising.factor - 1)) + " % above the one before. Takes " +
+                 "write the Pareto front of print duration and process window, as CSV or as an image (FILE.png), for "
+                 "at least " +
+                 std::to_string(optimize::front_points) + " maximum intensities, from " +
+                 format_number(optimize::shortest_of_even) + " times the even intensity upwards in steps of " +
+                 format_number(100 * (optimize::front_raising.factor - 1)) + " %. Requires " +
                  std::to_string(optimize::front_iterations) +
-                 " iterations; the projections written are those of the last limit.")
-      .writes();
+                 " iterations; the projections written are those of the last maximum intensity.")
+      .writes({".csv", ".png"});
+}
+
+void declare_proof(cli::App& app, Options& options) {
+  app.group("Proof");
+  app.option("--certify", "FILE", options.certify,
+             "After the optimisation, compute a lower bound on the ratio of the largest void dose to the least part "
+             "dose that holds for any projections (certificate in the report), and write the weights that prove it as "
+             "a volume (VDB); they are large in the regions that limit the process window. Requires " +
+                 std::to_string(optimize::certify_iterations) + " additional iterations.")
+      .writes({".vdb"});
 }
 
 void declare_tolerances(cli::App& app, Options& options) {
@@ -134,11 +166,16 @@ void declare_tolerances(cli::App& app, Options& options) {
   app.group("Tolerances of the printer");
   app.option("--robust", "TOLERANCES", options.robust,
              readers("--robust") +
-                 "projections that also print in printers that deviate from their settings by up to these tolerances, "
-                 "e.g. 'axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm': " +
-                 join(all, ", ") + ". The report has the figures at each tolerance.");
-  app.option("--yield-printers", "N", options.yield_printers, {0, 100000},
-             "Printers that are drawn for the yield of --robust, each quantity even within its tolerance.");
+                 "optimise projections that also print if the printer deviates from its settings by up to these "
+                 "tolerances, e.g. 'axis=0.5px,index=0.005,angle=0.25deg,radius=0.2%,lamp=3%,psf=0.05mm': " +
+                 join(all, ", ") +
+                 ". The word calibration sets the tolerances to twice the standard deviations in the printer's current "
+                 "calibration records (axis and radius from edges, angle from latency, psf from beam); tolerances that "
+                 "are also given (calibration,lamp=3%) take precedence. The report contains the figures of merit at "
+                 "each tolerance.");
+  app.option(
+      "--yield-printers", "N", options.yield_printers, {0, 100000},
+      "Number of random printers for the yield of --robust, each quantity distributed uniformly within its tolerance.");
   app.not_in_job();
 }
 
@@ -152,14 +189,21 @@ void declare_beam(cli::App& app, Options& options) {
   app.option("--diffusion-time", "S", options.diffusion_time_s, cli::non_negative,
              "Time during which the dose diffuses.");
   app.default_is("the duration of stage.turns turns").was("--seconds");
+}
+
+void declare_grey_levels(cli::App& app, Options& options) {
   app.group("Grey levels of the projector");
   app.option("--bits", "N", options.bits, {1, 16},
              "Quantise intensities to the grey levels of this bit depth, through projector.response.");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
       .needs({"--bits"});
   app.default_is("the largest of all projections").was("--peak");
-  app.flag("--error-feedback", options.error_feedback, "Carry the quantisation error over to the next angle.")
-      .needs({"--bits"});
+  app.option(
+         "--dither", "N", options.dither_turns, {1, 1000},
+         "Carry the rounding error over to neighbouring columns and angles, as vam-project --dither N; N is 1, as a "
+         "sinogram has the frames of one turn.")
+      .needs({"--bits"})
+      .was("--error-feedback", "1");
 }
 
 }  // namespace
@@ -170,34 +214,25 @@ void declare(cli::App& app, Options& options) {
   std::vector<std::string> methods = optimize::method_names();
   methods.insert(methods.begin(), "auto");
   app.choice("--method", options.method, methods,
-             std::string("Optimisation method. auto: ") + optimize::automatic_method + ", at least " +
-                 std::to_string(optimize::automatic_iterations) + " iterations, until " + optimize::automatic_until +
-                 ".");
+             std::string("Optimisation method. auto: ") + optimize::automatic_method +
+                 " from coarse to fine, at least " + std::to_string(optimize::automatic_refinements) +
+                 " iterations at full resolution, until " + optimize::automatic_until + ".");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");
   app.option("--angles", "N", options.angles, {1, 100000}, "Number of stage angles over 360 degrees.");
-  app.option("--columns", "N", options.columns, {1, 65536},
+  app.option("--detector-bins", "N", options.bins, {1, 65536},
              "Number of detector bins of a parallel beam, each one voxel wide.");
-  app.default_is("as many as cover the writable circle");
-  app.group("Poses of vial and part");
-  app.option("--poses", "FILE", options.poses,
-             "Pose of the vial or the part in every frame: a table (CSV) with the columns "
-             "angle_deg,dx_mm,dy_mm,dz_mm,moves, "
-             "one line a frame, 360 / --angles degrees apart, for any number of turns. "
-             "Becomes part of the stack.")
-      .reads();
-  app.option("--helix", "MM", options.helix_mm, cli::any,
-             "For parts taller than the image: the vial is lifted (below 0: lowered) by so much a turn, in as many "
-             "turns as the whole part takes to pass the image.");
-  app.option("--wobble", "RECORD", options.wobble,
-             "The vial's axis circles the rotation axis as this record of vam-calibrate edges or axis states.")
-      .reads();
+  app.default_is("as many as cover the writable circle").was("--columns");
+  declare_poses(app, options);
   declare_constraints(app, options);
   declare_stopping(app, options);
   declare_parameters(app, options);
+  declare_duration(app, options);
   declare_tolerances(app, options);
+  declare_proof(app, options);
   declare_beam(app, options);
+  declare_grey_levels(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_report(app, options.report);

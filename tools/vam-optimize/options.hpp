@@ -18,10 +18,10 @@ struct Options {
   std::string method = "auto";
   std::string geometry = "vial";
   int angles = 360;
-  std::optional<int> columns;
+  std::optional<int> bins;
   std::string poses;  // one of the three, or none
   std::optional<double> helix_mm;
-  std::string wobble;
+  std::string wobble_record;
   optimize::Demands demands;  // target constraints
   double surface_margin_mm = 0;
   std::string weights, band_volume;
@@ -31,6 +31,7 @@ struct Options {
   optimize::Limits limits;
   std::string until;
   std::string init;
+  bool coarse_start = false;  // from the same part at half of the resolution
   std::string checkpoint;
   std::string trace;
   optimize::MethodOptions how;
@@ -38,10 +39,12 @@ struct Options {
   std::optional<double> turns;  // of the print, at full grey
   bool shortest = false;
   std::string tradeoff;
+  std::string certify;
   optimize::IntensityLimit limit;
   optimize::Raising raising;
   std::string robust;
   std::optional<model::Tolerances> printer_tolerances;  // as read from it
+  bool recorded_tolerances = false;                     // and from the calibration records
   int yield_printers = 50;
   std::string negative = "clip";
   std::string absorption_model = "exact";
@@ -49,10 +52,13 @@ struct Options {
   std::optional<double> diffusion_time_s;
   std::optional<int> bits;  // the projector's grey levels
   std::optional<double> full_scale;
-  bool error_feedback = false;
+  std::optional<int> dither_turns;
   cli::PrinterOptions printer;
   std::string report;
   io::StackOptions stack;
+
+  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
+  [[nodiscard]] bool absorbs() const { return absorption_model != "none"; }
 };
 
 [[nodiscard]] cli::Manual manual();
@@ -60,6 +66,9 @@ void declare(cli::App& app, Options& options);
 /// Fills in what follows from other options, no file opened. Throws Fault::usage for options that contradict each
 /// other.
 void settle(const cli::App& app, Options& options);
+/// The tolerances of calibration records where --robust asks for them and names no others; one line on a terminal says
+/// which. Throws as io::recorded_tolerances does.
+void settle_recorded(const model::Printer& printer, Options& options);
 /// The response curve of --resin-response, and the window that a table of it gives. Throws Error when it cannot be
 /// read.
 void settle_response(const cli::App& app, Options& options);

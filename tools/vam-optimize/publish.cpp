@@ -1,15 +1,22 @@
 #include "vam-optimize/publish.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/slab.hpp"
 #include "base/text.hpp"
+#include "dark_part.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
-#include "optics/frames.hpp"
+#include "model/magnification.hpp"
+#include "optics/projector_frames.hpp"
+#include "optimize/run/limited_by.hpp"
 #include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
@@ -21,15 +28,12 @@ namespace vam::optimize_tool {
 namespace {
 
 void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
-  if (outcome.dark_part_voxels > 0) {
-    warn(options.input + ": " + std::to_string(outcome.dark_part_voxels) +
-         " voxels of the part are in the insert's shadow from all sides; they will not print");
-  }
+  tool::warn_of_dark_part(options.input, outcome.dark_part_voxels);
   const model::DoseMetrics& m = outcome.metrics;
   const bool has_goal = !options.until.empty() || options.max_intensity || options.turns;
-  if (!has_goal || outcome.reason == "goal" || options.demands.grey || m.ver == 0) return;
+  if (!has_goal || outcome.stop == optimize::StopReason::goal || options.demands.grey || m.ver == 0) return;
   const bool limited = outcome.max_intensity > 0 && outcome.peak_intensity > 0.98 * outcome.max_intensity;
-  warn(options.input + ": does not print after " + std::to_string(outcome.iterations) +
+  warn(io::input_name(options.input) + ": does not print after " + std::to_string(outcome.iterations) +
        " iterations: voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
        "; more --iterations" +
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
@@ -47,6 +51,30 @@ std::optional<score::ExposurePlan> exposure(const optimize::VolumeOutcome& outco
                               options.demands.window.threshold());
 }
 
+/// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.
+void write_proof(const optimize::Certificate& proof, const Scene& scene, const io::SparseVolume& target,
+                 const model::StackInfo& info, const std::string& path) {
+  const model::Grid& grid = scene.grid;
+  io::SparseVolume volume("weight", grid);
+  volume.metadata = target.metadata;
+  volume.history = info.history;
+  float most = 0;
+  for (const Slab& slab : proof.weights) {
+    for (const float weight : slab.values) most = std::max(most, std::abs(weight));
+  }
+  const float unit = most > 0 ? 1 / most : 1;
+  std::vector<float> slices(grid.slice_size() * lanes);
+  for (std::size_t s = 0; s < proof.weights.size(); ++s) {
+    const int first = static_cast<int>(s) * lanes;
+    const int count = std::min(lanes, grid.nz - first);
+    if (count <= 0) break;
+    unpack(proof.weights[s], count, slices.data());
+    for (float& weight : slices) weight *= unit;
+    volume.write_slices(first, count, slices.data());
+  }
+  io::write_volume(path, volume);
+}
+
 }  // namespace
 
 void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimize::Trials>& trials, const Scene& scene,
@@ -54,7 +82,8 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
   const model::Printer& printer = scene.printer;
   warn_of(outcome, options);
   if (!options.trace.empty()) io::write_text(options.trace, optimize::trace_csv(outcome.trace));
-  if (!options.tradeoff.empty()) io::write_text(options.tradeoff, front_csv(outcome.front, printer, info, options));
+  if (!options.tradeoff.empty()) write_front(options.tradeoff, outcome.front, printer, info, options);
+  if (outcome.certificate) write_proof(*outcome.certificate, scene, target, info, options.certify);
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();
@@ -64,7 +93,9 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));
-    add_hard_faces(report, outcome, scene, target, options);
+    report["limited_by"] = optimize::limited_by(
+        outcome.asked, [&](int k) { return model::vertical_magnification(printer) * scene.grid.z_mm(k); });
+    add_blurred_faces(report, outcome, scene, target, options);
   }
   if (trials) report["robust"] = optimize::report(*trials, *options.printer_tolerances);
   io::write_report(options.report, "vam-optimize/1", report);

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/csv_table.hpp"
+#include "io/settings/recorded_tolerances.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "vam-optimize/options.hpp"
@@ -20,9 +22,26 @@ namespace {
 void settle_auto(const cli::App& app, Options& options) {
   if (options.method != "auto") return;
   options.method = optimize::automatic_method;
+  const bool still = options.poses.empty() && !options.helix_mm && options.wobble_record.empty();
+  options.coarse_start =
+      still && options.init.empty() && !options.demands.grey && options.robust.empty() && options.tradeoff.empty();
   if (!options.until.empty() || !options.robust.empty() || (app.given("--iterations") && !options.shortest)) return;
-  options.limits.at_least = optimize::automatic_iterations;
+  options.limits.at_least = options.coarse_start ? optimize::automatic_refinements : optimize::automatic_iterations;
   options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
+}
+
+/// Takes the clause that stands for the records out of --robust.
+model::Tolerances named_tolerances(Options& options) {
+  std::vector<std::string> clauses;
+  for (const std::string& clause : split(options.robust, ',')) {
+    if (trimmed(clause) == "calibration") {
+      options.recorded_tolerances = true;
+    } else {
+      clauses.push_back(clause);
+    }
+  }
+  if (clauses.empty() && options.recorded_tolerances) return {};
+  return model::parse_tolerances(join(clauses, ","));
 }
 
 /// Tolerances are met by iterations that nothing but --until and --patience stops, if given.
@@ -31,12 +50,12 @@ void settle_tolerances(const cli::App& app, Options& options) {
     if (app.given("--yield-printers")) throw Error{Fault::usage, "--yield-printers: requires --robust"};
     return;
   }
-  if (options.geometry != "vial") {
-    throw Error{Fault::usage, "--robust: a parallel beam has no printer to be off; use --geometry vial"};
+  if (!options.in_vial()) {
+    throw Error{Fault::usage, "--robust: does not apply to a parallel beam; use --geometry vial"};
   }
   if (options.demands.grey) throw Error{Fault::usage, "--robust: does not apply to --grey-target"};
   try {
-    options.printer_tolerances = model::parse_tolerances(options.robust);
+    options.printer_tolerances = named_tolerances(options);
   } catch (const Error& error) {
     throw Error{error.fault, std::string("--robust: ") + error.what()};
   }
@@ -58,26 +77,40 @@ void refuse_unread(const cli::App& app, const Options& options, const optimize::
 }
 
 void refuse_poses(const Options& options) {
-  const int ways = (options.poses.empty() ? 0 : 1) + (options.helix_mm ? 1 : 0) + (options.wobble.empty() ? 0 : 1);
+  const int ways =
+      (options.poses.empty() ? 0 : 1) + (options.helix_mm ? 1 : 0) + (options.wobble_record.empty() ? 0 : 1);
   if (ways == 0) return;
-  if (ways > 1) throw Error{Fault::usage, "--poses, --helix, --wobble: give one of them; a table can hold it all"};
-  if (options.helix_mm == 0.0) throw Error{Fault::usage, "--helix: 0 mm a turn never passes the part"};
-  if (options.geometry != "vial") {
-    throw Error{Fault::usage, "--poses, --helix, --wobble: a parallel beam has no vial to move; use --geometry vial"};
+  if (ways > 1)
+    throw Error{Fault::usage, "--poses, --helix, --wobble-record: give only one; a table for --poses can combine them"};
+  if (options.helix_mm == 0.0) throw Error{Fault::usage, "--helix: must not be 0"};
+  if (!options.in_vial()) {
+    throw Error{Fault::usage,
+                "--poses, --helix, --wobble-record: do not apply to a parallel beam; use --geometry vial"};
   }
+}
+
+void refuse_dither(const Options& options) {
+  if (options.dither_turns.value_or(1) == 1) return;
+  throw Error{Fault::usage, "--dither: " + std::to_string(*options.dither_turns) +
+                                " turns need frames that differ, but a sinogram has those of one; give 1, or round by "
+                                "vam-project --dither"};
 }
 
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
   refuse_unread(app, options, method);
   refuse_poses(options);
-  if (options.geometry == "vial" && options.columns) {
+  refuse_dither(options);
+  if (options.in_vial() && options.bins) {
     throw Error{Fault::usage,
-                "--columns: does not apply to --geometry vial, which uses the projector's columns; use --geometry "
-                "parallel"};
+                "--detector-bins: does not apply to --geometry vial, whose sinogram has the projector's columns; use "
+                "--geometry parallel"};
   }
-  if (options.geometry == "vial" && options.absorption_model == "disc") {
+  if (options.in_vial() && options.absorption_model == "disc") {
     throw Error{Fault::usage, "--absorption-model disc: applies to parallel beams; use --geometry parallel"};
+  }
+  if (options.demands.grey && !options.certify.empty()) {
+    throw Error{Fault::usage, "--certify: does not apply to --grey-target, which distinguishes no part and void"};
   }
   if (options.demands.grey && !method.grey) {
     const auto able = optimize::method_names([](const optimize::MethodEntry& entry) { return entry.grey; });
@@ -85,7 +118,7 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
                 "--grey-target: " + method.name + " does not support grey targets; use one of " + join(able, ", ")};
   }
   if (options.demands.grey && (options.surface_margin_mm > 0 || options.demands.surface)) {
-    throw Error{Fault::usage, "--grey-target: a grey target has no surface; omit --surface-margin and --surface"};
+    throw Error{Fault::usage, "--grey-target: has no surface; omit --surface-margin and --surface"};
   }
 }
 
@@ -95,7 +128,7 @@ void settle_tradeoff(const cli::App& app, Options& options) {
       app.given("--patience")) {
     throw Error{Fault::usage,
                 "--tradeoff: sets the maximum intensity and the iterations; omit --max-intensity, --turns, --shortest, "
-                "--until, --iterations, --patience and --grey-target, and use a method that reads --max-intensity"};
+                "--until, --iterations, --patience and --grey-target, and use a method with --max-intensity"};
   }
   options.until.clear();
   options.raising = optimize::front_raising;
@@ -108,8 +141,8 @@ void settle_tradeoff(const cli::App& app, Options& options) {
 void settle_raising(const cli::App& app, Options& options) {
   if (options.shortest && options.limit.of_even <= 0) {
     throw Error{Fault::usage,
-                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and "
-                "--grey-target, and use a method that reads --max-intensity"};
+                "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and --grey-target, "
+                "and use a method with --max-intensity"};
   }
   if (options.shortest && options.until.empty()) {
     throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
@@ -152,6 +185,20 @@ void settle(const cli::App& app, Options& options) {
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());
   }
+}
+
+void settle_recorded(const model::Printer& printer, Options& options) {
+  if (!options.recorded_tolerances) return;
+  model::Tolerances& all = *options.printer_tolerances;
+  try {
+    const model::Tolerances recorded = io::recorded_tolerances(printer);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = all[i] > 0 ? all[i] : recorded[i];
+  } catch (const Error& error) {
+    throw Error{error.fault, std::string("--robust: ") + error.what()};
+  }
+  const std::vector<std::string> exact = model::exact_quantities(all);
+  note("vam-optimize: tolerances: " + model::tolerances_text(all) +
+       (exact.empty() ? "" : "; neither recorded nor named: " + join(exact, ", ")));
 }
 
 namespace {

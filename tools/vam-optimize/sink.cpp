@@ -13,7 +13,7 @@ Sink::Sink(const Options& options, const model::Printer& printer, const model::S
       out_(options.output, info, options.stack),
       progress_("optimising", info.count) {
   if (!options.bits) return;
-  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.error_feedback,
+  levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.dither_turns.has_value(),
                   [this](const Image& image) { write(image); });
 }
 

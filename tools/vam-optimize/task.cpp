@@ -21,7 +21,7 @@ model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, 
   info.poses = scene.poses;
   info.pixel_mm = info.row_mm = scene.grid.voxel_mm;
   info.extra = target.metadata;
-  if (options.geometry == "vial") {
+  if (options.in_vial()) {
     info.extra["vam:printer"] = io::printer_settings(scene.printer);
     info.space = model::Space::projector;
     info.width = scene.printer.projector.columns;
@@ -124,6 +124,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
     return (options.printer_tolerances ? method.make_tolerant : method.make)(how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
+  task.certify = !options.certify.empty();
   if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);
   if (options.printer_tolerances) {
     task.scenarios = [&](std::span<const Slab> inserts) { return make_scenarios(scene, options, inserts); };
@@ -134,7 +135,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
 optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options) {
   optimize::Trial trial;
   trial.printer = scene.printer;
-  if (options.absorption_model == "none") trial.printer.resin.absorption_per_mm = 0;
+  if (!options.absorbs()) trial.printer.resin.absorption_per_mm = 0;
   trial.tolerances = *options.printer_tolerances;
   trial.info = info;
   trial.grid = scene.grid;

@@ -95,7 +95,7 @@ void live(const cli::App& app, const Options& options) {
   Session session(app, options);
   Print print(app, options, session.printer().camera);
   Turns turns(session, print, options);
-  io::ViewSource source(options.views, options.step_deg);
+  io::ViewSource source(options.views, options.step_deg.value_or(0));
   const double pixel_mm = source.pixel_mm();
   const auto history = source.history();
   io::ViewQueue frames(source);  // from here on the source is its thread's

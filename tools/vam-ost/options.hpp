@@ -12,7 +12,7 @@ namespace vam::ost_tool {
 struct Options {
   std::string views = "-";
   std::string output = "-";
-  double step_deg = 0;
+  std::optional<double> step_deg;
   std::string dark, flat;
   int binning = 1;
   std::optional<double> pixel_mm, axis_column, tilt_deg;

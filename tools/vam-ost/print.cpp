@@ -19,7 +19,8 @@ namespace {
 
 std::optional<double> isovalue_of(const Options& o) {
   if (o.resin_record.empty()) return o.isovalue;
-  if (o.isovalue) throw Error{Fault::usage, "--isovalue and --resin: both give the gelation threshold; use one"};
+  if (o.isovalue)
+    throw Error{Fault::usage, "--isovalue, --resin: conflict, both give the gelation threshold; omit one"};
   return io::gelation_isovalue(o.resin_record);
 }
 
@@ -47,8 +48,8 @@ void Print::keep(model::Volume& volume) {
   bodies_ = metrology::keep_bodies(volume, *isovalue_, rules_);
   constexpr double within = 0.75;  // a level on the edge is about half of what is inside
   if (bodies_.inside > 0 && *isovalue_ > within * bodies_.inside) {
-    warn("isovalue " + format_number(*isovalue_, 3) + " cuts the inside of the print, of which half is below " +
-         format_number(bodies_.inside, 3) + ": parts of it are missing; calibrate the isovalue again" +
+    warn("isovalue " + format_number(*isovalue_, 3) + " is too high: half of the print's interior is below " +
+         format_number(bodies_.inside, 3) + ", so that parts are missing; calibrate the isovalue again" +
          (absorbs_ ? "" : ", or set camera.absorption_per_mm"));
   }
   if (bodies_.dropped > 0) {

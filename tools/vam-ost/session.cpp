@@ -92,15 +92,14 @@ void Session::write(const model::Volume& volume, const std::string& path,
 void Session::say_dirt() const {
   std::string words;
   const auto add = [&](double percent, const char* what) {
-    if (percent > 0)
-      words += (words.empty() ? "" : ", ") + format_number(percent, 2) + " % of the rays through " + what;
+    if (percent > 0) words += (words.empty() ? "" : ", ") + format_number(percent, 2) + " % through " + what;
   };
   add(dirt_.speck_percent, "specks");
-  if (!dirt_.contradicts) add(dirt_.bubble_percent, "bubbles");
-  if (!words.empty()) note("replaced by the same lines from their other ends: " + words);
-  if (dirt_.contradicts) {
-    note("views contradict each other in " + format_number(dirt_.bubble_percent, 2) +
-         " % of the rays: the print changes or wobbles, the axis is elsewhere, or the resin absorbs this light "
+  if (!dirt_.bubbles_exceed_limit) add(dirt_.bubble_percent, "bubbles");
+  if (!words.empty()) note("rays replaced by their reverse, half a turn later: " + words);
+  if (dirt_.bubbles_exceed_limit) {
+    note("views are inconsistent in " + format_number(dirt_.bubble_percent, 2) +
+         " % of the rays: the print changes or wobbles, the axis is wrong, or the resin absorbs at this wavelength "
          "(camera.absorption_per_mm)");
   }
 }

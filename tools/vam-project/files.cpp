@@ -4,7 +4,7 @@
 #include "io/image/frame_sink.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/settings/report.hpp"
-#include "optics/frames.hpp"
+#include "optics/projector_frames.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/show.hpp"
 #include "vam-project/turn.hpp"
@@ -27,7 +27,9 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const Frames frames = frames_of(light, schedule);
-  const auto tally = show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), *sink);
+  const Dithering dithering = dithering_of(options, 360 / schedule.step_deg, turns);
+  const auto tally =
+      show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), dithering, *sink);
   Json report = figures(frames, projector.bits, peak, tally);
   if (!differences.empty()) report["printer_differences"] = differences;
   io::write_report(options.report, "vam-project/1", report);
@@ -41,7 +43,7 @@ void write_slices(const cli::App& app, const Options& options, const model::Prin
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
   const auto scale = static_cast<float>(options.multiplier / options.full_scale.value_or(1));
-  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), *sink);
+  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), {}, *sink);
   io::write_report(options.report, "vam-project/1", slice_figures(frames, options, printer.projector, tally));
 }
 

@@ -35,12 +35,13 @@ void Live::begin() {
   if (relay_ != nullptr) relay_->close();
 }
 
-device::PlayTally Live::play(double speed_deg_s, int turns) {
+device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns) {
   const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
                                               : device::followed_angle(options_.follow, clock_);
   begin();
   device::PlayPlan plan;
-  plan.frames_per_turn = frames_;
+  plan.frames_per_turn = frames_per_turn;
+  plan.frames = frames_;
   plan.turns = turns;
   plan.from_deg = options_.from_deg;
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);

@@ -23,8 +23,8 @@ class Live {
   void add(const GreyImage& levels);
   /// A line of the log that is no flip.
   void note(const std::string& event, const Json& facts) { log_(event, facts); }
-  /// One turn's frames are loaded: prints with them.
-  device::PlayTally play(double speed_deg_s, int turns);
+  /// The frames of whole turns are loaded: prints with them.
+  device::PlayTally play(int frames_per_turn, double speed_deg_s, int turns);
   /// Shows the loaded frames one after the other.
   device::PlayTally play_through(double hold_s, bool forever);
 

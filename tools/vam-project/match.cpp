@@ -19,15 +19,15 @@ std::vector<std::string> require_printer(const Options& options, const model::St
   const auto computed_for = info.extra.find("vam:printer");
   if (computed_for == info.extra.end()) {
     if (!options.accept_printer) {
-      warn(name + ": does not say for which printer it was computed (vam:printer), which is not checked");
+      warn(name + ": the attribute vam:printer is missing; whether it was computed for this printer cannot be checked");
     }
     return {};
   }
   auto differences = io::light_differences(io::parse_settings(computed_for->second, name + ": vam:printer"), printer);
   if (differences.empty()) return {};
-  const std::string what = name + ": was computed for another printer: " + join(differences, "; ");
+  const std::string what = name + ": computed for another printer: " + join(differences, "; ");
   if (!options.accept_printer) {
-    throw Error{Fault::data, what + "; compute it again for this one, or accept it with --accept-printer"};
+    throw Error{Fault::data, what + "; compute it for this printer, or give --accept-printer"};
   }
   warn(what + "; accepted");
   return differences;

@@ -9,37 +9,80 @@ namespace vam::project {
 
 namespace {
 
+void add_time(cli::App& app, Options& options) {
+  app.group("Time");
+  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second.")
+      .default_is("projector.fps; for slices print speed / slice height");
+  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive, "Speed of the platform, for slices.")
+      .default_is("as stated in the stack");
+  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed.").default_is("stage.speed_deg_s");
+  app.option("--turns", "N", options.turns, cli::positive, "Turns of the print; not necessarily a whole number.")
+      .default_is("stage.turns");
+}
+
+void add_position(cli::App& app, Options& options) {
+  app.group("Position");
+  app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
+             "Mounting of the projector.")
+      .default_is("projector.orientation");
+  app.option("--column-offset", "PX", options.column_offset, {-65536, 65536},
+             "Shift of the image, positive to the right; not necessarily whole pixels.");
+  app.option("--row-offset", "PX", options.row_offset, {-65536, 65536},
+             "Shift of the image, positive downwards; not necessarily whole pixels.");
+  app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
+}
+
+void add_grey(cli::App& app, Options& options) {
+  app.group("Grey");
+  app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
+      .default_is("projector.bits");
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Sinogram value shown at full intensity.")
+      .was("--peak")
+      .default_is("maximum of the stack, for slices 1");
+  app.option("--multiplier", "FACTOR", options.multiplier, cli::positive,
+             "Factor on the intensity; values above full intensity are clipped.")
+      .was("--gain")
+      .was("--intensity");
+  app.option(
+      "--dither", "N", options.dither_turns, {1, 1000},
+      "Round by error diffusion over columns and angles, so that the dose, a sum over many pixels, is accurate to less "
+      "than a grey level. The frames of N turns differ: in them a pixel between two levels shows both in proportion. N "
+      "must divide the number of turns.");
+}
+
 void add_live(cli::App& app, Options& all) {
   LiveOptions& options = all.live;
   app.group("Live output");
   app.option("--follow", "FILE", options.follow,
-             "Read the stage angle from this output of vam-stage spin, a FIFO or - (then name the sinogram).");
+             "Read the stage angle from this output of vam-stage spin, a FIFO or - (SINOGRAM is then required).");
   app.option("--light", "DEVICE", options.light, "Light engine: " + device::light_devices() + ".");
   app.option("--frames-per-turn", "N", options.frames_per_turn, {1, 1000000}, "Frames to preload.")
       .default_is("one for each angle of the sinogram");
   app.option("--from", "DEG", options.from_deg, {0, 1e9},
-             "Stay black until this stage angle: the rest of an aborted print.");
-  app.option("--latency", "MS", options.latency_ms, {-1000, 1000}, "Delay from the vertical blank to the light.")
+             "Stay dark until this stage angle, to print the rest of an aborted print.");
+  app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
+             "Delay of the projector, from the vertical blank to the light.")
       .default_is("projector.latency_ms");
   app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Largest allowed fraction of missed vertical blanks in the run-up.");
+             "Maximum fraction of missed vertical blanks in the run-up.");
   app.option("--missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
-             "Largest allowed fraction of missed vertical blanks by the end of the print, at least that of --missed.");
+             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --missed.");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
-  app.flag(
-      "--plan", all.only_plan,
-      "Print frames, memory, duration and dose, query the identity of display and light engine, and show nothing.");
-  app.flag("--die-with-parent", options.with_parent, "Blank the screen and exit when the parent process exits.");
+  app.flag("--plan", all.only_plan,
+           "Print frames, memory, duration and dose, query display and light engine for their identity, and show "
+           "nothing; with --pattern only the query.");
+  app.flag("--die-with-parent", options.with_parent, "Blank the display and exit when the parent process exits.");
 }
 
 void add_patterns(cli::App& app, PatternOptions& options) {
   options.plan.name.clear();
   app.group("Test patterns (instead of a sinogram)");
-  app.option("--pattern", "NAME", options.plan.name,
-             "star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the columns) "
-             "or row (a line at z = 0, for vam-calibrate beam).")
+  app.option(
+         "--pattern", "NAME", options.plan.name,
+         "Test pattern: star (focus), axis, grid, grey, ramp (uniform levels from 0 to full), sweep (a line across the "
+         "columns) or row (a line at z = 0, for vam-calibrate beam).")
       .form();
   app.option("--grey", "FRACTION", options.plan.level, {0, 1},
              "Grey level of lines and fields, as a fraction of full grey.")
@@ -60,41 +103,17 @@ void declare(cli::App& app, Options& options) {
                  "vam-curethrough, a frame stack (EXR) or a folder of images.")
       .reads({"--pattern"});
   cli::add_output(app, options.output);
-  app.group("Time");
-  app.option("--fps", "HZ", options.fps, cli::positive, "Frames per second.")
-      .default_is("projector.fps; for slices print speed / slice height");
-  app.option("--print-speed", "MM_H", options.print_speed_mm_h, cli::positive, "Speed of the platform, for slices.")
-      .default_is("as stated in the stack");
-  app.option("--speed", "DEG/S", options.speed_deg_s, cli::positive, "Stage speed.").default_is("stage.speed_deg_s");
-  app.option("--turns", "N", options.turns, cli::positive, "Number of turns, also fractional.")
-      .default_is("stage.turns");
-  app.group("Position");
-  app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
-             "Mounting of the projector.")
-      .default_is("projector.orientation");
-  app.option("--column-offset", "PX", options.column_offset, {-65536, 65536},
-             "Shift of the image to the right, also fractional.");
-  app.option("--row-offset", "PX", options.row_offset, {-65536, 65536}, "Shift of the image down, also fractional.");
-  app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
-  app.group("Grey");
-  app.option("--bits", "N", options.bits, {1, 16}, "Bits per pixel: 1, 2, 4, 8, 10 or 16.")
-      .default_is("projector.bits");
-  app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Value that is shown at full intensity.")
-      .was("--peak")
-      .default_is("maximum of the stack, for slices 1");
-  app.option("--multiplier", "FACTOR", options.multiplier, cli::positive,
-             "Factor on the intensity; values above full intensity are clipped.")
-      .was("--gain")
-      .was("--intensity");
+  add_time(app, options);
+  add_position(app, options);
+  add_grey(app, options);
   add_live(app, options);
   add_patterns(app, options.pattern);
   cli::add_printer(app, options.printer);
   app.flag("--accept-printer", options.accept_printer,
            "Accept a sinogram that was computed for another printer, with a warning that names the differences.");
-  app.option(
-      "--freeze", "FILE", options.freeze,
-      "Check the sinogram against the printer, write the settings in force to FILE, with calibration records and "
-      "whole paths, and exit; for vam-print.");
+  app.option("--freeze", "FILE", options.freeze,
+             "Check the sinogram against the printer, write the settings in force to FILE, including calibration "
+             "records and with absolute paths, and exit; used by vam-print.");
   app.group("Output and machine");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_report(app, options.report);
@@ -105,8 +124,9 @@ void refuse_live(const cli::App& app, const std::string& output) {
   for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--missed",
                            "--missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;
-    throw Error{Fault::usage, std::string(flag) + ": applies to a display, but -o names " +
-                                  (output == "-" ? "standard output" : output) + "; give " + device::display_devices()};
+    throw Error{Fault::usage, std::string(flag) + ": applies only to a display, but the output is " +
+                                  (output == "-" ? "standard output" : output) + "; give -o " +
+                                  device::display_devices()};
   }
 }
 

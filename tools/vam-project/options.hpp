@@ -43,6 +43,7 @@ struct Options {
   double column_offset = 0;
   double row_offset = 0;
   double multiplier = 1;
+  std::optional<int> dither_turns;
   cli::PrinterOptions printer;
   bool accept_printer = false;
   bool only_plan = false;

@@ -7,8 +7,8 @@
 #include "device/os/interrupt.hpp"
 #include "io/image/frame_sink.hpp"
 #include "model/rows.hpp"
-#include "optics/frames.hpp"
 #include "optics/patterns.hpp"
+#include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 
 namespace vam::project {
@@ -38,7 +38,7 @@ io::ProjectorFrame pattern_as_frame(const GreyImage& levels, double time_s) {
   return frame;
 }
 
-// For whoever reads the log: which frames the flips speak of.
+// For readers of the log: the frames that flips refer to.
 Json facts(const optics::PatternPlan& plan) {
   return {{"name", plan.name},
           {"level", plan.level},

@@ -38,13 +38,13 @@ double memory_mb(const model::StackInfo& info, const model::Projector& projector
 std::string dose_text(const model::StackInfo& info, const model::Printer& printer, double turns, double full_scale) {
   const auto stated = info.extra.find("vam:threshold_dose");
   const auto threshold = stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
-  if (!threshold) return "not known: the sinogram states no threshold; see vam-dose --exposure-plan";
+  if (!threshold) return "unknown: the sinogram states no threshold; see vam-dose --exposure-plan";
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
-  if (!per_radian) return "relative; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
+  if (!per_radian) return "unknown; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
   const double dose = turns * *per_radian / full_scale * *threshold;
   const double critical = *printer.resin.critical_dose_mj_cm3;
   return format_number(dose, 4) + " mJ/cm3 at the threshold of the sinogram, " + format_number(dose / critical, 3) +
-         " of the critical dose of " + format_number(critical) + "; that takes " +
+         " of the critical dose of " + format_number(critical) + ", which is reached after " +
          format_number(turns * critical / dose, 4) + " turns";
 }
 
@@ -54,28 +54,6 @@ std::string identity_text(const Json& identity) {
     if (identity.contains(key) && identity[key].is_string()) text += " " + identity[key].get<std::string>();
   }
   return text;
-}
-
-void say_devices(const Options& options, const model::Printer& printer) {
-  device::Guardian guardian;
-  const auto display = device::open_display(options.output, {printer.projector.columns, printer.projector.rows, 60},
-                                            device::real_clock(), &guardian);
-  const auto mode = display->mode();
-  if (mode.columns != printer.projector.columns || mode.rows != printer.projector.rows) {
-    throw Error{Fault::data, options.output + ": is " + std::to_string(mode.columns) + " x " +
-                                 std::to_string(mode.rows) + " pixels, the projector of the printer file " +
-                                 std::to_string(printer.projector.columns) + " x " +
-                                 std::to_string(printer.projector.rows) + "; change one of them"};
-  }
-  say("display", options.output + " " + std::to_string(mode.columns) + " x " + std::to_string(mode.rows) + " at " +
-                     format_number(mode.hz, 4) + " Hz");
-  if (const auto relay = device::open_relay(options.live.relay, &guardian)) {
-    say("relay", options.live.relay + ", opens " + format_number(relay->identify()["limit_ms"]) +
-                     " ms after the last heartbeat");
-  }
-  if (options.live.light.empty()) return say("engine", "none is named (--light)");
-  const auto light = device::open_light(options.live.light, options.live.max_led_current_percent, &guardian);
-  say("engine", options.live.light + identity_text(light->identify()));
 }
 
 [[noreturn]] void refuse_slices(const std::string& input) {
@@ -95,16 +73,40 @@ void print_plan(const Options& options, const model::Printer& printer) {
       options.full_scale.value_or(read_light(options, reader, printer.projector).peak) / options.multiplier;
   const int frames = options.live.frames_per_turn.value_or(info.height);
   const model::Projector& projector = printer.projector;
-  say("frames", std::to_string(frames) + " a turn, " + std::to_string(projector.columns) + " x " +
+  say("frames", std::to_string(frames) + " per turn, " + std::to_string(projector.columns) + " x " +
                     std::to_string(projector.rows) + ", " + std::to_string(projector.bits) + " bits; at most " +
-                    format_number(memory_mb(info, projector, frames), 4) + " MB of memory");
+                    format_number(memory_mb(info, projector, frames * options.dither_turns.value_or(1)), 4) +
+                    " MB of memory");
   say("exposure", std::to_string(turns) + (turns == 1 ? " turn at " : " turns at ") +
                       format_number(printer.stage.speed_deg_s) +
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
-  say("light", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for " +
-                   format_number(full_scale, 4) + " in the sinogram");
+  say("light", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
+                   format_number(full_scale, 4));
   say("dose", dose_text(info, printer, turns, full_scale));
-  say_devices(options, printer);
+  print_devices(options, printer);
+}
+
+void print_devices(const Options& options, const model::Printer& printer) {
+  device::Guardian guardian;
+  const auto display = device::open_display(options.output, {printer.projector.columns, printer.projector.rows, 60},
+                                            device::real_clock(), &guardian);
+  const auto mode = display->mode();
+  if (mode.columns != printer.projector.columns || mode.rows != printer.projector.rows) {
+    throw Error{Fault::data, options.output + ": has " + std::to_string(mode.columns) + " x " +
+                                 std::to_string(mode.rows) + " pixels, but the printer file " +
+                                 std::to_string(printer.projector.columns) + " x " +
+                                 std::to_string(printer.projector.rows) +
+                                 "; set projector.columns and rows, or the mode of the display"};
+  }
+  say("display", options.output + " " + std::to_string(mode.columns) + " x " + std::to_string(mode.rows) + " at " +
+                     format_number(mode.hz, 4) + " Hz");
+  if (const auto relay = device::open_relay(options.live.relay, &guardian)) {
+    say("relay", options.live.relay + ", opens " + format_number(relay->identify()["limit_ms"]) +
+                     " ms after the last heartbeat");
+  }
+  if (options.live.light.empty()) return say("engine", "none (--light not given)");
+  const auto light = device::open_light(options.live.light, options.live.max_led_current_percent, &guardian);
+  say("engine", options.live.light + identity_text(light->identify()));
 }
 
 }  // namespace vam::project

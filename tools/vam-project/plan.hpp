@@ -10,4 +10,7 @@ namespace vam::project {
 /// light, dose and the two devices. Throws as a live print does before its first frame.
 void print_plan(const Options& options, const model::Printer& printer);
 
+/// The lines on the devices alone: all that there is to say of a test pattern.
+void print_devices(const Options& options, const model::Printer& printer);
+
 }  // namespace vam::project

@@ -1,12 +1,13 @@
 #include "vam-project/print.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
-#include "optics/frames.hpp"
+#include "optics/projector_frames.hpp"
 #include "vam-project/live.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/slices.hpp"
@@ -28,7 +29,7 @@ void play_slices(const cli::App& app, const Options& options, const model::Print
   const Frames frames = slices_in_time(app, options, printer, slices);
   LiveSink sink(live, [&] { return live.play_through(1 / frames.fps, false); });
   const auto scale = static_cast<float>(options.multiplier / options.full_scale.value_or(1));
-  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), sink);
+  const auto tally = show(frames, scale, printer.projector, app.given("--bits"), {}, sink);
   Json report = slice_figures(frames, options, printer.projector, tally);
   write_report(options, report, sink.tally);
 }
@@ -39,13 +40,13 @@ void require_repeating_poses(const Options& options, const model::StackInfo& inf
       (std::abs(optics::turns_of(info) - 1) < 1e-6 && (turns == 1 || model::repeat(info.poses)))) {
     return;
   }
-  throw Error{Fault::usage, options.input +
-                                ": its poses are not those of one turn that repeats, as a live print does; " +
+  throw Error{Fault::usage, options.input + ": a live print repeats one turn, which its poses do not allow; " +
                                 "write the frames to a file (-o FILE.mkv) for the machine that moves the vial, or give "
                                 "--turns 1 to show a single turn"};
 }
 
-// One turn's frames into the display, then the print: the angle of the stage chooses the frame.
+// One turn's frames, or those of the turns that differ, into the display, then the print: the angle of the stage
+// chooses the frame.
 void play_turns(const cli::App& app, const Options& options, const model::Printer& printer, io::StackReader& reader,
                 Live& live) {
   const int turns = turns_to_show(options, reader.info(), printer);
@@ -53,11 +54,12 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const Light light = read_light(options, reader, printer.projector);
   const double peak = options.full_scale.value_or(light.peak);
   const int frames = options.live.frames_per_turn.value_or(reader.info().height);
-  const auto schedule = optics::frame_schedule(frames, 360, 1);
-  LiveSink sink(live, [&] { return live.play(printer.stage.speed_deg_s, turns); });
+  const Dithering dithering = dithering_of(options, frames, turns);
+  const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
+  LiveSink sink(live, [&] { return live.play(frames, printer.stage.speed_deg_s, turns); });
   const Frames shown = frames_of(light, schedule);
-  const auto tally =
-      show(shown, static_cast<float>(options.multiplier / peak), printer.projector, app.given("--bits"), sink);
+  const auto tally = show(shown, static_cast<float>(options.multiplier / peak), printer.projector, app.given("--bits"),
+                          dithering, sink);
   Json report = figures(shown, printer.projector.bits, peak, tally);
   report["duration_s"] = 360 * turns / printer.stage.speed_deg_s;
   if (!differences.empty()) report["printer_differences"] = differences;
@@ -70,11 +72,11 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
 int turns_to_show(const Options& options, const model::StackInfo& info, const model::Printer& printer) {
   const double turns = options.turns.value_or(printer.stage.turns);
   if (turns != std::floor(turns)) {
-    throw Error{Fault::usage, "--turns: a live print needs whole turns, not " + format_number(turns)};
+    throw Error{Fault::usage, "--turns: " + format_number(turns) + " is not a whole number, as a live print requires"};
   }
   if (options.live.from_deg >= 360 * turns) {
-    throw Error{Fault::usage, "--from: " + format_number(options.live.from_deg) + " degrees are not within the " +
-                                  format_number(turns) + " turns of the print, which would stay black"};
+    throw Error{Fault::usage, "--from: " + format_number(options.live.from_deg) + " degrees is beyond the " +
+                                  format_number(turns) + " turns of the print; give a smaller angle"};
   }
   require_repeating_poses(options, info, turns);
   return static_cast<int>(turns);
@@ -83,7 +85,7 @@ int turns_to_show(const Options& options, const model::StackInfo& info, const mo
 void print_live(const cli::App& app, const Options& options, const model::Printer& printer) {
   if (options.live.follow == "-" && options.input == "-") {
     throw Error{Fault::usage,
-                "--follow -: standard input cannot be both the angles and the sinogram; name the sinogram"};
+                "--follow -: standard input cannot provide both angles and sinogram; give SINOGRAM as a file"};
   }
   device::logged(options.live.log, [&] {
     Live live(options.live, options.output, {printer.projector.columns, printer.projector.rows, 60});

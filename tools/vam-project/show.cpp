@@ -1,15 +1,18 @@
 #include "vam-project/show.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "optics/frames.hpp"
+#include "optics/projector_frames.hpp"
+#include "resin/dither.hpp"
 #include "response.hpp"
 
 namespace vam::project {
@@ -22,30 +25,71 @@ void warn_clipped(const resin::LightTally& tally) {
        " % of the lit pixels exceed full intensity and were clipped; reduce --multiplier or increase --full-scale");
 }
 
+/// Frames one after the other, their rows by all threads.
+class DitheredFrames {
+ public:
+  DitheredFrames(const resin::GreyLevels& levels, const Dithering& how)
+      : how_(how), dither_(levels, std::max(how.turns, 1)), dark_(static_cast<std::uint16_t>(levels.level(0))) {}
+
+  void take(int n, const Image& intensity, int bits, GreyImage& image) {
+    const bool repeats = dither_.turns() > 1;
+    const int turn = repeats ? n / how_.frames_per_turn : 0;
+    if (carried_.empty() || (repeats && n % how_.frames_per_turn == 0)) carried_.assign(intensity.size(), 0.0F);
+    image.width = intensity.width;
+    image.height = intensity.height;
+    image.bits = bits;
+    image.values.assign(intensity.size(), dark_);
+    const auto width = static_cast<std::size_t>(intensity.width);
+    parallel_for(intensity.height, [&](int y) {
+      const std::span<float> carried(carried_.data() + product(y, width), width);
+      if (resin::is_dark(intensity, y)) return std::fill(carried.begin(), carried.end(), 0.0F);
+      std::vector<int> steps(width);
+      dither_.row({intensity.row(y), width}, n % 2 == 1, carried, steps);
+      for (int x = 0; x < intensity.width; ++x) {
+        const int phase = 3 * x + 5 * y + 7 * (n % std::max(how_.frames_per_turn, 1));
+        image.values[image.index(x, y)] = static_cast<std::uint16_t>(dither_.level(steps[x], turn, phase));
+      }
+    });
+  }
+
+ private:
+  Dithering how_;
+  resin::Dither dither_;
+  std::uint16_t dark_;
+  std::vector<float> carried_;
+};
+
 }  // namespace
 
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
-                       io::FrameSink& sink) {
+                       const Dithering& dithering, io::FrameSink& sink) {
   const resin::GreyLevels levels(tool::response_of(projector), projector.bits);
-  std::vector<resin::LightTally> tallies(static_cast<std::size_t>(frames.count));
+  DitheredFrames dithered(levels, dithering);
+  std::vector<resin::LightTally> tallies(frames.count);
   const auto develop = [&](int n, io::ProjectorFrame& frame) {
     if (!frames.in_order) frame.intensity = frames.light(n, std::move(frame.intensity));
     frame.time_s = n / frames.fps;
     frame.angle_deg = n * frames.step_deg;
     tallies[n] = resin::limit_to_full(frame.intensity, scale);
     optics::orient(frame.intensity, projector.orientation);
-    resin::to_levels(frame.intensity, levels, frame.levels);
+    if (dithering.turns == 0) resin::to_levels(frame.intensity, levels, frame.levels);
+  };
+  const auto as_shown = [&](io::ProjectorFrame& frame) {
     if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
   };
   Progress progress("projecting", frames.count);
   std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(2 * threads(), frames.count)));
-  const int batch = static_cast<int>(shown.size());
+  const int batch = count_of(shown);
   for (int first = 0; first < frames.count; first += batch) {
     const int count = std::min(batch, frames.count - first);
     for (int i = 0; i < (frames.in_order ? count : 0); ++i) {
       shown[i].intensity = frames.light(first + i, std::move(shown[i].intensity));
     }
     parallel_for(count, [&](int i) { develop(first + i, shown[i]); });
+    for (int i = 0; i < (dithering.turns > 0 ? count : 0); ++i) {
+      dithered.take(first + i, shown[i].intensity, levels.bits(), shown[i].levels);
+    }
+    parallel_for(count, [&](int i) { as_shown(shown[i]); });
     sink.write(std::span(shown).first(count));
     progress.tick(count);
   }

@@ -21,10 +21,16 @@ struct Frames {
   bool in_order = false;
 };
 
+/// Rounds frames, in their order, with error diffusion.
+struct Dithering {
+  int turns = 0;            // of which the frames differ; 0: none, each pixel to its nearest level
+  int frames_per_turn = 0;  // with several turns
+};
+
 /// All frames through the grey levels into the sink, a few at a time; `scale` takes the light to fractions of full.
 /// Warns of what was clipped.
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
-                       io::FrameSink& sink);
+                       const Dithering& dithering, io::FrameSink& sink);
 
 /// For --report.
 [[nodiscard]] Json figures(const Frames& frames, int bits, double peak, const resin::LightTally& tally);

@@ -31,8 +31,8 @@ void require_slices(const SliceStack& stack) {
   for (const model::ImageInfo& about : stack.about) {
     if (about.angle_deg == stack.about.front().angle_deg) continue;
     throw Error{Fault::data, stack.name +
-                                 ": frames of stage angles; vam-project needs a sinogram, or the slices "
-                                 "of vam-curethrough"};
+                                 ": contains frames at stage angles; a sinogram, or the slices of "
+                                 "vam-curethrough, is required"};
   }
 }
 
@@ -98,7 +98,8 @@ bool is_folder(const std::string& path) {
 
 Frames slices_in_time(const cli::App& app, const Options& options, const model::Printer& printer,
                       const SliceStack& slices) {
-  for (const char* option : {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow", "--from"}) {
+  for (const char* option :
+       {"--speed", "--turns", "--flatland", "--frames-per-turn", "--follow", "--from", "--dither"}) {
     if (!app.given(option)) continue;
     throw Error{Fault::usage, std::string(option) + ": " + slices.name +
                                   " contains slices, which are shown once, by time; omit the option"};

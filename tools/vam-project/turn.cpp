@@ -1,10 +1,14 @@
 #include "vam-project/turn.hpp"
 
+#include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
-#include "optics/flatland.hpp"
+#include "base/text.hpp"
+#include "optics/flatland_movie.hpp"
 
 namespace vam::project {
 
@@ -35,6 +39,20 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   io::require(options.input, info, model::Kind::sinogram, model::Space::projector);
   const auto place = optics::frame_place(projector, right, down);
   return read_light(reader, std::make_shared<optics::FrameComposer>(options.input, info, place));
+}
+
+Dithering dithering_of(const Options& options, double frames_per_turn, double turns) {
+  if (!options.dither_turns) return {};
+  const int n = *options.dither_turns;
+  const std::string what = "--dither " + std::to_string(n) + ": ";
+  if (n > 1 && std::abs(frames_per_turn - std::round(frames_per_turn)) > 1e-6) {
+    throw Error{Fault::usage, what + "a turn has " + format_number(frames_per_turn) +
+                                  " frames, not a whole number; use --dither 1, or another --fps or --speed"};
+  }
+  if (n > 1 && std::abs(std::remainder(turns, n)) > 1e-6) {
+    throw Error{Fault::usage, what + "does not divide the " + format_number(turns) + " turns; change one of them"};
+  }
+  return {n, static_cast<int>(std::round(frames_per_turn))};
 }
 
 Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {

@@ -5,7 +5,7 @@
 
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
-#include "optics/frames.hpp"
+#include "optics/projector_frames.hpp"
 #include "vam-project/options.hpp"
 #include "vam-project/show.hpp"
 
@@ -20,6 +20,10 @@ struct Light {
 /// Reads the whole stack: a projector's, or with --flatland one slice of a virtual one. Throws Fault::data for another
 /// kind of stack, and for light beside the projector.
 [[nodiscard]] Light read_light(const Options& options, io::StackReader& reader, const model::Projector& projector);
+
+/// As --dither says. Throws Fault::usage where several turns differ that have no whole number of frames, or do not
+/// divide the turns of the print.
+[[nodiscard]] Dithering dithering_of(const Options& options, double frames_per_turn, double turns);
 
 /// The light stays the caller's.
 [[nodiscard]] Frames frames_of(const Light& light, const optics::FrameSchedule& schedule);

@@ -11,6 +11,7 @@
 #include "base/json.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
 #include "plot/canvas.hpp"
@@ -74,13 +75,6 @@ double value_at(const model::Volume& volume, const Vector3& point) {
     sum += weight * static_cast<double>(volume.slice(at[2])[at[1] * grid.nx + at[0]]);
   }
   return sum;
-}
-
-/// Heights of the part, which the printer stretches into its rows.
-void unstretch(model::TriangleSoup& mesh, const io::SparseVolume& volume) {
-  const auto stretch = volume.metadata.find("vam:stretch_z");
-  const double factor = stretch == volume.metadata.end() ? 1 : parse_number(stretch->second).value_or(1);
-  for (auto& point : mesh.points) point[2] /= factor;
 }
 
 struct Layer {
@@ -164,13 +158,13 @@ std::vector<Layer> layers_of(const io::SparseVolume& target, const std::optional
     design.values.push_back(100 * (value_at(dose, point) / print->threshold - 1));
   design.limit = colour_limit(design.values, 1);
   design.unit = "%";
-  design.meaning = "dose on the design's surface, from the threshold: blue is too little";
+  design.meaning = "dose on the design's surface relative to the threshold; blue: too low";
   Layer printed{"print", solid::isosurface(dose, print->threshold, flat), {}, 1, "mm", ""};
   if (printed.mesh.triangles.empty()) return layers;
   const std::vector<float> away = solid::Surface(design.mesh).signed_distances(printed.mesh.points);
   printed.values.assign(away.begin(), away.end());
   printed.limit = colour_limit(printed.values, 0.1 * target.grid().voxel_mm);
-  printed.meaning = "print from design: red stands out, blue is missing";
+  printed.meaning = "distance of the print from the design; red: outside, blue: missing";
   layers.push_back(std::move(printed));
   return layers;
 }
@@ -189,7 +183,7 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   std::vector<Layer> layers = layers_of(target, print, by);
   while (vertices(layers) > most_vertices) layers = layers_of(target, print, ++by);
   if (layers[0].mesh.triangles.empty()) return "";
-  for (Layer& layer : layers) unstretch(layer.mesh, target);
+  for (Layer& layer : layers) tool::unstretch(layer.mesh, target.metadata);
   solid::Box box = solid::bounding_box(layers[0].mesh);
   const solid::Box design = box;
   for (const Layer& layer : layers) {
@@ -208,12 +202,13 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   const Vector3 size = design.high - design.low;
   const std::string mm =
       format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) + " mm";
-  return plot::page_figure(
-      "Part and print",
-      "<div class=\"body\">" + choices(layers) + "<canvas tabindex=\"0\" aria-label=\"the part, turnable\"></canvas>" +
-          scales + page_data(Json::array({box.low, box.high, packed_layers})) + "</div>",
-      "Drag to turn, wheel for size; the rotation axis z is up. The design is " + mm +
-          "; surfaces are drawn from voxels of " + format_number(by * target.grid().voxel_mm, 3) + " mm.");
+  return plot::page_figure("Part and print",
+                           "<div class=\"body\">" + choices(layers) +
+                               "<canvas tabindex=\"0\" aria-label=\"three-dimensional view of the part\"></canvas>" +
+                               scales + page_data(Json::array({box.low, box.high, packed_layers})) + "</div>",
+                           "Drag to rotate, scroll to zoom; the rotation axis z points upwards. The design measures " +
+                               mm + "; surfaces are computed on voxels of " +
+                               format_number(by * target.grid().voxel_mm, 3) + " mm.");
 }
 
 }  // namespace vam::report_tool

@@ -123,8 +123,9 @@ std::string projections(const std::string& path, int count) {
   Image image;
   model::ImageInfo about;
   for (int slice = 0; stack.next(image, about); ++slice) made.add(image, slice);
-  return series("Projections", made.frames(),
-                file_name(path) + ": one image a stage angle; white is what one pixel in a thousand exceeds.", true);
+  return series(
+      "Projections", made.frames(),
+      file_name(path) + ": one image per stage angle; white is the value that one pixel in a thousand exceeds.", true);
 }
 
 }  // namespace
@@ -138,7 +139,7 @@ std::string light_view(const std::string& path, io::FileType type, int count) {
   options.sheet = sinogram ? std::min(count, most_sinograms) : count;
   const std::string views = series(
       sinogram ? "Sinograms" : "Frames", frames_of(plot::view_images(*images, options)),
-      file_name(path) + (sinogram ? ": columns to the right, stage angles downwards." : ": upright as in the file."),
+      file_name(path) + (sinogram ? ": columns to the right, stage angles downwards." : ": oriented as in the file."),
       !sinogram);
   return sinogram ? projections(path, count) + views : views;
 }

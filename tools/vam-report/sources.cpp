@@ -31,7 +31,7 @@ bool is_png(const std::string& path) {
   return io::read_all(path, io::Content::binary, most_text).starts_with("\x89PNG\r\n\x1a\n");
 }
 
-/// False where the file is nothing that a report shows.
+/// False if a report cannot show the file.
 bool add(Sources& sources, const std::string& path) {
   if (const auto type = io::known_file_type(path)) {
     switch (*type) {
@@ -69,7 +69,7 @@ void add_folder(Sources& sources, const std::string& folder) {
   long shown = 0;
   for (const std::string& file : files) shown += add(sources, file) ? 1 : 0;
   if (shown == 0) {
-    throw Error{Fault::data, folder + ": holds no volume, stack, video, report (JSON), trace (CSV) or image (PNG)"};
+    throw Error{Fault::data, folder + ": contains no volume, stack, video, report (JSON), trace (CSV) or image (PNG)"};
   }
 }
 
@@ -78,13 +78,13 @@ void add_folder(Sources& sources, const std::string& folder) {
 Sources gather(const std::vector<std::string>& paths) {
   Sources sources;
   for (const std::string& path : paths) {
-    if (path == "-") throw Error{Fault::usage, "FILE: a report reads its files more than once; name files, not -"};
+    if (path == "-") throw Error{Fault::usage, "FILE: files are read more than once; give files instead of -"};
     if (fs::is_directory(path)) {
       add_folder(sources, path);
     } else if (!add(sources, path)) {
-      throw Error{Fault::data, path +
-                                   ": is no volume, stack, video, report (JSON), trace (CSV of vam-optimize "
-                                   "--trace) or image (PNG)"};
+      throw Error{
+          Fault::data,
+          path + ": is not a volume, stack, video, report (JSON), trace (CSV of vam-optimize --trace) or image (PNG)"};
     }
   }
   return sources;

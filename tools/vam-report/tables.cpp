@@ -62,7 +62,7 @@ std::string figures_table(const Json& figures) {
 
 std::string report_table(const std::string& path) {
   const Json report = parse_json(io::read_all(path));
-  if (!report.is_object()) throw Error{Fault::data, path + ": is no JSON object"};
+  if (!report.is_object()) throw Error{Fault::data, path + ": is not a JSON object"};
   (void)io::require_seal(report, path);
   const std::string schema = report.contains("schema") ? ", " + text_of(report["schema"]) : "";
   return "<details><summary>" + page_text(file_name(path) + schema) + "</summary>" + figures_table(report) +
@@ -80,18 +80,18 @@ std::string convergence(const std::string& path) {
   }
   plot::Plot curves;
   curves.x.label = "iteration";
-  curves.y.label = "VER, process window (of the largest dose)";
+  curves.y.label = "VER, process window / largest dose";
   curves.series = {window, errors};
   return plot::page_figure("Convergence", plot::page_image(plot::draw(curves), "figures over the iterations"),
-                           file_name(path) + ": the part prints from a process window of 0 on.");
+                           file_name(path) + ": the part prints if the process window is positive.");
 }
 
 std::string provenance(const std::vector<std::string>& paths) {
   std::string made;
   for (const std::string& path : paths) {
-    for (const io::Finding& finding : io::inspect(path, true)) {
+    for (const io::ProvenanceEntry& finding : io::inspect(path, true)) {
       made += "<details><summary>" + page_text(file_name(path) + ": " + finding.what) + "</summary><table>";
-      made += "<tr><th>command</th><th>seal of its file</th></tr>\n";
+      made += "<tr><th>command</th><th>seal of the file written</th></tr>\n";
       for (const auto& [command, seal] : io::chain_of(finding)) {
         made += "<tr><td><code>" + page_text(command) + "</code></td><td><code>" +
                 page_text(seal.empty() ? "not sealed" : seal) + "</code></td></tr>\n";

@@ -74,8 +74,7 @@ std::string histogram(const io::SparseVolume& dose, const io::SparseVolume& targ
   return plot::page_figure(
       "Dose in part and void",
       plot::page_image(plot::draw(plot::dose_histogram(dose, target, how.circle, options)), "histogram of the dose"),
-      "Where the two overlap no threshold separates the part from the void. Voxels that the surface "
-      "cuts are left out.");
+      "If the distributions overlap, no threshold separates part and void. Voxels that the surface cuts are excluded.");
 }
 
 }  // namespace vam::report_tool

@@ -10,12 +10,12 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output);
   app.choice("--to", options.to, {"projector", "virtual"}, "Output: projector columns, or virtual detector bins.");
   app.choice("--interpolation", options.interpolation, {"linear", "cubic"}, "Interpolation across columns and angles.");
-  app.flag("--explain", options.explain,
-           "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is "
-           "read.")
+  app.flag(
+         "--explain", options.explain,
+         "Write the ray map as CSV instead: x_p_mm,x_v_mm,delta_deg,T,J,weight, one line per column. No input is read.")
       .form();
   app.option("--row", "N", options.row, {0, 65535},
-             "The exact rays of this row of the projector, from 0 at the top, instead of horizontal ones: "
+             "Write the exact rays of this projector row (0 is the top) instead of horizontal rays: "
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
       .needs({"--explain"});
   app.group("Weights");
@@ -28,15 +28,15 @@ void declare(cli::App& app, Options& options) {
   app.was("--keep-negative", "keep");
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
-             "Columns between projector.axis_column (or the middle of the camera) and the image of the axis, positive "
-             "to the right.");
+             "Distance in columns from projector.axis_column (or the middle of the camera image) to the image of the "
+             "axis, positive to the right.");
   app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
-  app.flag("--reverse", options.alignment.reverse, "The stage turns against stage.direction.");
+  app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
   app.group("Detector bins of --to virtual");
-  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Width of a bin.");
-  app.default_is("the pitch of the slices, as voxels are cubes");
-  app.option("--columns", "N", options.columns, {1, 65536}, "Number of bins.");
-  app.default_is("all that the camera can see");
+  app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.");
+  app.default_is("the slice height, so that voxels are cubes").was("--voxel");
+  app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.");
+  app.default_is("all that the camera sees").was("--columns");
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
@@ -50,8 +50,8 @@ void check(const Options& options, const model::Printer& printer) {
   };
   refuse(projector && options.fresnel, "--fresnel");
   refuse(projector && options.jacobian, "--jacobian");
-  refuse(projector && options.voxel_mm, "--voxel");
-  refuse(projector && options.columns, "--columns");
+  refuse(projector && options.bin_width_mm, "--bin-width");
+  refuse(projector && options.bins, "--detector-bins");
   refuse(!projector && options.row, "--row");
   if (options.row && *options.row >= printer.projector.rows) {
     throw Error{Fault::usage, "--row " + std::to_string(*options.row) + ": the projector's rows are 0 ... " +

@@ -1,4 +1,4 @@
-// What the user asks of vam-resample, for all its files.
+// The options of vam-resample, for all its files.
 #pragma once
 
 #include <optional>
@@ -23,8 +23,8 @@ struct Options {
   std::string negative = "clip";
   double angle_offset_deg = 0;
   optics::AxisAlignment alignment;
-  std::optional<double> voxel_mm;
-  std::optional<int> columns;
+  std::optional<double> bin_width_mm;
+  std::optional<int> bins;
   bool explain = false;
   std::optional<int> row;  // of the projector, whose rays to explain
   cli::PrinterOptions printer;

@@ -1,4 +1,4 @@
-// What the user asks of vam-score, for all its files.
+// The options of vam-score, for all its files.
 #pragma once
 
 #include <optional>
@@ -17,11 +17,10 @@ struct Options {
   std::string sinogram;
   std::string require;
   std::string report;
-  std::string reach;
+  std::string lit_fraction;
   std::string print;
   std::string print_as = "mesh";
   std::optional<double> print_at;
-  bool json = false;
   score::ScoreOptions how;
   cli::PrinterOptions printer;
 };

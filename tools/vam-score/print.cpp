@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/mesh/file.hpp"
 #include "solid/voxel/isosurface.hpp"
 
@@ -14,25 +15,19 @@ void write_print(const Options& options, const io::SparseVolume& dose, double th
   const auto require_print = [&](bool empty) {
     if (!empty) return;
     throw Error{Fault::data, "nothing prints at a dose of " + format_number(threshold) + " " + dose.units +
-                                 "; choose a --threshold below the largest dose"};
+                                 "; choose an --isovalue below the largest dose"};
   };
   const auto read_slices = [&](int k, int count, float* out) { dose.read_slices(k, count, out); };
-  // Slices are rows of the projector; the print has the part's height.
-  const auto stretch = dose.metadata.find("vam:stretch_z");
-  const double factor = stretch == dose.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
-  const auto unstretch = [&](model::TriangleSoup& print) {
-    for (auto& point : print.points) point[2] /= factor;
-  };
   const std::vector<std::string> comments{"threshold dose " + format_number(threshold) + " " + dose.units};
   if (options.print_as == "mesh") {
     auto mesh = solid::isosurface(dose.grid(), read_slices, threshold);
     require_print(mesh.triangles.empty());
-    unstretch(mesh);
+    tool::unstretch(mesh, dose.metadata);
     return io::write_ply(options.print, mesh, {}, comments);
   }
   auto print = solid::printed_points(dose.grid(), read_slices, threshold);
   require_print(print.points.points.empty());
-  unstretch(print.points);
+  tool::unstretch(print.points, dose.metadata);
   io::write_ply(options.print, print.points, print.values, comments);
 }
 

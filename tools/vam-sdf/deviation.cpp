@@ -101,7 +101,7 @@ void deviation(const cli::App& app, const Options& options) {
     conditions =
         model::parse_conditions(options.require, {"rms", "mean", "sigma", "mad", "max", "hausdorff", "rms_percent"});
   if (options.isovalue && !options.resin_record.empty())
-    throw Error{Fault::usage, "--isovalue and --resin: both give the isovalue of the print; use one"};
+    throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
   const model::TriangleSoup design_mesh = read_surface(options.design, options.design_isovalue);

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "facts.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
@@ -27,9 +28,7 @@ model::TriangleSoup surface_of(const std::string& path, std::optional<double> is
   if (mesh.triangles.empty()) {
     throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*isovalue)};
   }
-  const auto stretch = sparse.metadata.find("vam:stretch_z");
-  const double factor = stretch == sparse.metadata.end() ? 1.0 : parse_number(stretch->second).value_or(1.0);
-  for (auto& point : mesh.points) point[2] /= factor;
+  tool::unstretch(mesh, sparse.metadata);
   return mesh;
 }
 

@@ -10,22 +10,24 @@ void declare(cli::App& app, Options& options) {
   cli::add_output(app, options.output);
   app.option("--grid", "NAME", options.grid, "Grid to project.");
   app.option("--angles", "N", options.angles, {1, 1000000}, "Number of angles over 360 degrees, endpoint excluded.");
-  app.option("--columns", "N", options.columns, {1, 65536},
-             "Number of detector bins, each one voxel wide. Fewer than the default truncate the rim.");
-  app.default_is("as many as cover the grid with its corners");
-  app.choice("--filter", options.filter, tomo::window_names(), "Ramp filter window.");
+  app.option("--detector-bins", "N", options.bins, {1, 65536},
+             "Number of detector bins, each one voxel wide. Fewer than the default truncate the projections.");
+  app.default_is("as many as cover the grid with its corners").was("--columns");
+  app.choice("--filter", options.filter, tomo::window_names(), "Window of the ramp filter.");
   app.option("--cutoff", "FRACTION", options.cutoff, {0, 1000, true},
              "Cutoff of the window (scale k0 for gaussian and exponential), as a fraction of the Nyquist frequency.");
   app.default_is("1");
   app.choice("--negative", options.negative, tomo::negative_names(),
-             "Negative values: keep them, clip them to 0, or offset all values by the minimum of the stack.");
+             "Negative values: keep them, clip them to 0, or subtract the minimum of the stack from all values.");
   app.group("Absorption");
   app.option("--absorption", "PER_MM", options.absorption_per_mm, cli::non_negative,
              "Absorption coefficient MU of the resin: exponential Radon transform.");
   app.was("--attenuation");
-  app.flag("--printer-absorption", options.printer_absorption, "MU of the printer file (resin.absorption_per_mm).");
+  app.flag("--printer-absorption", options.printer_absorption,
+           "Use resin.absorption_per_mm of the printer file as MU.");
   app.was("--resin");
-  app.flag("--at-wall", options.at_wall, "Values at the inner wall of the printer's vial instead of at the axis.");
+  app.flag("--at-wall", options.at_wall,
+           "Give the values at the inner wall of the printer's vial instead of at the plane through the axis.");
   app.needs({"--absorption", "--printer-absorption"});
   cli::add_printer(app, options.printer);
   app.group("Output and performance");

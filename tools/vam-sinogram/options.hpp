@@ -1,4 +1,4 @@
-// What the user asks of vam-sinogram, for all its files.
+// The options of vam-sinogram, for all its files.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ struct Options {
   std::string output = "-";
   std::string grid = "target";
   int angles = 360;
-  std::optional<int> columns;
+  std::optional<int> bins;
   std::string filter = "none";
   std::optional<double> cutoff;
   std::string negative = "keep";

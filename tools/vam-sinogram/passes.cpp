@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 
+#include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "model/grid_size.hpp"
@@ -35,7 +36,7 @@ void for_each_pass(const io::SparseVolume& volume, const tomo::ProjectionSpec& s
     for (int s = 0; s < count; s += lanes) {
       images.emplace_back(grid.nx, grid.ny);
       sinograms.emplace_back(spec.geometry.columns, spec.geometry.angles);
-      pack(dense.data() + static_cast<std::size_t>(s) * grid.slice_size(), std::min(lanes, count - s), images.back());
+      pack(dense.data() + product(s, grid.slice_size()), std::min(lanes, count - s), images.back());
     }
     projections.work_out(images, sinograms);
     use(sinograms, count);
@@ -47,7 +48,7 @@ std::vector<Image> unpacked(const std::vector<Slab>& slabs, int count) {
   std::vector<Image> images;
   std::vector<float> values;
   for (const Slab& slab : slabs) {
-    const int used = std::min(lanes, count - static_cast<int>(images.size()));
+    const int used = std::min(lanes, count - count_of(images));
     const std::size_t size = slab.values.size() / lanes;
     values.resize(size * static_cast<std::size_t>(used));
     unpack(slab, used, values.data());

@@ -12,7 +12,7 @@ namespace vam::slice_tool {
 
 namespace {
 
-/// Where rays that climb smear the level faces of the part least.
+/// Where climbing rays blur the horizontal faces of the part least.
 double sharpest_mm(const model::Printer& printer, const solid::Part& part, double voxel_mm, double least_mm,
                    double most_mm) {
   const model::Grid grid = solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject);
@@ -21,7 +21,7 @@ double sharpest_mm(const model::Printer& printer, const solid::Part& part, doubl
   return light::best_lift_mm(printer, finder.faces(), voxel_mm, least_mm, most_mm);
 }
 
-double asked_mm(const Options& options) {
+double requested_mm(const Options& options) {
   const auto mm = parse_number(options.place);
   if (mm && std::isfinite(*mm)) return *mm * options.placement.stretch_z;
   throw Error{Fault::usage, "--place: '" + options.place + "' is neither a height in mm nor auto"};
@@ -36,7 +36,7 @@ double lift_mm(const Options& options, const model::Printer& printer, const soli
   const double least_mm = room.low_mm - part.extent.box.low[2];
   const double most_mm = room.high_mm - part.extent.box.high[2];
   if (!options.place.empty() && options.place != "auto") {
-    return std::round(asked_mm(options) / voxel_mm) * voxel_mm;
+    return std::round(requested_mm(options) / voxel_mm) * voxel_mm;
   }
   if (most_mm < least_mm - rounding) return 0;  // taller than the image
   if (options.place == "auto") return sharpest_mm(printer, part, voxel_mm, least_mm, most_mm);

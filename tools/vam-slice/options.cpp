@@ -10,6 +10,59 @@
 
 namespace vam::slice_tool {
 
+namespace {
+
+void declare_placement(cli::App& app, Options& options) {
+  app.group("Placement, applied in this order");
+  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
+  app.choice("--mirror", options.mirror, {"none", "x", "y", "z"}, "Mirror the part by negating this coordinate.");
+  app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"},
+             "Axis of the file that points upwards; y in the files of most animation programs.");
+  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
+  app.option("--rotate", "X,Y,Z", options.rotate_deg, 3,
+             "Rotation angles in degrees about x, then y, then z, right-handed.");
+  app.option("--fit", "MM", options.placement.fit_mm, cli::positive,
+             "Scale the part so that its largest dimension is MM.");
+  app.flag("--fit-writable", options.placement.fit_writable,
+           "Scale the part to fill the writable cylinder, within which resin is lit from all stage angles.");
+  app.flag("--no-centre", options.no_centre,
+           "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
+  app.was("--no-center");
+  app.option("--place", "MM|auto", options.place,
+             "Vertical offset of the part from the height of the lens (projector.axis_row), in mm of the print, "
+             "rounded to whole voxels. auto: the offset at which climbing rays blur its horizontal faces least. The "
+             "report contains the offset.");
+  app.default_is("0, or the smallest offset at which the part lies within the image");
+  app.flag("--any-height", options.any_height,
+           "Allow a part that is taller than the projected image, for vam-optimize --helix or --poses.");
+  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch factor along z.");
+  app.default_is("1/M_vp of the printer");
+}
+
+void declare_insert(cli::App& app, Options& options) {
+  app.group("Insert, an object to print around");
+  app.option("--insert", "MESH", options.insert,
+             "Mesh of the insert, in its own size. Its origin is that of PART's file, and it is rotated with PART.")
+      .reads();
+  app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape,
+             "Insert by name, as --shape; centred on the axis.");
+  app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").needs({"--insert"});
+  const std::vector<std::string> either{"--insert", "--insert-shape"};
+  app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor of the insert.")
+      .needs(either);
+  app.option("--insert-rotate", "X,Y,Z", options.insert_rotate_deg, 3,
+             "Rotation angles of the insert, as --rotate, instead of those of PART.")
+      .needs(either);
+  app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
+             "Position of the centre of the insert's bounding box, in mm of the print; x = y = 0 is the axis.")
+      .needs(either);
+  app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
+             "Subtract the insert from the part, with this clearance all around.")
+      .needs(either);
+}
+
+}  // namespace
+
 void declare(cli::App& app, Options& options) {
   app.positional("PART", options.input, "Mesh, or folder of numbered images.").reads({"--shape"});
   cli::add_output(app, options.output);
@@ -17,52 +70,15 @@ void declare(cli::App& app, Options& options) {
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
       .form();
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
-             "Inside test: exact, for closed meshes; by vote, for meshes with holes; or chosen by the mesh.");
+             "Inside test: exact (closed meshes), by vote (meshes with holes), or chosen automatically.");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
   app.default_is("projector.pixel_mm");
-  app.choice(
-      "--extent", options.extent, {"part", "writable", "resin"},
-      "Size of the volume in x and y: bounding circle of the part, the whole writable circle, or all of the resin. "
-      "resin: the part may reach beyond the writable radius, where light comes from some angles only.");
-  app.group("Placement, applied in this order");
-  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
-  app.choice("--mirror", options.mirror, {"none", "x", "y", "z"}, "Mirror the part: negate that coordinate.");
-  app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"},
-             "Axis of the file that points up; y for files of most programs for animation.");
-  app.option("--scale", "FACTOR", options.placement.scale, cli::positive, "Scale factor.");
-  app.option("--rotate", "X,Y,Z", options.rotate_deg, 3, "Rotate about x, then y, then z, in degrees, right-handed.");
-  app.option("--fit", "MM", options.placement.fit_mm, cli::positive, "Scale so that the largest dimension is MM.");
-  app.flag("--fit-writable", options.placement.fit_writable,
-           "Scale to fill the writable cylinder, so that all voxels are lit from all sides.");
-  app.flag("--no-centre", options.no_centre,
-           "Keep the origin of the file. Default: the centre of the bounding box moves to x = y = z = 0.");
-  app.was("--no-center");
-  app.option(
-      "--place", "MM|auto", options.place,
-      "Lift the part by MM of the print from the height of the lens (projector.axis_row), in whole voxels. auto: to "
-      "the height at which climbing rays smear its level faces least. The report has what was chosen.");
-  app.default_is("level with the lens, or as near to it as the image allows");
-  app.flag("--any-height", options.any_height,
-           "The part may be taller than the projector's rows, for vam-optimize --helix and --poses, which lift it past "
-           "them.");
-  app.option("--stretch-z", "FACTOR", options.stretch_z, cli::positive, "Stretch along z.");
-  app.default_is("1/M_vp of the printer");
-  app.group("Insert, an object to print around");
-  app.option("--insert", "MESH", options.insert,
-             "A mesh of its own size. Its origin is that of PART's file, and it is turned as PART is.")
-      .reads();
-  app.option("--insert-shape", "NAME:KEY=VALUE,...", options.insert_shape, "A shape; centred on the axis.");
-  app.choice("--insert-unit", options.insert_unit, solid::unit_names(), "Unit of MESH.").needs({"--insert"});
-  const std::vector<std::string> either{"--insert", "--insert-shape"};
-  app.option("--insert-scale", "FACTOR", options.insert_scale, cli::positive, "Scale factor.").needs(either);
-  app.option("--insert-rotate", "X,Y,Z", options.insert_rotate_deg, 3, "Rotate, as --rotate, instead of as PART.")
-      .needs(either);
-  app.option("--insert-at", "X,Y,Z", options.insert_at_mm, 3,
-             "Where the centre of its bounding box is, in mm of the print: x = y = 0 is the axis.")
-      .needs(either);
-  app.option("--cut-insert", "CLEARANCE_MM", options.clearance_mm, cli::non_negative,
-             "Subtract it from the part, with that distance all around.")
-      .needs(either);
+  app.choice("--extent", options.extent, {"part", "writable", "resin"},
+             "Lateral size of the volume: the bounding circle of the part, the writable circle, or the whole "
+             "cross-section of the resin. With resin the part may extend beyond the writable radius, where resin is "
+             "lit from some stage angles only.");
+  declare_placement(app, options);
+  declare_insert(app, options);
   cli::add_printer(app, options.printer);
   app.group("Report and performance");
   cli::add_report(app, options.report);
@@ -82,13 +98,13 @@ void check(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
   }
   if (options.any_height && options.place == "auto") {
-    throw Error{Fault::usage, "--place auto: looks for a height in the image; omit --any-height"};
+    throw Error{Fault::usage, "--place auto: finds a height within the image; omit --any-height"};
   }
   if (options.placement.fit_writable && options.no_centre) {
     throw Error{Fault::usage, "--fit-writable: centres the part; omit --no-centre"};
   }
   if (options.placement.fit_writable && options.extent == "resin") {
-    throw Error{Fault::usage, "--fit-writable: the part ends at the writable radius; omit --extent resin"};
+    throw Error{Fault::usage, "--fit-writable: scales the part to the writable radius; omit --extent resin"};
   }
   if (!options.insert.empty() && !options.insert_shape.empty()) {
     throw Error{Fault::usage, "--insert-shape: give either --insert or --insert-shape"};
@@ -106,11 +122,26 @@ void check(const cli::App& app, const Options& options) {
   }
 }
 
-solid::SizeOption size_option(const Options& options) {
-  const double stretch_z = options.placement.stretch_z;
-  if (is_folder(options.input)) return {"--voxel", options.voxel_mm.value(), stretch_z};
-  if (options.placement.fit_mm) return {"--fit", *options.placement.fit_mm, stretch_z};
-  return {"--scale", options.placement.scale / solid::mm_per(options.unit), stretch_z};
+solid::PlacementAdvice advice(const Options& options) {
+  solid::PlacementAdvice advice;
+  advice.size = "--scale";
+  advice.value = options.placement.scale / solid::mm_per(options.unit);
+  advice.stretch_z = options.placement.stretch_z;
+  advice.or_fit = " or --fit-writable";
+  if (options.placement.fit_mm) {
+    advice.size = "--fit";
+    advice.value = *options.placement.fit_mm;
+  }
+  if (is_folder(options.input)) {
+    advice.size = "--voxel";
+    advice.value = options.voxel_mm.value();
+    advice.or_fit.clear();
+  }
+  advice.off_axis = "omit --no-centre; ";
+  advice.beyond = ", --extent resin accepts it where resin is lit from some angles only";
+  advice.too_high = "--place auto finds a height within them";
+  advice.too_tall = ", --any-height accepts it for vam-optimize --helix";
+  return advice;
 }
 
 void settle(Options& options, const model::Printer& printer) {

@@ -45,8 +45,8 @@ void declare(cli::App& app, Options& options);
 void check(const cli::App& app, const Options& options);
 /// Fills in what follows from other options and the printer: units, voxel and stretch.
 void settle(Options& options, const model::Printer& printer);
-/// What the user would change to change the size of the part.
-[[nodiscard]] solid::SizeOption size_option(const Options& options);
+/// The options that help a part which does not fit.
+[[nodiscard]] solid::PlacementAdvice advice(const Options& options);
 [[nodiscard]] bool is_folder(const std::string& path);
 
 }  // namespace vam::slice_tool

@@ -19,17 +19,17 @@ std::string mm(const solid::Point& p, double stretch_z) {
 std::string size_text(const solid::Part& placed, double stretch_z) {
   const solid::Point size = placed.extent.box.size();
   return format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2] / stretch_z, 3) +
-         " mm large";
+         " mm";
 }
 
 void warn_of(const solid::InsertFit& fit, const solid::Part& placed, const Options& options) {
   const double stretch_z = options.placement.stretch_z;
   if (!fit.meets()) {
-    warn(placed.subject + ": misses the part; it is " + size_text(placed, stretch_z) + ", its middle at " +
+    warn(placed.subject + ": misses the part; it measures " + size_text(placed, stretch_z) + " and is centred at " +
          mm(placed.extent.box.centre(), stretch_z) + " mm; check --insert-unit, --insert-scale and --insert-at");
   } else if (!options.clearance_mm && fit.overlap()) {
-    warn(placed.subject + ": takes up " + format_number(fit.shared_mm3(stretch_z), 3) +
-         " mm3 of the part; --cut-insert 0 subtracts it");
+    warn(placed.subject + ": overlaps the part by " + format_number(fit.shared_mm3(stretch_z), 3) +
+         " mm3; --cut-insert 0 subtracts it");
   }
 }
 

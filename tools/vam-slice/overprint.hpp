@@ -11,7 +11,7 @@ namespace vam::slice_tool {
 /// The part, without the insert with --cut-insert. The volume must outlive what is returned.
 [[nodiscard]] solid::Part around(const solid::Part& part, const io::SparseVolume& insert, const Options& options);
 
-/// For --report. Warns of an insert that misses the part or that takes up room of it.
+/// For --report. Warns of an insert that misses or overlaps the part.
 [[nodiscard]] Json insert_figures(const io::SparseVolume& target, const io::SparseVolume& insert,
                                   const solid::Part& placed, const Options& options);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "io/exr/stack.hpp"
 #include "model/grid.hpp"
 #include "score/exposure.hpp"
@@ -65,17 +66,16 @@ int LightView::row_of(double angle_deg) const {
 
 Image LightView::projection(double angle_deg) const {
   const int row = row_of(angle_deg) / every_row_;
-  const auto slices = static_cast<int>(thinned_.size());
+  const auto slices = count_of(thinned_);
   const double half_mm = printer_.vial.radius_mm;
   const double pixel_mm = 2 * half_mm / most;
-  Image image(most, std::max(1, static_cast<int>(std::lround((high_mm() - low_mm()) / pixel_mm))));
+  Image image(most, std::max(1, round_int((high_mm() - low_mm()) / pixel_mm)));
   for (int y = 0; y < image.height; ++y) {
     const int slice = std::min(slices - 1, (image.height - 1 - y) * slices / image.height);
-    const Image& rows = thinned_[static_cast<std::size_t>(slice)];
+    const Image& rows = thinned_[slice];
     for (int x = 0; x < most; ++x) {
       const double from_axis_mm = (x + 0.5) * pixel_mm - half_mm;
-      const auto column =
-          static_cast<int>(std::floor((from_axis_mm / info_.pixel_mm + 0.5 * info_.width) / every_column_));
+      const auto column = floor_int((from_axis_mm / info_.pixel_mm + 0.5 * info_.width) / every_column_);
       if (column >= 0 && column < rows.width && peak_ > 0) image(x, y) = rows(column, row) / peak_;
     }
   }
@@ -92,7 +92,7 @@ std::vector<float> LightView::beam(double angle_deg) const {
 Image LightView::expose(const std::vector<double>& turns) const {
   Image light = middle_;
   for (int y = 0; y < light.height; ++y) {
-    for (int x = 0; x < light.width; ++x) light(x, y) *= static_cast<float>(turns[static_cast<std::size_t>(y)]);
+    for (int x = 0; x < light.width; ++x) light(x, y) *= static_cast<float>(turns[y]);
   }
   Image dose;
   simulation_->dose({&light, 1}, {&dose, 1});

@@ -114,14 +114,14 @@ std::string drawing_of(const RunFolder& run, const LightView& light, bool lit, d
 
 std::string overhead_figure(const RunFolder& run, const LightView& light, bool lit) {
   const double high = light.full_dose() * std::max(1.0, run.progress().turns);
-  const std::string unit = light.absolute() ? "mJ/cm3" : "times the largest dose of a turn";
+  const std::string unit = light.absolute() ? "mJ/cm3" : "of the maximum dose of a turn";
   const auto& critical = run.printer().resin.critical_dose_mj_cm3;
   const std::string gels =
       light.absolute() && critical ? " The resin gels at " + format_number(*critical, 3) + " mJ/cm3." : "";
   return "<figure><h2>Vial from above: dose so far</h2>" + drawing_of(run, light, lit, high) + colour_bar(high, unit) +
          "<figcaption>Slice at z = " + format_number(light.middle_mm(), 3) + " mm." + gels +
-         " The red mark is stage angle 0 and turns with the vial; the profile below is the brightness of the light "
-         "there.</figcaption></figure>\n";
+         " The red mark is stage angle 0 and turns with the vial; the profile below is the projected intensity in that "
+         "slice.</figcaption></figure>\n";
 }
 
 }  // namespace vam::status_tool

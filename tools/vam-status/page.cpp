@@ -48,7 +48,7 @@ std::string camera_figure(const RunFolder& run) {
   const auto newest = newest_image(run);
   if (!newest) {
     return plot::page_figure("Camera", "<p class=\"none\">no image</p>",
-                             "vam-print --views DEG takes images during a print.");
+                             "vam-print --view-step DEG captures images during a print.");
   }
   const GreyImage levels = io::read_image(newest->path);
   const model::PrinterCamera& camera = run.printer().camera;
@@ -66,8 +66,7 @@ std::string camera_figure(const RunFolder& run) {
   view.size = 480;
   const std::string when =
       newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
-  return plot::page_figure("Camera", plot::page_image(plot::draw(view), "camera image"),
-                           "The newest image" + when + ".");
+  return plot::page_figure("Camera", plot::page_image(plot::draw(view), "camera image"), "Newest image" + when + ".");
 }
 
 std::string screen_figure(const RunFolder& run, const LightView& light, double angle_deg, bool lit) {
@@ -83,9 +82,9 @@ std::string screen_figure(const RunFolder& run, const LightView& light, double a
   const double peak = run.printer().projector.max_intensity_mw_cm2;
   return plot::page_figure("Projected image", plot::page_image(plot::draw(view), "image of the projector"),
                            lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
-                                     " deg; 1 is the brightest pixel of the print, " + format_number(peak, 3) +
+                                     " deg; 1 is the maximum intensity of the print, " + format_number(peak, 3) +
                                      " mW/cm2."
-                               : "Dark: no light is given now.");
+                               : "Dark: no light is projected now.");
 }
 
 std::string time_text(const std::string& utc) {
@@ -96,7 +95,8 @@ std::string time_text(const std::string& utc) {
 }
 
 std::string records_table(const Progress& progress) {
-  if (progress.records.empty()) return "<p class=\"none\">none are in force: the print relies on the printer file.</p>";
+  if (progress.records.empty())
+    return "<p class=\"none\">none in force: the settings are those of the printer file.</p>";
   std::string rows = "<table><tr><th>record</th><th>age</th><th>valid until</th><th>status</th></tr>\n";
   for (const RecordAge& record : progress.records) {
     rows += "<tr><td>" + page_text(record.scan) + "</td><td>" + time_text(record.utc) + "</td><td>" +
@@ -113,8 +113,8 @@ std::string figures_table(const RunFolder& run) {
   const double turn = std::clamp(p.angle_deg / 360, 0.0, std::max(0.0, p.turns));
   std::string rows = "<table>" + row("turn", fixed(turn, 2) + " of " + format_number(p.turns));
   rows += row("stage angle", fixed(std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 1) + " deg");
-  rows += row("dose given", fixed(100 * p.given_fraction, 1) + " % of this print");
-  rows += row("blanks missed", std::to_string(p.missed) + " of " + std::to_string(p.blanks));
+  rows += row("dose delivered", fixed(100 * p.given_fraction, 1) + " % of this print");
+  rows += row("missed vertical blanks", std::to_string(p.missed) + " of " + std::to_string(p.blanks));
   rows += p.missing_percent ? row("cured / missing", fixed(100 - *p.missing_percent, 1) + " % / " +
                                                          fixed(*p.missing_percent, 1) + " % of the part")
                             : row("cured / missing", "not measured (vam-print --until)");
@@ -161,7 +161,7 @@ std::string page(const std::string& name, const RunFolder& run, const LightView*
   made.style = style;
   made.script = script;
   std::string& body = made.body;
-  body = "<p id=\"old\">This page is no longer refreshed: the print, or the program that shows it, has ended.</p>\n";
+  body = "<p id=\"old\">This page is no longer updated: the print, or vam-status, has ended.</p>\n";
   body += "<h1>" + page_text(name) + ": " + page_text(state_of(progress)) + "</h1>\n<p>as of " + utc + "</p>\n";
   body += figures_table(run) + "<div class=\"images\">\n<div>" + camera_figure(run);
   if (light != nullptr) body += screen_figure(run, *light, progress.angle_deg, lit);

@@ -53,9 +53,9 @@ std::string word(const Json& line, const char* key) {
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
-  if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": is no folder; give that of a print of vam-print"};
+  if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
   if (!fs::exists(file("events.jsonl"))) {
-    throw Error{Fault::data, path + ": has no events.jsonl; give the folder of a print that vam-print has armed"};
+    throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
   printer_ = io::load_printer(file("printer.toml"), {}, io::Records::ignore);
 }
@@ -144,17 +144,18 @@ void RunFolder::read_records() {
 std::string state_of(const Progress& progress) {
   if (progress.outcome) return "ended: " + printable(*progress.outcome);
   if (progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
-    return "not ended, but silent for " + std::to_string(std::lround(progress.silent_s)) + " s";
+    return "no log entry for " + std::to_string(std::lround(progress.silent_s)) + " s; end not logged";
   }
-  if (progress.blanks == 0) return "getting ready";
-  return progress.angle_deg < progress.from_deg ? "running up, dark" : "printing";
+  if (progress.blanks == 0) return "preparing";
+  return progress.angle_deg < progress.from_deg ? "run-up, dark" : "printing";
 }
 
 std::string status_line(const Progress& p, double speed_deg_s) {
   char text[256];
   const double end_deg = 360 * p.turns;
   const double at_deg = std::clamp(p.angle_deg, 0.0, std::max(0.0, end_deg));
-  std::snprintf(text, sizeof text, "  turn %.2f of %g  angle %.1f deg  dose given %.1f %%  missed %ld of %ld blanks",
+  std::snprintf(text, sizeof text,
+                "  turn %.2f of %g  angle %.1f deg  dose delivered %.1f %%  missed %ld of %ld vertical blanks",
                 at_deg / 360, p.turns, std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 100 * p.given_fraction,
                 p.missed, p.blanks);
   std::string line = state_of(p) + text;

@@ -59,9 +59,9 @@ class RunFolder {
   Progress progress_;
 };
 
-/// "printing  turn 3.41 of 20  angle 147.6 deg  dose given 17 % ..."
+/// "printing  turn 3.41 of 20  angle 147.6 deg  dose delivered 17 % ..."
 [[nodiscard]] std::string status_line(const Progress& progress, double speed_deg_s);
-/// "printing", "running up", "ended: done", ...
+/// "preparing", "run-up, dark", "printing", "ended: done", ...
 [[nodiscard]] std::string state_of(const Progress& progress);
 
 }  // namespace vam::status_tool

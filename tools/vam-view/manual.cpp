@@ -13,12 +13,12 @@ cli::Manual manual() {
        "to the right, z up), the middle one or the one at --at. For sinograms it shows the middle slice, detector bins "
        "to the right and stage angles downwards; for frames the first one, oriented as in the file. --sheet N shows N "
        "of them, evenly spaced.",
-       "--target draws the surface of the part (coverage 1/2) as a line over the dose. --histogram shows instead the "
-       "distributions of dose inside and outside the part, each as a percentage of its voxels: if they overlap, no "
+       "--target draws the surface of the part (coverage 1/2) as a line over the dose. --dose-histogram instead shows "
+       "the distributions of dose inside and outside the part, each as a percentage of its voxels: if they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
-       "An insert in the volume, or in that of --target, is hatched, and resin that it hides from some stage angles is "
-       "orange, the fuller the more angles (parallel light that stays level).",
+       "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
+       "orange, more saturated with the number of angles (for a horizontal parallel beam).",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "
        "signed values in blue, white and red, with zero in the middle. --export writes the values as NRRD for "
        "ParaView, 3D Slicer or numpy."},
@@ -31,8 +31,8 @@ cli::Manual manual() {
       {"Memory: the volume as stored in its file and the images shown; stacks are read one image at a time.",
        "Pixels are enlarged by integer factors, so that each voxel is a square of the same size; reduced images are "
        "averaged after colour mapping.",
-       "Source: the histogram follows Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, "
-       "2022, fig S6."},
+       "Source: the histogram follows Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, "
+       "fig S6."},
       {"vam-dose", "vam-project", "vam-score", "vam-sinogram", "vam-slice"}};
 }
 

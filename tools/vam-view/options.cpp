@@ -11,26 +11,29 @@ void declare(cli::App& app, Options& options) {
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
-             "Grid of the volume. Required if the volume has more than one, but for a target with its insert.");
+             "Name of the grid; required if the volume has several, except for a target with its insert.");
   app.choice("--plane", options.plane, {"axial", "coronal", "sagittal"}, "Orientation of the section of a volume.");
   app.option("--at", "PLACE", options.view.at, cli::any,
              "Show the section or sinogram slice nearest to PLACE in mm, or the frame nearest to PLACE in degrees.");
-  app.default_is("the middle one; of frames the first");
+  app.default_is("the middle one; the first frame");
   app.option("--sheet", "N", options.view.sheet, {1, 400},
-             "Number of sections, slices or frames on one sheet, evenly spaced.");
-  app.option("--target", "FILE", options.target, "Volume with the grid 'target', for the outline or for --histogram.")
+             "Number of evenly spaced sections, slices or frames on one sheet.");
+  app.option("--target", "FILE", options.target,
+             "Volume with the grid 'target', for the outline or for --dose-histogram.")
       .reads();
-  app.default_is("for --histogram the grid in FILE, else no outline");
-  app.flag("--histogram", options.histogram, "Show dose distributions inside and outside the part.");
+  app.default_is("for --dose-histogram the grid in FILE, else no outline");
+  app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.")
+      .was("--histogram");
   app.group("Appearance");
   app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.");
   app.option("--low", "VALUE", options.view.low, cli::any, "Lower end of the colour map or the histogram.");
   app.default_is("the lowest value, at most 0");
   app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.");
   app.default_is("the highest value; 1 for fractions");
-  app.option("--size", "PX", options.view.size, {64, 16384},
-             "Approximate length of the longer side of the image without its frame.");
-  app.flag("--plain", options.plain, "Write the colour-mapped pixels only, one for each value.");
+  app.option("--image-size", "PX", options.view.size, {64, 16384},
+             "Approximate length of the longer side of the image without axes and title.")
+      .was("--size");
+  app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");
   cli::add_printer(app, options.printer);
 }
 
@@ -39,9 +42,9 @@ void check(const Options& options) {
   if (view.low && view.high && *view.low >= *view.high) throw Error{Fault::usage, "--low: must be below --high"};
   if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
   if (options.plain && (view.sheet > 1 || options.histogram))
-    throw Error{Fault::usage, "--plain: shows one image only; leave out --sheet and --histogram"};
+    throw Error{Fault::usage, "--plain: shows one image only; omit --sheet and --dose-histogram"};
   if (!options.exported.empty() && options.output != "-") {
-    throw Error{Fault::usage, "--export: writes the values instead of the image; leave out --output"};
+    throw Error{Fault::usage, "--export: writes the values instead of the image; omit --output"};
   }
 }
 

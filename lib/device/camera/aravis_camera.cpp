@@ -1,4 +1,4 @@
-// GenICam cameras (USB3 Vision, GigE Vision) by Aravis. glib stays here and in aravis_levels.cpp.
+// GenICam cameras (USB3 Vision, GigE Vision) by Aravis. glib stays in the aravis_ sources.
 #include <arv.h>
 
 #include <algorithm>
@@ -17,7 +17,9 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/camera/camera_backends.hpp"
+#include "device/camera/private/aravis_clock.hpp"
 #include "device/camera/private/aravis_levels.hpp"
+#include "device/camera/private/aravis_problem.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
 #include "device/os/identity.hpp"
@@ -94,6 +96,7 @@ class AravisCamera final : public Camera {
     set_rate();
     set_trigger();
     read_mode();
+    read_clock();
     open_stream(address.integer("buffers", 10, 1000).value_or(20));
   }
 
@@ -122,6 +125,7 @@ class AravisCamera final : public Camera {
     about["transport"] = arv_camera_is_gv_device(camera_.get())   ? "GigE Vision"
                          : arv_camera_is_uv_device(camera_.get()) ? "USB3 Vision"
                                                                   : "other";
+    about["stamp"] = camera_clock_->ready() ? word_of(moment_) : "arrival";
     return with_mark(about);
   }
 
@@ -142,6 +146,7 @@ class AravisCamera final : public Camera {
   }
 
   std::optional<CapturedFrame> next() override {
+    camera_clock_->refresh();
     const double patience_s = settings_.patience_s(mode_.fps > 0 ? 1 / mode_.fps : 0);
     const double limit_s = clock_.now_s() + patience_s;
     for (;;) {
@@ -291,6 +296,23 @@ class AravisCamera final : public Camera {
     if (settings_.fps && settings_.trigger == "free") same("frame rate", *settings_.fps, mode_.fps);
   }
 
+  void read_clock() {
+    Problem problem;
+    const char* maker = arv_camera_get_vendor_name(camera_.get(), problem);
+    moment_ = stamp_moment(settings_.stamp, maker == nullptr ? "" : maker);
+    camera_clock_.emplace(camera_.get(), name_, clock_);
+  }
+
+  // The middle of the exposure. Where the camera's clock cannot be read its stamps are as good as the shortest way of
+  // a frame, which begins at the end of the exposure whatever moment they name.
+  double middle_s(double device_s, double arrived_s) {
+    const double exposure_s = 1e-6 * mode_.exposure_us;
+    if (const auto host_s = camera_clock_->host_s(device_s, arrived_s, exposure_s)) {
+      return *host_s + to_middle_s(moment_, exposure_s);
+    }
+    return stamps_.host_s(device_s, arrived_s) + to_middle_s(StampMoment::end, exposure_s);
+  }
+
   void open_stream(int buffers) {
     Problem problem;
     stream_.reset(arv_camera_create_stream(camera_.get(), nullptr, nullptr, problem));
@@ -322,8 +344,8 @@ class AravisCamera final : public Camera {
         mode_.fps > 0 ? last_s_ + static_cast<double>(frame.number - last_number_) / mode_.fps : clock_.now_s();
     if (known) {
       frame.device_s = 1e-9 * static_cast<double>(arv_buffer_get_timestamp(buffer));
-      frame.time_s = stamps_.host_s(*frame.device_s, monotonic_s(arv_buffer_get_system_timestamp(buffer), clock_)) -
-                     0.5e-6 * mode_.exposure_us;
+      frame.time_s = middle_s(*frame.device_s, monotonic_s(arv_buffer_get_system_timestamp(buffer), clock_));
+      if (camera_clock_->ready()) frame.time_sigma_s = camera_clock_->sigma_s();
     }
     last_s_ = frame.time_s;
     last_number_ = frame.number;
@@ -350,6 +372,8 @@ class AravisCamera final : public Camera {
   bool streaming_ = false;
   std::size_t payload_ = 0;
   FrameCount count_;
+  StampMoment moment_ = StampMoment::end;
+  std::optional<AravisClock> camera_clock_;
   StampClock stamps_;
   double last_s_ = 0;
   long last_number_ = 0;

@@ -1,11 +1,14 @@
 #include "device/camera/private/aravis_levels.hpp"
 
+#include <arv.h>
+
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "device/camera/private/aravis_problem.hpp"
 
 namespace vam::device {
 

@@ -10,6 +10,7 @@
 
 #include "base/json_fwd.hpp"
 #include "base/pixels.hpp"
+#include "device/camera/stamp.hpp"
 #include "device/os/address.hpp"
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
@@ -25,6 +26,7 @@ struct CameraSettings {
   std::optional<double> gain;         // dB (GenICam) or the camera's own steps (V4L2, GainRaw)
   std::optional<double> black_level;  // in the camera's own unit
   double gamma = 1;                   // intensity to grey level; 1: linear, as every measurement needs it
+  std::string stamp = "auto";         // the moment that time stamps name: start, middle, end; auto: as the maker says
   std::string trigger = "free";       // free, software, or the name of an input line
   std::string format;                 // GenICam or V4L2 name of the pixel format; empty: the first grey one
   std::optional<double> timeout_s;
@@ -50,7 +52,8 @@ struct CameraMode {
 struct CapturedFrame {
   GreyImage levels;                 // 8 or 16 bits; depths between are spread over 16
   long number = 0;                  // frames since start(), including those the camera made that were not received
-  double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, were the stamp set at its end
+  double time_s = 0;                // CLOCK_MONOTONIC in the middle of the exposure, but for the camera's lag
+  double time_sigma_s = 0;          // standard deviation that times of one capture share; 0: not known
   std::optional<double> device_s;   // the time stamp on the camera's own clock
   bool complete = true;             // false: parts of the image did not arrive and are not of this moment
   std::optional<double> angle_deg;  // as recorded; replay: only
@@ -62,7 +65,8 @@ struct CapturedFrame {
 class Camera {
  public:
   virtual ~Camera() = default;
-  /// maker, model, serial number, firmware and what else the backend knows.
+  /// maker, model, serial number, firmware and what else the backend knows: stamp is the moment of an exposure that
+  /// time stamps name (start, middle, end), or "arrival", where they are only compared with one another.
   virtual Json identify() = 0;
   [[nodiscard]] virtual CameraMode mode() const = 0;
   virtual void start() = 0;

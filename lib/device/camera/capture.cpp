@@ -48,7 +48,7 @@ class Series {
 std::optional<long> Series::place_of(const Shot& shot) {
   if (plan_.every_deg) {
     if (!shot.angle && angles_ == nullptr) {
-      throw Error{Fault::usage, "--every: the frames have no angles; give --follow or --speed"};
+      throw Error{Fault::usage, "--view-step: the frames have no angles; give --follow or --speed"};
     }
     if (!shot.angle) return std::nullopt;
     const long place = std::lround(shot.angle->angle_deg / *plan_.every_deg);

@@ -159,6 +159,7 @@ class V4l2Camera final : public Camera {
     }
     const auto text = [](const __u8* bytes) { return std::string(reinterpret_cast<const char*>(bytes)); };
     about_ = {{"maker", text(what.driver)}, {"model", text(what.card)}, {"serial", text(what.bus_info)}};
+    if (settings_.stamp != "auto") about_["stamp"] = settings_.stamp;  // else each frame tells
     about_["firmware"] = std::to_string(what.version >> 16 & 255) + "." + std::to_string(what.version >> 8 & 255);
   }
 
@@ -294,6 +295,13 @@ class V4l2Camera final : public Camera {
     if (mappings_.empty()) throw Error{Fault::memory, path_ + ": provides no buffers"};
   }
 
+  // As the driver says, unless the printer file knows better.
+  StampMoment moment_of(const v4l2_buffer& buffer) {
+    const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    const std::string driver = word_of(at_start ? StampMoment::start : StampMoment::end);
+    return stamp_moment(settings_.stamp == "auto" ? driver : settings_.stamp, "");
+  }
+
   CapturedFrame take(v4l2_buffer& buffer) {
     if (buffer.index >= mappings_.size()) throw Error{Fault::protocol, path_ + ": returned an unknown buffer"};
     const Mapping& mapping = mappings_[buffer.index];
@@ -303,8 +311,8 @@ class V4l2Camera final : public Camera {
     const double stamp_s =
         static_cast<double>(buffer.timestamp.tv_sec) + 1e-6 * static_cast<double>(buffer.timestamp.tv_usec);
     const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
-    const bool at_start = (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
-    frame.time_s = (monotonic ? stamp_s : clock_.now_s()) + (at_start ? 0.5e-6 : -0.5e-6) * mode_.exposure_us;
+    frame.time_s = monotonic ? stamp_s + to_middle_s(moment_of(buffer), 1e-6 * mode_.exposure_us)
+                             : clock_.now_s() - 0.5e-6 * mode_.exposure_us;
     frame.device_s = stamp_s;
     const auto used = std::min<std::size_t>(buffer.bytesused, mapping.size);
     const bool whole = to_grey({static_cast<const std::uint8_t*>(mapping.start), used}, mode_.columns, mode_.rows,

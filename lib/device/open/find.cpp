@@ -53,7 +53,7 @@ void ask_stage(Found& stage) {
       }
     }
   }
-  stage.obstacle = "no stage answers; check power and cable, and for gcs: in a daisy chain ?address=N";
+  stage.obstacle = "no reply from a stage; check power and cable, and for gcs: in a daisy chain ?address=N";
 }
 
 }  // namespace vam::device

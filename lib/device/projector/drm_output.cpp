@@ -180,10 +180,10 @@ void send_full_range(const DrmOutput& output, const std::string& name) {
 void limit_bits(const DrmOutput& output, const std::string& name, int bits) {
   const std::string property = "max bpc";
   if (!property_of(output, property).about) {
-    throw Error{Fault::usage, name + ": the GPU knows no number of bits per colour (max bpc); leave out bpc"};
+    throw Error{Fault::usage, name + ": the GPU has no setting for bits per colour (max bpc); omit bpc"};
   }
   if (set_property(output, property, static_cast<std::uint64_t>(bits))) return;
-  throw Error{Fault::protocol, name + ": the GPU refuses " + std::to_string(bits) + " bits per colour"};
+  throw Error{Fault::protocol, name + ": the GPU rejects " + std::to_string(bits) + " bits per colour"};
 }
 
 void straighten_gamma(const DrmOutput& output, const std::string& name) {

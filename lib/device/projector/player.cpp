@@ -128,6 +128,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
   Presenter presenter(display, log);
   const double step_deg = 360.0 / plan.frames_per_turn;
   const double end_deg = 360.0 * plan.turns;
+  const long loaded = plan.frames > 0 ? plan.frames : plan.frames_per_turn;
   bool light_is_on = false;
   for (;;) {
     check_interrupted();  // a display with blanks of its own never sleeps by the clock
@@ -151,12 +152,11 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
       light_is_on = switched = true;
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
-    presenter.show(lit ? static_cast<int>(nearest % plan.frames_per_turn) : -1, *predicted,
-                   predicted->angle_deg >= plan.from_deg - 360 &&
-                       !switched);  // the engine's answer may take a blank, while all is black
-    if (lit)
-      require_flips(presenter.tally(), expected, std::max(plan.allowed_missed, plan.allowed_missed_lit),
-                    "in the print");
+    // The engine's answer may take a blank, while all is black.
+    const bool counted = predicted->angle_deg >= plan.from_deg - 360 && !switched;
+    presenter.show(lit ? static_cast<int>(nearest % loaded) : -1, *predicted, counted);
+    const double allowed = std::max(plan.allowed_missed, plan.allowed_missed_lit);
+    if (lit) require_flips(presenter.tally(), expected, allowed, "in the print");
   }
   presenter.show(-1, *angles.at(clock.now_s()), false);
   if (light != nullptr) light->dark();  // here, where an engine that stays lit is an error

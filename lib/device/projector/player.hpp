@@ -12,6 +12,7 @@ namespace vam::device {
 
 struct PlayPlan {
   int frames_per_turn = 360;  // frame n belongs to the angle 360 n / frames_per_turn
+  int frames = 0;             // loaded, of whole turns that follow each other again and again; 0: of one turn
   int turns = 1;
   double from_deg = 0;               // black before this angle: the rest of a print
   double latency_s = 0;              // from a vertical blank to the light, calibrated

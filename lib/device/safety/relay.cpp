@@ -39,17 +39,17 @@ Relay::Relay(std::unique_ptr<Port> port, Clock& clock, Guardian* guardian)
     limit_s = limit_of(line);
     simulated_ = line.ends_with(" simulated");
     if (!line.empty() && !limit_s) {
-      throw Error{Fault::protocol, port_->name() + ": answered '" + line.substr(0, 40) + "', which no relay does"};
+      throw Error{Fault::protocol, port_->name() + ": reply '" + line.substr(0, 40) + "' is not that of a relay"};
     }
     if (!limit_s && clock_.now_s() > deadline_s) {
-      throw Error{Fault::busy, port_->name() + ": relay does not answer within " + format_number(boot_s) +
-                                   " s; there is no light without it"};
+      throw Error{Fault::busy, port_->name() + ": no reply from the relay within " + format_number(boot_s) +
+                                   " s; the light stays off without it"};
     }
   }
   limit_s_ = *limit_s;
   if (limit_s_ < shortest_limit_s || limit_s_ > longest_limit_s) {
-    throw Error{Fault::protocol, port_->name() + ": relay waits " + format_number(1000 * limit_s_) +
-                                     " ms for a heartbeat; set its firmware to 150 to 1000 ms"};
+    throw Error{Fault::protocol, port_->name() + ": time limit of the relay is " + format_number(1000 * limit_s_) +
+                                     " ms; set 150 to 1000 ms in its firmware"};
   }
 }
 
@@ -91,7 +91,7 @@ void Relay::close() {
   closed_ = true;
   sent_s_ = answered_s_ = clock_.now_s();
   if (answer(patience_s) != "closed") {
-    throw Error{Fault::busy, port_->name() + ": relay does not close; there is no light without it"};
+    throw Error{Fault::busy, port_->name() + ": relay does not close; the light stays off without it"};
   }
 }
 
@@ -100,13 +100,13 @@ void Relay::beat() {
   if (!closed_ || now_s < sent_s_ + period_s) return;
   for (std::string line = answer(1e-9); !line.empty(); line = answer(1e-9)) {
     if (line != "closed") {
-      throw Error{Fault::protocol, port_->name() + ": relay has cut the lamp: no heartbeat reached it for " +
+      throw Error{Fault::protocol, port_->name() + ": relay has switched off the lamp: no heartbeat received for " +
                                        format_number(1000 * limit_s_) + " ms, or it was commanded to open"};
     }
     answered_s_ = now_s;
   }
   if (now_s - answered_s_ > limit_s_ + (now_s - sent_s_)) {
-    throw Error{Fault::busy, port_->name() + ": relay has not answered for " +
+    throw Error{Fault::busy, port_->name() + ": no reply from the relay for " +
                                  format_number(std::round(1000 * (now_s - answered_s_))) + " ms; check its cable"};
   }
   port_->write("H");
@@ -117,7 +117,7 @@ void Relay::open() {
   if (!std::exchange(closed_, false)) return;
   port_->write("O");
   for (std::string line = answer(patience_s); line != "open"; line = answer(patience_s)) {
-    if (line.empty()) throw Error{Fault::busy, port_->name() + ": relay does not say that it has opened"};
+    if (line.empty()) throw Error{Fault::busy, port_->name() + ": relay has not confirmed that it opened"};
   }
   if (action_) guardian_->forget(*action_);
   action_.reset();

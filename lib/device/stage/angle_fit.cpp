@@ -1,13 +1,7 @@
 #include "device/stage/angle_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-
-#include "base/error.hpp"
-#include "base/json.hpp"
-#include "base/json_text.hpp"
 
 namespace vam::device {
 
@@ -18,33 +12,6 @@ constexpr double encoder_sigma_deg = 1e-4;
 AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s) {
   const double blur_deg = std::abs(speed_deg_s) * (sample.t1_s - sample.t0_s) / std::sqrt(12.0);
   return {0.5 * (sample.t0_s + sample.t1_s), sample.angle_deg, std::hypot(blur_deg, encoder_sigma_deg)};
-}
-
-std::string to_line(const AngleSample& sample) {
-  std::array<char, 120> text{};
-  std::snprintf(text.data(), text.size(), R"({"t_monotonic_s":%.7f,"angle_deg":%.5f,"sigma_deg":%.5f})", sample.t_s,
-                sample.angle_deg, sample.sigma_deg);
-  return text.data();
-}
-
-AngleSample parse_angle_line(const std::string& line, long number) {
-  const Json parsed = parse_json(line);
-  AngleSample sample;
-  const auto read = [&](const char* key, double& target) {
-    if (!parsed.is_object() || !parsed.contains(key) || !parsed[key].is_number()) {
-      throw Error{Fault::data, "stage angles: line " + std::to_string(number) + ": no number '" + key +
-                                   "'; expected the output of vam-stage spin or follow"};
-    }
-    target = parsed[key].get<double>();
-    if (!std::isfinite(target)) {
-      throw Error{Fault::data, "stage angles: line " + std::to_string(number) + ": '" + key + "' is not finite"};
-    }
-  };
-  read("t_monotonic_s", sample.t_s);
-  read("angle_deg", sample.angle_deg);
-  // Recordings of 0.1.0 say sigma.
-  read(parsed.contains("sigma") && !parsed.contains("sigma_deg") ? "sigma" : "sigma_deg", sample.sigma_deg);
-  return sample;
 }
 
 void AngleFit::add(const AngleSample& sample) {

@@ -3,27 +3,15 @@
 #pragma once
 
 #include <deque>
-#include <string>
 
+#include "device/os/angle_sample.hpp"
 #include "device/stage/stage.hpp"
 
 namespace vam::device {
 
-/// An angle at a time with its standard deviation: one line of vam-stage's output.
-struct AngleSample {
-  double t_s = 0;  // CLOCK_MONOTONIC
-  double angle_deg = 0;
-  double sigma_deg = 0;
-};
-
 /// The middle of question and answer; the uncertainty is that of a moment uniformly spread between them (1/sqrt(12))
 /// times the speed, and of the encoder's last digit.
 [[nodiscard]] AngleSample to_angle_sample(const StageSample& sample, double speed_deg_s);
-
-/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}
-[[nodiscard]] std::string to_line(const AngleSample& sample);
-/// Throws Fault::data for anything else: "follow: line 7: ...".
-[[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);
 
 /// Weighted least squares over the samples of the last window_s seconds.
 class AngleFit {

@@ -17,7 +17,7 @@ namespace vam::device {
 
 namespace {
 
-constexpr double stale_s = 0.3;
+constexpr double stale_s = 0.5;
 constexpr std::size_t longest_line = 4096;
 
 class ElapsedAngle final : public AngleSource {

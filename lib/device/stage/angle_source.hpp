@@ -27,7 +27,7 @@ class AngleSource {
 [[nodiscard]] std::unique_ptr<AngleSource> standing_angle(double angle_deg);
 
 /// By the lines of vam-stage from a file, FIFO, or "-" (stdin): their running line fit, extrapolated. update() throws
-/// Fault::data for a bad line, Fault::busy when nothing came for 0.3 s or the lines have ended. Before the first line
+/// Fault::data for a bad line, Fault::busy when nothing came for 0.5 s or the lines have ended. Before the first line
 /// it waits without limit. Throws Fault::no_input when the file cannot be opened.
 [[nodiscard]] std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock);
 

@@ -44,7 +44,7 @@ std::string gcs_meaning(int code) {
       {1, "parameter syntax"},
       {2, "unknown command"},
       {3, "command too long"},
-      {5, "not referenced: give --home, or run `vam-stage home` if the controller keeps it"},
+      {5, "not referenced: give --home, or run `vam-stage home` if the controller keeps the reference"},
       {7, "beyond the limits of travel"},
       {8, "faster than the stage's maximum"},
       {10, "stopped by command"},

@@ -95,8 +95,15 @@ class GcsStage final : public Stage {
     return true;
   }
 
+  bool referenced() override {
+    const bool found = value("FRF?") == 1;
+    stop_order_.beat();
+    return found;
+  }
+
   void set_speed(double deg_s) override { order("VEL " + axis_ + " " + decimal(deg_s)); }
 
+  // The controller takes a set position for a reference, too: spin() asks for the reference before.
   void set_angle(double angle_deg) override {
     order("RON " + axis_ + " 0");
     order("POS " + axis_ + " " + decimal(angle_deg));

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double timeout_s = 0.2;
 constexpr double wake_s = 2.0;  // opening the port resets most boards; their greeting takes a second
+constexpr const char* alarm = "alarm state; its position is lost; run `vam-stage home`";
 const std::string jog_cancel = "\x85";
 const std::string soft_reset = "\x18";
 
@@ -57,7 +58,8 @@ class GrblStage final : public Stage {
     return caps;
   }
 
-  void enable() override { order("$X"); }
+  // Motions power the motor. "$X" would unlock a board that lost its position: only homing does.
+  void enable() override {}
 
   void start_homing() override {
     watch();
@@ -119,10 +121,11 @@ class GrblStage final : public Stage {
     link_.drain();
     const std::string report = status();
     const std::string state = state_of(report);
-    if (state == "Alarm")
-      throw Error{Fault::protocol, port_.name() + ": alarm state; home the axis or unlock the board with $X"};
-    const bool moves = state != "Idle";
+    const bool alarmed = state == "Alarm";
+    const bool lost = alarmed && std::exchange(referenced_, false);
+    const bool moves = state != "Idle" && !alarmed;
     if (!moves) stop_order_.withdraw();
+    if (lost) throw Error{Fault::protocol, port_.name() + ": " + alarm};
     return moves;
   }
 
@@ -135,7 +138,11 @@ class GrblStage final : public Stage {
     homing_ = false;
   }
 
-  std::optional<std::string> fault() override { return std::nullopt; }  // every order answers for itself
+  // Every order answers for itself.
+  std::optional<std::string> fault() override {
+    link_.drain();
+    return state_of(status()) == "Alarm" ? std::optional<std::string>(alarm) : std::nullopt;
+  }
 
  private:
   std::string letter() const { return std::string(1, static_cast<char>('X' + axis_)); }
@@ -147,7 +154,6 @@ class GrblStage final : public Stage {
       const std::string line = link_.poll_line(0.2);
       if (line.rfind("Grbl ", 0) == 0) {
         greeting_ = line.substr(0, line.find(" ["));
-        referenced_ = false;  // it was reset: its position counts from where it stood
         break;
       }
       if (line == "ok") break;  // it was awake
@@ -194,7 +200,8 @@ class GrblStage final : public Stage {
   void require_ok(const std::string& question, const std::string& line) const {
     if (line == "ok") return;
     if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
-      throw Error{Fault::protocol, port_.name() + ": '" + question + "' was refused with " + line};
+      throw Error{Fault::protocol, port_.name() + ": '" + question + "' was refused with " + line +
+                                       (line == "error:9" ? " (alarm state); run `vam-stage home`" : "")};
     }
     throw link_.malformed(question, line);
   }
@@ -251,7 +258,7 @@ class GrblStage final : public Stage {
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;
   bool homing_ = false;
-  bool referenced_ = true;  // a board that was not reset keeps its position
+  bool referenced_ = false;  // a board does not tell whether it was homed, nor how far its zero is from the switch
   std::optional<double> idle_since_s_;
 };
 

@@ -100,6 +100,7 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   const StageCaps caps = stage.caps();
   require_speed_in_range(stage, plan.speed_deg_s);
   require_referenced(stage);
+  wait_until_standing(stage, clock, plan.period_s, braking_s);
   StopOnExit stopper(stage);
   stage.enable();
   const Course course = plot(plan, caps, plan.direction * stage.sample().angle_deg);

@@ -12,6 +12,9 @@ namespace vam::device {
 /// A stage that moves is queried at least this often: a good answer reports to the guardian that all is well.
 constexpr double heartbeat_s = 0.1;
 
+/// So long a stage may take to stop that a former command has left braking; until then it accepts no order.
+constexpr double braking_s = 10;
+
 struct SpinPlan {
   double speed_deg_s = 10;
   int turns = 1;                  // of printing

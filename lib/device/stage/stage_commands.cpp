@@ -27,8 +27,8 @@ void wait_until_standing(Stage& stage, Clock& clock, double period_s, double tim
 void require_referenced(Stage& stage) {
   if (stage.referenced()) return;
   throw Error{Fault::data,
-              "stage: not referenced: its zero may be anywhere; give --home, or run `vam-stage home` if the controller "
-              "keeps it"};
+              "stage: not referenced: the position of its zero is unknown; give --home, or run `vam-stage home` if the "
+              "controller keeps the reference"};
 }
 
 void require_speed_in_range(Stage& stage, double speed_deg_s) {
@@ -39,6 +39,7 @@ void require_speed_in_range(Stage& stage, double speed_deg_s) {
 }
 
 void home(Stage& stage, Clock& clock, double timeout_s) {
+  wait_until_standing(stage, clock, 0.02, braking_s);
   StopOnExit stopper(stage);
   stage.enable();
   stage.start_homing();
@@ -55,6 +56,7 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s) {
   require_speed_in_range(stage, speed_deg_s);
   if (!relative) require_referenced(stage);
+  wait_until_standing(stage, clock, 0.02, braking_s);
   StopOnExit stopper(stage);
   stage.enable();
   stage.set_speed(speed_deg_s);

@@ -137,6 +137,7 @@ class TicStage final : public Stage {
 
   bool moving() override {
     order(reset_command_timeout, 0);
+    (void)state_now();  // noise must not pass for a motion either
     const bool moves = variable(current_velocity) != 0 || ((variable(planning_mode) & 0xFF) == to_position &&
                                                            variable(target_position) != variable(current_position));
     if (!moves) stop_order_.withdraw();

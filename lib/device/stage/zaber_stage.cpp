@@ -233,8 +233,8 @@ class ZaberStage final : public Stage {
     const auto steps = reply.accepted ? parse_number(reply.data) : std::nullopt;
     if (steps && *steps > 0) return *steps;
     throw Error{Fault::data, link_.port().name() +
-                                 ": the device does not know the microsteps of a turn (limit.cycle.dist): it is no "
-                                 "rotary stage, or needs ?steps_per_deg=N"};
+                                 ": the device reports no number of microsteps per turn (limit.cycle.dist): it is "
+                                 "not a rotary stage, or requires ?steps_per_deg=N"};
   }
 
   // The LF ends half a line of the dead tool; the stop is for a device that does not know estop.

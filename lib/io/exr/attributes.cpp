@@ -114,7 +114,10 @@ void set_own(Imf::Header& header, const StackInfo& info, int index, const ImageI
   set_integer(header, "vam:index", index);
   set_number(header, "vam:z_mm", about.z_mm);
   if (about.has_angle) set_number(header, "vam:angle_deg", about.angle_deg);
-  if (about.has_time) set_number(header, "vam:time_s", about.time_s);
+  if (about.has_time) {
+    set_number(header, "vam:time_s", about.time_s);
+    set_number(header, "vam:time_sigma_s", about.time_sigma_s);
+  }
   if (!about.has_number) return;
   set_integer(header, "vam:number", about.number);
   set_integer(header, "vam:incomplete", about.incomplete ? 1 : 0);
@@ -172,6 +175,7 @@ ImageInfo image_info(const Imf::Header& header, const StackInfo& info, int index
     about.time_s = *time;
     about.has_time = true;
   }
+  about.time_sigma_s = number(header, "vam:time_sigma_s").value_or(0);
   if (const auto taken = number(header, "vam:number")) {
     about.number = static_cast<int>(*taken);
     about.has_number = true;

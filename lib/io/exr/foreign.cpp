@@ -36,7 +36,7 @@ void pass_facts(const Pass& pass, model::Pose& pose) {
 
 template <class Pass>
 void pass_facts(const Pass& pass, ImageInfo& about) {
-  for (double* number : {&about.z_mm, &about.angle_deg, &about.time_s}) pass(*number);
+  for (double* number : {&about.z_mm, &about.angle_deg, &about.time_s, &about.time_sigma_s}) pass(*number);
   for (bool* truth : {&about.has_angle, &about.has_time, &about.has_number, &about.incomplete}) pass(*truth);
   pass(about.number);
 }

@@ -41,6 +41,7 @@ Digest facts_digest(const model::StackInfo& info, int index, const model::ImageI
   sealer.add(about.has_time ? about.time_s : -1e300);
   sealer.add(about.has_number ? about.number : -1);
   sealer.add(about.has_number && about.incomplete);
+  if (about.time_sigma_s != 0) sealer.add(about.time_sigma_s);
   return sealer.digest();
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/stream/finite.hpp"
@@ -111,7 +112,7 @@ void StackParser::parse_head() {
     if (!multi_part()) break;
   }
   if (about_.empty()) throw std::runtime_error("has no image");
-  const int parts = static_cast<int>(about_.size());
+  const int parts = count_of(about_);
   if (announced_ != 0 && announced_ != parts) {
     throw std::runtime_error("holds " + std::to_string(parts) + " of the " + std::to_string(announced_) +
                              " images that vam:count announces");
@@ -140,7 +141,7 @@ void StackParser::add_part(const Imf::Header& header) {
   if (layout.width != info_.width || layout.height != info_.height) {
     throw std::runtime_error(part + " has another size than part 0");
   }
-  about_.push_back(image_info(header, info_, static_cast<int>(about_.size())));
+  about_.push_back(image_info(header, info_, count_of(about_)));
   StackInfo own = stack_info(header);
   own.width = layout.width;
   own.height = layout.height;
@@ -181,8 +182,8 @@ void StackParser::take_chunk() {
   append(bytes, y);
   append(bytes, size);
   const std::size_t at = bytes.size();
-  bytes.resize(at + static_cast<std::size_t>(size));
-  take(bytes.data() + at, static_cast<std::size_t>(size));
+  bytes.resize(at + size);
+  take(bytes.data() + at, size);
   --image.missing;
   waiting_bytes_ += bytes.size() - at + 8;
   if (waiting_bytes_ > max_waiting_bytes && index != complete_) {
@@ -231,8 +232,8 @@ void StackParser::require_clean_end() {
   const auto next = in_.peek();
   const std::size_t size = std::min(next.size(), sizeof magic);
   if (std::memcmp(next.data(), &magic, size) == 0) return;  // a further stack
-  throw std::runtime_error("goes on after its last image, at byte " + std::to_string(in_.position()) +
-                           ", with what is no stack; make it again, or cut it there");
+  throw std::runtime_error("trailing data after the last image, from byte " + std::to_string(in_.position()) +
+                           " on, is not a stack; write the file again, or truncate it there");
 }
 
 bool StackParser::next(Image& image, ImageInfo& about, bool alone) {

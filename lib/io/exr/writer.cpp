@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/exr/private/attributes.hpp"
@@ -42,15 +43,16 @@ Imf::Compression compression_named(const std::string& name) {
 bool same(const ImageInfo& a, const ImageInfo& b) {
   return a.z_mm == b.z_mm && a.has_angle == b.has_angle && a.has_time == b.has_time &&
          (!a.has_angle || a.angle_deg == b.angle_deg) && (!a.has_time || a.time_s == b.time_s) &&
-         a.has_number == b.has_number && a.number == b.number && a.incomplete == b.incomplete;
+         a.time_sigma_s == b.time_sigma_s && a.has_number == b.has_number && a.number == b.number &&
+         a.incomplete == b.incomplete;
 }
 
 void check_half(const Image& image, const std::string& what) {
   float largest = 0;
   for (const float value : image.values) largest = std::max(largest, std::abs(value));
   if (largest <= largest_half) return;
-  throw Error{Fault::data,
-              what + " has the value " + format_number(largest) + ", but the half-float maximum is 65504; omit --half"};
+  throw Error{Fault::data, what + " has the value " + format_number(largest) +
+                               ", but the half-float maximum is 65504; store 32-bit floats"};
 }
 
 std::vector<ImageInfo> all_implied(const StackInfo& info) {
@@ -120,8 +122,7 @@ std::string StackWriter::State::head() const {
   exr::append(bytes, flags);
   for (int i = 0; i < info.count; ++i) {
     exr::set_own(header, info, i, about[i]);
-    exr::set_seals(header, exr::facts_digest(info, i, about[i]),
-                   trailing ? std::nullopt : std::optional(seals[static_cast<std::size_t>(i)]));
+    exr::set_seals(header, exr::facts_digest(info, i, about[i]), trailing ? std::nullopt : std::optional(seals[i]));
     bytes += exr::serialize(header);
   }
   bytes += '\0';
@@ -184,7 +185,7 @@ void StackWriter::State::put(const Image& image, const ImageInfo& own) {
 void StackWriter::State::flush() {
   std::vector<exr::Chunks> encoded(waiting.size());
   std::size_t part = done - waiting.size();
-  parallel_for(static_cast<int>(waiting.size()), [&](int i) {
+  parallel_for(count_of(waiting), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     encoded[at] = exr::encode(waiting[at], type, compression);
     seals[part + at] = exr::stored_digest(waiting[at], type, compression, encoded[at]);
@@ -196,7 +197,7 @@ void StackWriter::State::flush() {
       if (!out.is_stream()) offsets[part * image.starts.size() + chunk] = position + bytes.size();
       const auto size = exr::number_at<std::int32_t>(image.bytes, image.starts[chunk] + 4);
       exr::append(bytes, static_cast<std::int32_t>(part));
-      bytes.append(image.bytes, image.starts[chunk], 8 + static_cast<std::size_t>(size));
+      bytes.append(image.bytes, image.starts[chunk], 8 + size);
     }
     send(bytes);
     ++part;

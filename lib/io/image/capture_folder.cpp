@@ -52,6 +52,7 @@ CaptureRecord to_record(const Json& line) {
   record.place = line.at("frame").get<long>();
   record.number = line.at("number").get<long>();
   record.t_monotonic_s = line.at("t_monotonic_s").get<double>();
+  record.time_sigma_s = optional_number(line, "time_sigma_s");
   record.device_s = optional_number(line, "device_s");
   record.angle_deg = optional_number(line, "angle_deg");
   record.sigma_deg = optional_number(line, "sigma_deg");
@@ -65,6 +66,7 @@ Json to_line(const CaptureRecord& record) {
             {"file", capture_file_name(record.place)},
             {"number", record.number},
             {"t_monotonic_s", record.t_monotonic_s}};
+  if (record.time_sigma_s) line["time_sigma_s"] = *record.time_sigma_s;
   if (record.device_s) line["device_s"] = *record.device_s;
   if (record.angle_deg) line["angle_deg"] = *record.angle_deg;
   if (record.sigma_deg) line["sigma_deg"] = *record.sigma_deg;

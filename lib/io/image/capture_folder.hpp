@@ -16,7 +16,7 @@ struct CaptureRecord {
   long place = 0;   // in the series: the file is named after it
   long number = 0;  // of the frame since the camera started; a gap is frames that were lost
   double t_monotonic_s = 0;
-  std::optional<double> device_s, angle_deg, sigma_deg;
+  std::optional<double> time_sigma_s, device_s, angle_deg, sigma_deg;
   bool complete = true;
   std::string levels;  // fingerprint of the grey levels
 };

@@ -54,7 +54,7 @@ Bytes deflated(const Bytes& plain) {
   return packed;
 }
 
-struct Layout {
+struct PngLayout {
   int width;
   int height;
   int depth;
@@ -62,7 +62,7 @@ struct Layout {
   std::size_t row_bytes;
 };
 
-Bytes assemble(const Layout& layout, const Bytes& significant_bits, const Bytes& rows, const ImageText& text) {
+Bytes assemble(const PngLayout& layout, const Bytes& significant_bits, const Bytes& rows, const ImageText& text) {
   Bytes png("\x89PNG\r\n\x1a\n", 8);
   Bytes header;
   put32(header, static_cast<std::uint32_t>(layout.width));
@@ -122,14 +122,14 @@ void write(const std::string& path, const Pixels& image, const ImageText& text) 
 std::string encode_png(const GreyImage& image, const ImageText& text) {
   const int depth = image.bits > 8 ? 16 : image.bits;
   const auto bits = static_cast<std::size_t>(image.width) * depth;
-  const Layout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
+  const PngLayout layout{image.width, image.height, depth, 0, (bits + 7) / 8};
   const Bytes significant(image.bits == 10 ? 1 : 0, '\x0a');
   if (depth == 16) return assemble(layout, significant, wide_rows(image), text);
   return assemble(layout, significant, depth == 8 ? byte_rows(image) : packed_rows(image, layout.row_bytes), text);
 }
 
 std::string encode_png(const RgbImage& image, const ImageText& text) {
-  const Layout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
+  const PngLayout layout{image.width, image.height, 8, 2, 3 * static_cast<std::size_t>(image.width)};
   const Bytes rows(reinterpret_cast<const char*>(image.values.data()), 3 * image.values.size());
   return assemble(layout, "", rows, text);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/decoders.hpp"
 #include "io/stream/stream.hpp"
@@ -87,7 +88,7 @@ void decode_wide(TIFF* tiff, const std::string& name, GreyImage& image) {
     if (TIFFReadScanline(tiff, row.data(), static_cast<std::uint32_t>(y)) < 0)
       refuse(name, "it is truncated or damaged");
     for (int x = 0; x < image.width; ++x) {
-      const std::uint16_t* sample = &row[static_cast<std::size_t>(x) * samples];
+      const std::uint16_t* sample = &row[product(x, samples)];
       const int level = colours ? luma(sample[0], sample[1], sample[2]) : sample[0];
       image(x, y) = static_cast<std::uint16_t>(photometric == PHOTOMETRIC_MINISWHITE ? 65535 - level : level);
     }
@@ -139,8 +140,8 @@ void write_tiff(const std::string& path, const GreyImage& image) {
     TIFFSetField(tiff.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
     TIFFSetField(tiff.get(), TIFFTAG_COMPRESSION, COMPRESSION_LZW);
     TIFFSetField(tiff.get(), TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff.get(), 0));
-    std::vector<std::uint16_t> words(static_cast<std::size_t>(image.width));
-    std::vector<std::uint8_t> octets(static_cast<std::size_t>(image.width));
+    std::vector<std::uint16_t> words(image.width);
+    std::vector<std::uint8_t> octets(image.width);
     for (int y = 0; y < image.height; ++y) {
       for (int x = 0; x < image.width; ++x) {
         const int level = image(x, y);

@@ -28,21 +28,21 @@ int bits_of(int pixel_format) {
 
 // Of one frame: every slice ends in its size (3 bytes), where it has checksums a status and the CRC-32 by which the
 // whole slice has the remainder 0 (RFC 9043 section 4.9). libav hides a damaged slice behind the last frame's.
-enum class Slices { right, wrong, broken };
+enum class SliceState { right, wrong, broken };
 
-Slices judged_slices(const std::uint8_t* bytes, std::size_t size, bool checksums) {
+SliceState judged_slices(const std::uint8_t* bytes, std::size_t size, bool checksums) {
   const std::size_t footer = checksums ? 8 : 3;
   bool right = true;
   while (size > 0) {
-    if (size < footer) return Slices::broken;
+    if (size < footer) return SliceState::broken;
     const std::uint8_t* at = bytes + size - footer;
     const std::size_t slice = (std::size_t{at[0]} << 16 | std::size_t{at[1]} << 8 | at[2]) + footer;
-    if (slice > size) return Slices::broken;
+    if (slice > size) return SliceState::broken;
     size -= slice;
     right = right &&
             (!checksums || av::api().av_crc(av::api().av_crc_get_table(AV_CRC_32_IEEE), 0, bytes + size, slice) == 0);
   }
-  return right ? Slices::right : Slices::wrong;
+  return right ? SliceState::right : SliceState::wrong;
 }
 
 }  // namespace
@@ -103,9 +103,9 @@ struct VideoReader::State {
     ++packets;
     if (codec->codec_id != AV_CODEC_ID_FFV1 || codec->extradata_size == 0) return;  // before version 3: no slices
     const auto size = static_cast<std::size_t>(packet->size);
-    Slices judged = judged_slices(packet->data, size, true);
-    if (judged == Slices::broken) judged = judged_slices(packet->data, size, false);
-    if (judged == Slices::right) return;
+    SliceState judged = judged_slices(packet->data, size, true);
+    if (judged == SliceState::broken) judged = judged_slices(packet->data, size, false);
+    if (judged == SliceState::right) return;
     throw Error{Fault::data, path + ": frame " + std::to_string(packets - 1) + " is damaged; write the video again"};
   }
 

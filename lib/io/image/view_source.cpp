@@ -59,6 +59,7 @@ struct ViewSource::State {
       if (about.incomplete) leave_out(path + ": frame " + std::to_string(about.number));
     } while (about.incomplete);
     if (about.has_time) frame.time_s = about.time_s;
+    frame.time_sigma_s = about.time_sigma_s;
     const bool known = about.has_angle || stack->info().angle_step_deg != 0;
     frame.angle_deg = known ? about.angle_deg : index * needed_step();
     return true;
@@ -73,13 +74,13 @@ struct ViewSource::State {
     frame.name = path + "/" + capture_file_name(record.place);
     frame.image = to_image(read_image(frame.name));
     frame.time_s = record.t_monotonic_s;
+    frame.time_sigma_s = record.time_sigma_s.value_or(0);
     frame.angle_deg = record.angle_deg ? *record.angle_deg : static_cast<double>(record.place) * needed_step();
     return true;
   }
 
   [[nodiscard]] double needed_step() const {
-    if (step_deg == 0)
-      throw Error{Fault::usage, path + ": the frames have no angles; give their distance with --angle-step"};
+    if (step_deg == 0) throw Error{Fault::usage, path + ": the frames have no angles; give their angular step"};
     return step_deg;
   }
 };

@@ -14,7 +14,8 @@ struct CameraFrame {
   Image image;  // EXR: as stored; images and video: 0...1 of full scale
   double angle_deg = 0;
   double time_s = 0;
-  std::string name;  // for messages: "views.exr: frame 12"
+  double time_sigma_s = 0;  // shared by the frames of a capture; 0: not known
+  std::string name;         // for messages: "views.exr: frame 12"
 };
 
 class ViewSource {

@@ -17,8 +17,8 @@ namespace vam::io {
 
 namespace {
 
-std::vector<Finding> inspect_stacks(const std::string& path, bool fast) {
-  std::vector<Finding> findings;
+std::vector<ProvenanceEntry> inspect_stacks(const std::string& path, bool fast) {
+  std::vector<ProvenanceEntry> findings;
   StackReader reader(path);
   do {
     Image image;
@@ -30,8 +30,8 @@ std::vector<Finding> inspect_stacks(const std::string& path, bool fast) {
   return findings;
 }
 
-std::vector<Finding> inspect_volumes(const std::string& path, bool fast) {
-  std::vector<Finding> findings;
+std::vector<ProvenanceEntry> inspect_volumes(const std::string& path, bool fast) {
+  std::vector<ProvenanceEntry> findings;
   for (const auto& facts : check_volumes(path, fast)) {
     findings.push_back({"grid '" + facts.name + "'", !facts.seal.empty(), facts.seal, facts.history});
   }
@@ -39,7 +39,7 @@ std::vector<Finding> inspect_volumes(const std::string& path, bool fast) {
 }
 
 // A lossless video has checksums throughout, which opening it and reading its frames hold it to.
-std::vector<Finding> inspect_images(const std::string& path, FileType type, bool fast) {
+std::vector<ProvenanceEntry> inspect_images(const std::string& path, FileType type, bool fast) {
   const auto source = open_images(path, type);
   Image image;
   model::ImageInfo about;
@@ -48,13 +48,13 @@ std::vector<Finding> inspect_images(const std::string& path, FileType type, bool
   return {{type == FileType::video ? "video" : "folder of images", lossless, "", source->info().history}};
 }
 
-std::vector<Finding> inspect_text(const std::string& path) {
+std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
   constexpr std::uint64_t most_bytes = std::uint64_t{64} << 20;
   const std::string name = input_name(path);
   const std::string text = read_all(path, Content::text, most_bytes);
   if (text.empty()) throw Error{Fault::data, name + ": is empty; the program that should have written it failed"};
   if (const Json json = parse_json(text); json.is_object()) {
-    Finding finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
+    ProvenanceEntry finding{json.contains("schema") ? json["schema"].dump() : "JSON", require_seal(json, name), "", {}};
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
   }
@@ -63,7 +63,7 @@ std::vector<Finding> inspect_text(const std::string& path) {
 
 }  // namespace
 
-std::vector<Finding> inspect(const std::string& path, bool fast) {
+std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast) {
   const auto type = known_file_type(path);
   if (!type) return inspect_text(path);
   switch (*type) {
@@ -76,7 +76,7 @@ std::vector<Finding> inspect(const std::string& path, bool fast) {
   }
 }
 
-std::vector<Step> chain_of(const Finding& finding) {
+std::vector<Step> chain_of(const ProvenanceEntry& finding) {
   std::vector<Step> chain;
   for (const std::string& line : finding.history) {
     const std::string seal = chained_seal(line);

@@ -7,7 +7,7 @@
 namespace vam::io {
 
 /// One image stack, grid, video or text.
-struct Finding {
+struct ProvenanceEntry {
   std::string what;                  // "stack of 120 images", "grid 'target'"
   bool sealed = false;               // and held to it
   std::string seal;                  // 16 digits; empty where there is none, or it is not known
@@ -16,13 +16,13 @@ struct Finding {
 
 /// Reads the file, or with `fast` its headers alone. Throws Fault::data where it is not what was written, and what its
 /// readers throw. "-" is stdin.
-[[nodiscard]] std::vector<Finding> inspect(const std::string& path, bool fast);
+[[nodiscard]] std::vector<ProvenanceEntry> inspect(const std::string& path, bool fast);
 
 /// A command of a history and the seal of the file that it wrote; empty where that is not known.
 struct Step {
   std::string command;
   std::string seal;
 };
-[[nodiscard]] std::vector<Step> chain_of(const Finding& finding);
+[[nodiscard]] std::vector<Step> chain_of(const ProvenanceEntry& finding);
 
 }  // namespace vam::io

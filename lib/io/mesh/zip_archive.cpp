@@ -18,7 +18,7 @@ constexpr zip_flags_t name_flags = ZIP_FL_NOCASE;  // Open Packaging Conventions
   throw MeshProblem{"not a whole 3MF file: " + what + " (" + why + "); it is truncated or damaged"};
 }
 
-struct CloseFile {
+struct CloseZipFile {
   void operator()(zip_file_t* file) const { zip_fclose(file); }
 };
 
@@ -52,7 +52,7 @@ std::string ZipArchive::first_with(std::string_view suffix) const {
 }
 
 void ZipArchive::read(const std::string& name, const std::function<void(std::string_view)>& take) const {
-  const std::unique_ptr<zip_file_t, CloseFile> file(zip_fopen(archive_.get(), name.c_str(), name_flags));
+  const std::unique_ptr<zip_file_t, CloseZipFile> file(zip_fopen(archive_.get(), name.c_str(), name_flags));
   if (file == nullptr) damaged(name, zip_get_error(archive_.get()));
   std::vector<char> piece(std::size_t{1} << 16);
   zip_int64_t got = 0;

@@ -69,15 +69,28 @@ std::string table_beside(const CalibrationRecord& record, const char* file) {
   return path;
 }
 
+// A lag counts from the moment that the time stamps named when it was measured.
+void take_over_lag(model::Printer& printer, const CalibrationRecord& record) {
+  const Json camera = record.json->value("devices", Json::object()).value("camera", Json::object());
+  const std::string then = camera.value("stamp", "arrival");
+  const std::string now = printer.camera.stamp;
+  if (then != "arrival" && now != "auto" && then != now) {
+    throw Error{Fault::data, record.path + ": is of time stamps at the " + then + " of exposures, camera.stamp is " +
+                                 now + "; run vam-calibrate"};
+  }
+  const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
+  printer.camera.lag_ms = record.value(former ? "camera_latency" : "camera_lag");
+}
+
 /// A scan of vam-calibrate: what its record sets in the printer, and whether that is of one vial only.
-struct Scan {
+struct ScanKind {
   const char* name;
   bool of_vial;
   void (*take_over)(model::Printer& printer, const CalibrationRecord& record);
 };
 
 // In the order of precedence.
-constexpr Scan scans[] = {
+constexpr ScanKind scans[] = {
     {"edges", true,
      [](model::Printer& printer, const CalibrationRecord& record) {
        printer.projector.axis_column = record.value("axis_column");
@@ -99,10 +112,7 @@ constexpr Scan scans[] = {
      [](model::Printer& printer, const CalibrationRecord& record) {
        printer.projector.latency_ms = record.value("latency");
      }},
-    {"lag", false, [](model::Printer& printer, const CalibrationRecord& record) {
-       const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
-       printer.camera.lag_ms = record.value(former ? "camera_latency" : "camera_lag");
-     }}};
+    {"lag", false, take_over_lag}};
 
 // What a record sets is held to the ranges of the printer file, and the axis to the image.
 void require_possible(model::Printer printer, const CalibrationRecord& record) {
@@ -127,7 +137,7 @@ void require_possible(model::Printer printer, const CalibrationRecord& record) {
 const std::vector<std::string>& calibration_scans() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const Scan& scan : scans) all.emplace_back(scan.name);
+    for (const ScanKind& scan : scans) all.emplace_back(scan.name);
     return all;
   }();
   return names;
@@ -136,8 +146,7 @@ const std::vector<std::string>& calibration_scans() {
 std::string record_path(const model::Calibration& calibration, const std::string& scan, double utc_s,
                         const std::string& ending) {
   if (calibration.folder.empty()) {
-    throw Error{Fault::usage,
-                "no calibration.folder in the printer settings; name one, e.g. --set calibration.folder=DIR"};
+    throw Error{Fault::usage, "no calibration.folder in the printer settings; set one"};
   }
   std::error_code problem;
   fs::create_directories(calibration.folder, problem);
@@ -210,7 +219,7 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   const std::string name = json.value("scan", "");
   const std::string vial = json.value("vial", "");
   const bool of_vial = std::any_of(std::begin(scans), std::end(scans),
-                                   [&](const Scan& scan) { return scan.of_vial && name == scan.name; });
+                                   [&](const ScanKind& scan) { return scan.of_vial && name == scan.name; });
   if (of_vial && vial != calibration.vial) {
     return "is of vial '" + vial + "', this is '" + calibration.vial + "'; run vam-calibrate";
   }
@@ -225,11 +234,11 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
 }
 
 void apply_records(model::Printer& printer, const model::Calibration& calibration, double utc_s) {
-  for (const Scan& scan : scans) {
+  for (const ScanKind& scan : scans) {
     const auto record = current_record(calibration, scan.name);
     if (!record) continue;
     if (const std::string why = objection(*record, calibration, utc_s); !why.empty()) {
-      throw Error{Fault::data, record->path + ": " + why + ", or disable records by --set calibration.folder="};
+      throw Error{Fault::data, record->path + ": " + why + ", or disable records with an empty calibration.folder"};
     }
     try {
       scan.take_over(printer, *record);

@@ -39,7 +39,7 @@ void FlipLog::read() {
     try {
       if (event.at("event") == "display" && !flips_.empty()) flips_.back().last = true;  // another run begins
       if (event.at("event") != "flip") continue;
-      const Flip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false};
+      const LoggedFlip flip{event.at("t_monotonic_s"), event.at("frame"), event.at("angle_deg"), false};
       flips_.push_back(flip);
       if (flip.angle_deg < last_run_up_deg) continue;
       const long missed = event.value("missed", 0L);

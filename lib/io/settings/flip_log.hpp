@@ -29,7 +29,7 @@ class FlipLog {
   [[nodiscard]] long blanks() const { return blanks_; }
 
  private:
-  struct Flip {
+  struct LoggedFlip {
     double t_s;
     int frame;
     double angle_deg;
@@ -38,7 +38,7 @@ class FlipLog {
   std::string file_;
   std::ifstream stream_;
   int line_ = 0;
-  std::vector<Flip> flips_;
+  std::vector<LoggedFlip> flips_;
   long missed_ = 0;
   long blanks_ = 0;
 };

@@ -37,7 +37,7 @@ void require_angles(const std::string& path, const model::Poses& poses, int fram
                                  std::to_string(frames) + " frames; one a frame is needed"};
   }
   if (const std::string why = model::objection(poses, start_deg, step_deg); !why.empty()) {
-    throw Error{Fault::data, path + ": " + why + "; the step is 360 / --angles"};
+    throw Error{Fault::data, path + ": " + why + "; the step is 360 degrees divided by the number of stage angles"};
   }
 }
 
@@ -54,14 +54,21 @@ WobbleRecord read_wobble(const std::string& path, const model::Printer& printer,
   try {
     wobble = {record.value("wobble_mm"), record.value("wobble_phase")};
   } catch (const Json::exception&) {
-    throw refuse(
-        "knows no wobble_mm and wobble_phase; needed is a record of axis, or of edges at several stage angles");
+    throw refuse("lacks wobble_mm and wobble_phase; give a record of axis, or of edges at several stage angles");
   }
   if (!(wobble.radius_mm >= 0)) throw refuse("has a wobble of " + format_number(wobble.radius_mm) + " mm");
   // At the phase the vial is furthest along the columns, which lie along +x turned by the azimuth.
   const double azimuth_deg = scan == "axis" ? printer.camera.azimuth_deg : 0;
   wobble.lab_angle_deg = azimuth_deg + direction * wobble.lab_angle_deg;
   return wobble;
+}
+
+std::optional<double> wobble_in_force_mm(const model::Calibration& calibration) {
+  const auto record = current_record(calibration, "edges");
+  if (!record || !record->json->at("values").contains("wobble_mm")) return std::nullopt;
+  const Json& wobble = record->json->at("values").at("wobble_mm");
+  const double radius_mm = wobble.value("value", 0.0);
+  return radius_mm > 3 * wobble.value("sigma", 0.0) ? std::optional(radius_mm) : std::nullopt;
 }
 
 }  // namespace vam::io

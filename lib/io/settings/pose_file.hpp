@@ -1,6 +1,7 @@
 // Tables of poses (CSV), and the wobble that a calibration record knows.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "model/pose.hpp"
@@ -22,7 +23,11 @@ struct WobbleRecord {
   double lab_angle_deg = 0;  // direction of the vial at stage angle 0, from +x towards +y
 };
 /// From a record of `vam-calibrate edges`, which looks along the projector, or `axis`, which looks along the camera.
-/// Throws Error: no_input, data (another file, or a record that knows no wobble).
+/// Throws Error: no_input, data (another file, or a record without wobble).
 [[nodiscard]] WobbleRecord read_wobble(const std::string& path, const model::Printer& printer, int direction);
+
+/// The radius of the wobble in the edges record in force, in mm, where it is more than three standard deviations; else
+/// nothing. Throws Fault::data for a damaged record.
+[[nodiscard]] std::optional<double> wobble_in_force_mm(const model::Calibration& calibration);
 
 }  // namespace vam::io

@@ -76,7 +76,8 @@ const std::vector<PrinterField> fields{
     {"camera", "fps", at<&Printer::camera, &PrinterCamera::fps>, "frames per second", 0, 1e6, true},
     {"camera", "gain", at<&Printer::camera, &PrinterCamera::gain>, "in dB or the camera's own steps; as it has it if absent", -1e6, 1e6},
     {"camera", "black_level", at<&Printer::camera, &PrinterCamera::black_level>, "in the camera's own unit; as it has it if absent", -1e6, 1e6},
-    {"camera", "lag_ms", at<&Printer::camera, &PrinterCamera::lag_ms>, "delay from the end of an exposure to its time stamp", -10000, 10000},
+    {"camera", "stamp", at<&Printer::camera, &PrinterCamera::stamp>, "moment of an exposure that its time stamp names: auto (as the maker says), start, middle or end", 0, 0, false, {"auto", "start", "middle", "end"}},
+    {"camera", "lag_ms", at<&Printer::camera, &PrinterCamera::lag_ms>, "delay of the time stamps from that moment", -10000, 10000},
     {"camera", "index_resin", at<&Printer::camera, &PrinterCamera::index_resin>, "refractive index at the camera's wavelength", 1, 4},
     {"camera", "absorption_per_mm", at<&Printer::camera, &PrinterCamera::absorption_per_mm>, "of the resin at the camera's wavelength, natural logarithm", 0, 1e3},
     {"camera", "axis_column", at<&Printer::camera, &PrinterCamera::axis_column>, "of the rotation axis at the middle row of its images; found in the views if absent", -65536, 131072},
@@ -117,8 +118,6 @@ std::string device_objection(const PrinterField& field, const std::string& devic
   }
   return "'" + device + "': unknown device scheme; use one of " + join(known, ":, ") + ":";
 }
-
-std::string mm(double value) { return format_number(value) + " mm"; }
 
 }  // namespace
 
@@ -169,24 +168,25 @@ std::string objection(const PrinterField& field, const Slot& slot) {
 std::string contradiction(const Printer& printer) {
   const auto& [projector, vial, bath, resin, stage, camera, calibration] = printer;
   if (vial.wall_mm >= vial.radius_mm) {
-    return "vial.wall_mm " + mm(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm(vial.radius_mm);
+    return "vial.wall_mm " + mm_text(vial.wall_mm) + " leaves no room in vial.radius_mm " + mm_text(vial.radius_mm);
   }
   if (projector.min_intensity_mw_cm2 >= projector.max_intensity_mw_cm2) {
     return "projector.min_intensity_mw_cm2 " + format_number(projector.min_intensity_mw_cm2) +
            " is not below projector.max_intensity_mw_cm2 " + format_number(projector.max_intensity_mw_cm2);
   }
   if (bath.window_mm > 0 && bath.window_mm < vial.radius_mm) {
-    return "bath.window_mm " + mm(bath.window_mm) + " cuts into vial.radius_mm " + mm(vial.radius_mm);
+    return "bath.window_mm " + mm_text(bath.window_mm) + " cuts into vial.radius_mm " + mm_text(vial.radius_mm);
   }
   const auto lens_mm = columns_lens_mm(projector) ? columns_lens_mm(projector) : rows_lens_mm(projector);
   const double obstacle_mm = std::max(vial.radius_mm, bath.window_mm);
   if (lens_mm && *lens_mm <= obstacle_mm) {
-    return "the projector's lens, " + mm(*lens_mm) + " from the axis, is not outside " +
-           (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm(obstacle_mm) +
+    return "the projector's lens, " + mm_text(*lens_mm) + " from the axis, is not outside " +
+           (bath.window_mm > 0 ? "bath.window_mm " : "vial.radius_mm ") + mm_text(obstacle_mm) +
            "; its distance is lens_distance_mm, or throw_ratio x columns x pixel_mm";
   }
   if (!camera.telecentric && camera.distance_mm <= vial.radius_mm) {
-    return "camera.distance_mm " + mm(camera.distance_mm) + " is not outside vial.radius_mm " + mm(vial.radius_mm);
+    return "camera.distance_mm " + mm_text(camera.distance_mm) + " is not outside vial.radius_mm " +
+           mm_text(vial.radius_mm);
   }
   return "";
 }

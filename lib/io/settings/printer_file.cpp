@@ -153,7 +153,7 @@ void check_whole(std::string_view text, const std::string& subject) {
   const bool ours = text.starts_with(printer_head) || (!text.empty() && printer_head.starts_with(text));
   if (!ours || text.find("\n" + std::string(printer_end)) != std::string_view::npos) return;
   throw Error{Fault::data, subject + ": is cut off after " + std::to_string(text.size()) + " bytes, it has no line '" +
-                               std::string(printer_end) + "'; write it again with --print-printer"};
+                               std::string(printer_end) + "'; write it again"};
 }
 
 // Each level of nesting takes one of these, and the parser and its tables a piece of the stack for each level.
@@ -195,7 +195,7 @@ toml::table parse_value(const std::string& value) {
 }
 
 void override_one(Printer& printer, const std::string& set) {
-  const std::string subject = "--set " + set;
+  const std::string& subject = set;
   const std::size_t equals = set.find('=');
   const std::string name = set.substr(0, equals);
   const std::size_t dot = name.find('.');
@@ -241,7 +241,7 @@ std::string slurp(const std::string& file) {
 // What a person wrote has no mark of its end, but a last line that stops short is a sign.
 void warn_of_cut(const std::string& text, const std::string& file) {
   if (text.empty() && std::filesystem::is_regular_file(file)) {
-    throw Error{Fault::data, file + ": is empty; write it with --print-printer, or delete it for the defaults"};
+    throw Error{Fault::data, file + ": is empty; write it again, or delete it for the defaults"};
   }
   if (text.empty() || text.back() == '\n' || text.find(printer_end) != std::string::npos) return;
   std::vector<std::string> missing;
@@ -282,7 +282,7 @@ Printer load_printer(const std::string& file, const std::vector<std::string>& se
   for (const auto& set : sets) override_one(printer, set);
   centre_axis(printer);
   std::string subject = path;  // with several --set any of them may be the cause
-  if (path.empty() && !sets.empty()) subject = sets.size() == 1 ? "--set " + sets.front() : "printer settings";
+  if (path.empty() && !sets.empty()) subject = sets.size() == 1 ? sets.front() : "printer settings";
   check(printer, sets.empty() ? Fault::data : Fault::usage, subject);
   return printer;
 }

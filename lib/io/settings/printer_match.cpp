@@ -16,7 +16,7 @@ using model::Printer;
 
 /// What is compared, and by how much two values may differ: a calibration of the next day must not refuse a sinogram
 /// that prints as well as before.
-struct Key {
+struct MatchedKey {
   const char* name;
   double (*value)(const Printer&);
   double within;     // in the key's unit
@@ -31,7 +31,7 @@ double lens_mm(const Printer& p) {
 
 // A quarter of a pixel stays within the box of one; half a per cent of the radius is what a new calibration of the vial
 // may differ by [devices §8]; an index that is 0.002 off moves the writable radius, R / n, by 0.13 %.
-constexpr Key keys[] = {
+constexpr MatchedKey keys[] = {
     {"projector.columns", [](const Printer& p) { return 1.0 * p.projector.columns; }, 0},
     {"projector.pixel_mm", [](const Printer& p) { return p.projector.pixel_mm; }, 0, 1e-3},
     {"projector.lens_distance_mm", lens_mm, 0, 5e-3},
@@ -49,7 +49,7 @@ constexpr Key keys[] = {
     {"stage.direction", [](const Printer& p) { return 1.0 * p.stage.direction; }, 0},
 };
 
-bool alike(const Key& key, double a, double b) {
+bool alike(const MatchedKey& key, double a, double b) {
   if (a == b) return true;
   constexpr double rounding = 1 + 1e-9;
   return std::abs(a - b) <= rounding * std::max(key.within, key.share * std::max(std::abs(a), std::abs(b)));
@@ -95,7 +95,7 @@ Printer parse_settings(const std::string& text, const std::string& subject) {
 
 std::vector<std::string> light_differences(const Printer& computed_for, const Printer& now) {
   std::vector<std::string> differences;
-  for (const Key& key : keys) {
+  for (const MatchedKey& key : keys) {
     const double then = key.value(computed_for);
     const double here = key.value(now);
     if (alike(key, then, here)) continue;

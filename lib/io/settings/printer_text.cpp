@@ -20,7 +20,7 @@ std::string decimal(double value) {
   return shortest.find_first_of(".e") == std::string::npos ? shortest + ".0" : shortest;
 }
 
-struct Print {
+struct FieldText {
   std::string operator()(const int* value) const { return std::to_string(*value); }
   std::string operator()(const double* value) const { return decimal(*value); }
   std::string operator()(const std::optional<double>* value) const { return *value ? decimal(**value) : ""; }
@@ -41,7 +41,7 @@ std::string printer_toml(const model::Printer& given) {
   std::string section;
   for (const auto& field : printer_fields()) {
     if (section != field.section) text << "\n[" << (section = field.section) << "]\n";
-    std::string value = std::visit(Print{}, field.slot(printer));
+    std::string value = std::visit(FieldText{}, field.slot(printer));
     std::string line = value.empty() ? "# " + std::string(field.key) + " =" : std::string(field.key) + " = " + value;
     constexpr std::size_t comment_column = 34;
     if (line.size() < comment_column) line.append(comment_column - line.size(), ' ');
@@ -56,8 +56,8 @@ std::string printer_settings(const model::Printer& given) {
   model::Printer standard;
   std::vector<std::string> settings;
   for (const auto& field : printer_fields()) {
-    const std::string value = std::visit(Print{}, field.slot(printer));
-    if (value != std::visit(Print{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
+    const std::string value = std::visit(FieldText{}, field.slot(printer));
+    if (value != std::visit(FieldText{}, field.slot(standard))) settings.push_back(dotted_name(field) + "=" + value);
   }
   return settings.empty() ? "default" : join(settings, " ");
 }

@@ -14,6 +14,7 @@ namespace vam::io {
 
 inline constexpr std::uint64_t most_lines = 1 << 20;  // of a list
 
+/// To the parent. Throws as Sender does.
 struct Put {
   Sender& out;
   void operator()(const std::string& text) const { out.put(text); }
@@ -34,6 +35,7 @@ struct Put {
   }
 };
 
+/// From the child. Throws Fault::data for more than most_lines and for a child that ended, as Receiver does.
 struct Get {
   Receiver& in;
   void operator()(std::string& text) const { text = in.get_text(); }

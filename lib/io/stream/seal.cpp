@@ -33,10 +33,10 @@ bool parse_half(std::string_view text, std::uint64_t& half) {
 }  // namespace
 
 struct Sealer::State {
-  struct Free {
+  struct FreeHash {
     void operator()(XXH3_state_t* hash) const { XXH3_freeState(hash); }
   };
-  std::unique_ptr<XXH3_state_t, Free> hash{XXH3_createState()};
+  std::unique_ptr<XXH3_state_t, FreeHash> hash{XXH3_createState()};
 };
 
 Sealer::Sealer() : state_(std::make_unique<State>()) {

@@ -110,7 +110,7 @@ bool is_left_over(const fs::path& path) {
   int read = 0;
   const std::string name = path.filename().string();
   if (std::sscanf(name.c_str(), ".vam-%d-%u%n", &pid, &count, &read) != 2) return false;
-  if (name[static_cast<std::size_t>(read)] != '\0' && name[static_cast<std::size_t>(read)] != '.') return false;
+  if (name[read] != '\0' && name[read] != '.') return false;
   if (pid <= 0 || kill(pid, 0) == 0 || errno != ESRCH) return false;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
   const bool free = file >= 0 && flock(file, LOCK_EX | LOCK_NB) == 0;
@@ -170,7 +170,7 @@ int create_temporary_folder(const std::string& target, std::string& name, int& s
   if (made < 0 || slot < 0) return made;
   const int folder = open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) (void)flock(folder, LOCK_EX | LOCK_NB);
-  list[static_cast<std::size_t>(slot)].lock = folder;
+  list[slot].lock = folder;
   return made;
 }
 

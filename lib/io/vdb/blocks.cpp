@@ -57,7 +57,7 @@ void read_blocks(const std::string& path, const std::string& name,
                  const std::function<BlockTaker(const VolumeFacts&)>& begin) {
   InputFile file(path);
   openvdb::initialize();
-  const Wanted wanted{name, false};
+  const WantedGrids wanted{name, false};
   bool found = false;
   std::string names;
   read_apart(

@@ -123,7 +123,7 @@ class PassingGrid : public FloatGrid {
 // The grids of one archive after the other.
 class Archive : public openvdb::io::Archive {
  public:
-  Archive(const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
+  Archive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
       : wanted_(wanted), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
@@ -183,7 +183,7 @@ class Archive : public openvdb::io::Archive {
     }
   }
 
-  const Wanted& wanted_;
+  const WantedGrids& wanted_;
   Sender& out_;
   bool found_ = false;
   std::vector<std::shared_ptr<void>>& kept_;
@@ -191,13 +191,13 @@ class Archive : public openvdb::io::Archive {
 
 }  // namespace
 
-void pass_archives(InputFile& file, const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
+void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
   Archive archive(wanted, out, kept);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);
 }
 
-void send_archives(InputFile& file, const Wanted& wanted, Sender& out) {
+void send_archives(InputFile& file, const WantedGrids& wanted, Sender& out) {
   pass_archives(file, wanted, out, *new std::vector<std::shared_ptr<void>>);  // for ever
 }
 

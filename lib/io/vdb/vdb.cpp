@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/stream/finite.hpp"
@@ -31,7 +32,7 @@ constexpr int shift = Leaf::LOG2DIM;
 static_assert(edge == 8, "the loops over a leaf and vam-formats(7) say 8");
 
 // Slices k0 .. k0 + count - 1 as a box of voxels, and the leaf-sized blocks that it touches.
-struct Slab {
+struct LeafSlab {
   CoordBBox box;
   Coord first_block;
   Coord blocks;  // along each axis
@@ -48,12 +49,12 @@ struct Slab {
   }
 };
 
-Slab slab_of(const model::Grid& grid, const Coord& first, int k0, int count) {
+LeafSlab slab_of(const model::Grid& grid, const Coord& first, int k0, int count) {
   if (k0 < 0 || count < 0 || count > grid.nz - k0) {
     throw Error{Fault::bug, "slices " + std::to_string(k0) + " to " + std::to_string(k0 + count) + " of " +
                                 std::to_string(grid.nz) + " requested"};
   }
-  Slab slab;
+  LeafSlab slab;
   slab.box = {first.offsetBy(0, 0, k0), first.offsetBy(grid.nx - 1, grid.ny - 1, k0 + count - 1)};
   slab.first_block = slab.box.min() >> shift;
   slab.blocks = (slab.box.max() >> shift) - slab.first_block + Coord(1);
@@ -80,7 +81,7 @@ void for_rows(const CoordBBox& part, const CoordBBox& slab, const Row& row) {
 int in_leaf(int x, int y, int z) { return ((x & 7) << 6) + ((y & 7) << 3) + (z & 7); }
 
 // What a block is to become: a leaf of its own, or one value.
-struct Block {
+struct LeafBlock {
   std::unique_ptr<Leaf> leaf;
   float value = 0;
 };
@@ -105,8 +106,8 @@ Leaf::NodeMaskType active_mask(const float* values, float background) {
   return mask;
 }
 
-Block block_at(const Coord& at, const Slab& slab, const float* in, const SparseVolume::State& state,
-               ConstAccessor& accessor) {
+LeafBlock block_at(const Coord& at, const LeafSlab& slab, const float* in, const SparseVolume::State& state,
+                   ConstAccessor& accessor) {
   const float background = state.sparse->background();
   const CoordBBox part = slab.part(at);
   LeafStore::Values room;
@@ -121,9 +122,9 @@ Block block_at(const Coord& at, const Slab& slab, const float* in, const SparseV
   }
   for_rows(part, slab.box, [&](int x, int y, int z, int n, std::size_t from) {
     float* to = values + in_leaf(x, y, z);
-    for (int i = 0; i < n; ++i) to[i << 6] = in[from + static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i) to[i << 6] = in[from + i];
   });
-  Block block;
+  LeafBlock block;
   block.value = values[0];
   if (!all_finite(values, Leaf::SIZE)) {
     throw Error{Fault::bug, "a voxel of " + std::to_string(at.x()) + " " + std::to_string(at.y()) + " " +
@@ -136,7 +137,7 @@ Block block_at(const Coord& at, const Slab& slab, const float* in, const SparseV
   return block;
 }
 
-void hang_in(Block& block, const Coord& at, const SparseVolume::State& state, Accessor& accessor) {
+void hang_in(LeafBlock& block, const Coord& at, const SparseVolume::State& state, Accessor& accessor) {
   const float background = state.sparse->background();
   const Leaf* old = accessor.probeConstLeaf(at);
   if (block.leaf) {
@@ -186,7 +187,7 @@ void SparseVolume::extend_to(const model::Grid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double place = (own.origin_mm[a] - grid.origin_mm[a]) / grid.voxel_mm;
-    shift[axis] = static_cast<int>(std::lround(place));
+    shift[axis] = round_int(place);
     fits = fits && std::abs(place - shift[axis]) < 1e-3 && shift[axis] >= 0 && shift[axis] + inner[axis] <= outer[axis];
   }
   if (!fits) {
@@ -203,7 +204,7 @@ void SparseVolume::extend_to(const model::Grid& grid) {
 }
 
 void SparseVolume::read_slices(int k0, int count, float* out) const {
-  const Slab slab = slab_of(state_->grid, state_->first, k0, count);
+  const LeafSlab slab = slab_of(state_->grid, state_->first, k0, count);
   const Tree& tree = state_->sparse->constTree();
   parallel_for(slab.rows(), [&](int row) {
     ConstAccessor accessor(tree);
@@ -219,16 +220,16 @@ void SparseVolume::read_slices(int k0, int count, float* out) const {
           return;
         }
         const float* from = values + in_leaf(x, y, z);
-        for (int step = 0; step < n; ++step) out[to + static_cast<std::size_t>(step)] = from[step << 6];
+        for (int step = 0; step < n; ++step) out[to + step] = from[step << 6];
       });
     }
   });
 }
 
 void SparseVolume::write_slices(int k0, int count, const float* in) {
-  const Slab slab = slab_of(state_->grid, state_->first, k0, count);
+  const LeafSlab slab = slab_of(state_->grid, state_->first, k0, count);
   Tree& tree = state_->sparse->tree();
-  std::vector<std::vector<Block>> rows(static_cast<std::size_t>(slab.rows()));
+  std::vector<std::vector<LeafBlock>> rows(slab.rows());
   parallel_for(slab.rows(), [&](int row) {
     ConstAccessor accessor(tree);
     for (int i = 0; i < slab.blocks.x(); ++i) {
@@ -238,7 +239,7 @@ void SparseVolume::write_slices(int k0, int count, const float* in) {
   Accessor accessor(tree);
   for (int row = 0; row < slab.rows(); ++row) {
     for (int i = 0; i < slab.blocks.x(); ++i) {
-      Block& block = rows[row][i];
+      LeafBlock& block = rows[row][i];
       hang_in(block, slab.origin(row, i), *state_, accessor);
     }
   }

@@ -21,9 +21,9 @@ using openvdb::Coord;
 using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
 
-class Builder {
+class VolumeBuilder {
  public:
-  explicit Builder(Receiver& in) : in_(in) {}
+  explicit VolumeBuilder(Receiver& in) : in_(in) {}
 
   std::vector<SparseVolume> volumes;
   [[nodiscard]] const std::string& others() const { return others_; }
@@ -92,7 +92,7 @@ std::vector<SparseVolume> read_volumes(const std::string& path) {
   read_apart(
       {file.name(), file.size(), file.descriptor()}, [&](Sender& out) { send_archives(file, {}, out); },
       [&](Receiver& in) {
-        Builder builder(in);
+        VolumeBuilder builder(in);
         receive_records(in, builder);
         volumes = std::move(builder.volumes);
         others = builder.others();

@@ -1,4 +1,4 @@
-// Parallel light through resin that absorbs.
+// A and A* of parallel light through resin that absorbs, D = sum F e^{-mu s}, and its exact inverse [physics §4, §5].
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "light/make_operator.hpp"
 #include "light/operator.hpp"
-#include "light/private/inverse.hpp"
+#include "light/private/preconditioner.hpp"
 #include "tomo/projections.hpp"
 #include "tomo/radon.hpp"
 
@@ -39,8 +39,8 @@ class AttenuatedOperator final : public Operator {
   Correction correction_;
   std::vector<float> transmitted_;  // e^{-mu sqrt(R^2 - t^2)}: what is left of the light of a column at the axis' plane
   std::vector<float> amplified_;    // 1 / transmitted
-  InverseLight inverse_;
-  InverseLight clear_;       // of resin that does not absorb
+  Preconditioner inverse_;
+  Preconditioner clear_;     // of resin that does not absorb
   tomo::Projections exact_;  // with weight e^{mu u}, and the light at the wall
 };
 

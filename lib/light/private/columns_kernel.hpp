@@ -1,4 +1,4 @@
-// Columns of light from the sinogram to a tile and back, once per instruction set.
+// Copies columns of light from the sinogram to a tile and back, compiled once per instruction set.
 #pragma once
 
 namespace vam::light {

@@ -1,4 +1,4 @@
-// Opaque inserts in the light (overprinting) [CAL19 fig 4]: how far along its ray the light of a pixel reaches.
+// Shadow of opaque inserts (overprinting) [CAL19 fig 4]: how far along its ray the light of a pixel reaches.
 #pragma once
 
 #include <functional>
@@ -42,7 +42,7 @@ class InsertShadow {
 
   /// u in mm of a point of the part on the ray of that column and angle; the ray's plan view taken as level.
   [[nodiscard]] float depth_mm(double x_mm, double y_mm, int angle, int column) const {
-    const Direction& ray = rays_[at(column, angle)];
+    const PlanDirection& ray = rays_[at(column, angle)];
     return static_cast<float>(y_mm * ray.cosine - x_mm * ray.sine);
   }
 
@@ -53,7 +53,7 @@ class InsertShadow {
   [[nodiscard]] std::span<const Slab> ends() const { return ends_; }
 
  private:
-  struct Direction {
+  struct PlanDirection {
     double cosine, sine;
   };
   struct Body;
@@ -65,7 +65,7 @@ class InsertShadow {
 
   model::Grid grid_;
   std::size_t angles_ = 0;
-  std::vector<Direction> rays_;          // in plan, of a row in the middle: [column][angle]
+  std::vector<PlanDirection> rays_;      // in plan, of a row in the middle: [column][angle]
   std::vector<Slab> ends_;               // columns x angles, 16 rows
   std::vector<unsigned char> occludes_;  // [column][angle]
 };

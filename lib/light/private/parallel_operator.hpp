@@ -1,8 +1,8 @@
-// Parallel light through clear resin: tomo's matched pair.
+// A and A* of parallel light through clear resin: the matched pair of lib/tomo.
 #pragma once
 
 #include "light/operator.hpp"
-#include "light/private/inverse.hpp"
+#include "light/private/preconditioner.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -31,7 +31,7 @@ class ParallelOperator final : public Operator {
   tomo::ParallelGeometry turn_;
   tomo::ParallelGeometry rows_;  // the rows that are unknowns: half a turn when halved
   double row_angle_rad_;         // the angle a row stands for
-  InverseLight inverse_;
+  Preconditioner inverse_;
 };
 
 }  // namespace vam::light

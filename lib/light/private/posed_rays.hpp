@@ -1,9 +1,9 @@
-// The rays through voxels that stand elsewhere in every frame.
+// The rays through voxels whose pose differs from frame to frame [physics §11].
 #pragma once
 
 #include <vector>
 
-#include "light/private/vial_shift.hpp"
+#include "light/private/displaced_vial.hpp"
 #include "light/vial_setup.hpp"
 
 namespace vam::light {
@@ -22,16 +22,16 @@ class PosedRays {
   int find(const RayTable& table, double x_mm, double y_mm, int frame, const HeightScale& scale, RayNode* to) const;
 
  private:
-  struct Frame {
+  struct FramePose {
     double cosine = 1, sine = 0;  // of the part's angle
     double x_mm = 0, y_mm = 0;    // of the part in the vial
     double lift_mm = 0;
     bool shifted = false;  // the vial is
-    VialShift::Powers powers{};
+    DisplacedVial::Powers powers{};
   };
   int sense_ = 1;
-  std::vector<Frame> frames_;
-  VialShift shift_;
+  std::vector<FramePose> frames_;
+  DisplacedVial shift_;
 };
 
 }  // namespace vam::light

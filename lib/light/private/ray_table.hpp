@@ -1,6 +1,6 @@
-// Which ray of the projector lights a point of the lab, how strongly and how densely: a table over polar coordinates
-// of the plan view, made from the chief rays alone. The geometry does not depend on the stage angle, so one table
-// serves every voxel at every angle.
+// Table of the rays of the projector through a point of the laboratory, with their strength and density, over polar
+// coordinates of the plan view, made from the chief rays alone. The geometry does not depend on the stage angle, so one
+// table serves every voxel at every angle.
 #pragma once
 
 #include <array>
@@ -55,7 +55,7 @@ inline RayNode node_at(const TableNode& node, const HeightScale& scale) {
           0};
 }
 
-struct LevelRays;
+struct ChiefRayDose;
 
 using RayNodes = std::vector<RayNode, CacheAligned<RayNode>>;
 
@@ -113,8 +113,8 @@ class RayTable {
   Zone outer;          // nearest row
 
  private:
-  void fill_inner_row(const LevelRays& light, int row);
-  void fill_outer_row(const LevelRays& light, int row);
+  void fill_inner_row(const ChiefRayDose& light, int row);
+  void fill_outer_row(const ChiefRayDose& light, int row);
   [[nodiscard]] TableNode* row_of(const Zone& zone, int row, int sheet) {
     return nodes_.data() + static_cast<std::ptrdiff_t>(zone.first_row + row * zone.sheets + sheet) * directions;
   }

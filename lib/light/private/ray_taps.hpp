@@ -1,5 +1,5 @@
-// Where the voxels of a tile take light from: what the kernels hand to each other. Slices lie side by side, 16, 32 or
-// 64 of them: a chunk.
+// The projector columns and weights that light the voxels of a tile, as the kernels exchange them. Slices lie side by
+// side, 16, 32 or 64 of them: a chunk.
 #pragma once
 
 namespace vam::light {

@@ -1,4 +1,4 @@
-// Light from the columns of a tile to its voxels and back, once per instruction set.
+// Sums light from the columns of a tile to its voxels and back, compiled once per instruction set.
 #pragma once
 
 #include "light/private/ray_taps.hpp"

@@ -1,4 +1,4 @@
-// Parallel light around an opaque insert (overprinting) [CAL19 fig 4].
+// A and A* of parallel light around an opaque insert (overprinting) [CAL19 fig 4].
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "light/operator.hpp"
 #include "light/private/insert_shadow.hpp"
-#include "light/private/inverse.hpp"
+#include "light/private/preconditioner.hpp"
 #include "tomo/radon.hpp"
 
 namespace vam::light {
@@ -52,7 +52,7 @@ class ShadowedOperator final : public Operator {
   std::vector<double> depth_;  // sqrt(R^2 - t^2) of each column
   std::vector<Direction> directions_;
   InsertShadow shadow_;
-  InverseLight inverse_;  // as without shadows
+  Preconditioner inverse_;  // as without shadows
 };
 
 }  // namespace vam::light

@@ -1,4 +1,4 @@
-// Private to the simulation: its light, whole or block by block.
+// State of the simulation: its beam model, whole or block by block.
 #pragma once
 
 #include <memory>

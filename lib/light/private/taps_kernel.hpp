@@ -1,4 +1,4 @@
-// From points of the ray table to the pixels that light a voxel, once per instruction set.
+// Finds the pixels that light a voxel from points of the ray table, compiled once per instruction set.
 #pragma once
 
 #include "light/private/ray_taps.hpp"

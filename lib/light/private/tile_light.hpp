@@ -1,4 +1,4 @@
-// The light on a tile of voxel columns: a working space for the vial's pair, one a thread.
+// The light on a tile of voxel columns: working memory of the vial operator, one per thread.
 #pragma once
 
 #include <span>
@@ -42,6 +42,7 @@ class TileLight {
   void enter(int tile, const Tile& rays, const Chunk& chunk);
   /// What the voxels take and give from now on.
   void clear_voxels() { std::fill(voxels_.begin(), voxels_.end(), 0.0F); }
+  /// Those that have anything to give: the others and their rays are left out.
   void load_voxels(const Window<const Slab>& objects);
   void store_voxels(const Window<Slab>& objects) const;
 
@@ -57,6 +58,7 @@ class TileLight {
   bool find_taps(const RayNodes& nodes, int angle, const SlabRange& rows);
   bool find_posed_taps(int frame);
   void make_room(std::size_t pitch);
+  void keep_bright();
   template <class SlabType, class Visit>
   void each_piece(int angle, const Window<SlabType>& sinograms, const Visit& visit) const;
   void fetch(int angle, const Window<const Slab>& sinograms);
@@ -73,6 +75,7 @@ class TileLight {
   Chunk chunk_{};
   int i0_ = 0, i1_ = 0, j0_ = 0, j1_ = 0;
   const Tile* tile_ = nullptr;
+  Tile bright_;  // of tile_, where voxels give
   RayTaps taps_{};
   int row_ = 0;      // of the light that the tile's columns begin with
   int rows_ = 0;     // floats of a column

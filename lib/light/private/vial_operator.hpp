@@ -1,17 +1,17 @@
-// Light of the real projector: chief rays that diverge, climb, are refracted by bath, glass and resin, and converge in
-// the vial. What is optimised with it needs no resampling.
+// A and A* of the real projector: chief rays that diverge, climb, are refracted by bath, glass and resin, and converge
+// in the vial. Sinograms that are optimised with it need no resampling.
 #pragma once
 
 #include "light/operator.hpp"
 #include "light/private/insert_shadow.hpp"
-#include "light/private/inverse.hpp"
+#include "light/private/preconditioner.hpp"
 #include "light/private/tile_light.hpp"
 #include "light/private/vial_rays.hpp"
 
 namespace vam::light {
 
 /// A sinogram has the columns of the projector that light the circle, and all stage angles: opposite rays run through
-/// the vial on different lines. A* is the chief-ray dose of LevelRays and its skew rays [physics §4, §11]; A, its
+/// the vial on different lines. A* is the sum of chief_ray_dose.hpp and skew_ray_dose.hpp [physics §4, §11]; A, its
 /// transpose, takes the same weights. A projector whose rays climb lights slices with the rows of others: slices and
 /// rows of a pass are then the whole grid's, and rows beyond setup.rows, slices beyond grid.nz are dark. A projector
 /// whose rays stay level lights each slice with its own row, and any slices may share a pass.
@@ -30,6 +30,7 @@ class VialOperator final : public Operator {
   void forward(std::span<const Slab> objects, std::span<Slab> sinograms) const override;
   void adjoint(std::span<const Slab> sinograms, std::span<Slab> objects) const override;
   [[nodiscard]] SlabRange lit_by(const SlabRange& objects) const override;
+  void forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const override;
   void adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const override;
   void filter(std::span<Slab> sinograms) const override { inverse_.filter(sinograms); }
   void precondition(std::span<Slab> sinograms) const override { inverse_.precondition(sinograms); }
@@ -44,7 +45,7 @@ class VialOperator final : public Operator {
   std::vector<Tile> tiles_;
   InsertShadow shadow_;
   RayNodes level_;  // of every chunk, where rays do not climb
-  InverseLight inverse_;
+  Preconditioner inverse_;
 };
 
 }  // namespace vam::light

@@ -1,4 +1,4 @@
-// Which columns and rows of the projector light a voxel of the turning vial, and how strongly.
+// Columns and rows of the projector that light a voxel of the turning vial, and their weights.
 #pragma once
 
 #include <vector>
@@ -76,11 +76,11 @@ class VialRays {
 
  private:
   /// How the part stands, as RayFrame has it.
-  struct Standing {
+  struct PartTurn {
     int shift, step, directions;
     float cosine, sine;
   };
-  void take_from(const RayNodes& nodes, const RaySource* rays, int count, const Standing& part, int slices,
+  void take_from(const RayNodes& nodes, const RaySource* rays, int count, const PartTurn& part, int slices,
                  RayTaps& taps) const;
   [[nodiscard]] int sense() const { return (setup_.turn.step_rad < 0 ? 1 : -1) * setup_.direction; }
   [[nodiscard]] double height_mm(double slice) const { return setup_.z_scale * setup_.grid.z_mm(slice); }

@@ -73,7 +73,7 @@ CameraAxis find_camera_axis(const TurnScan& scan) {
     b.push_back(fit.measured(sin_1));
   }
   if (column.empty()) {
-    throw Error{Fault::data, "axis: no height shows a single bright object in three quarters of " +
+    throw Error{Fault::data, "axis: at no height is there a single bright object in three quarters of " +
                                  std::to_string(scan.angle_deg.size()) + " frames"};
   }
   out.bands = static_cast<int>(column.size());

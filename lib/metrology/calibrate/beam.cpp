@@ -7,6 +7,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/stats/curve_fit.hpp"
+#include "base/stats/normal.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/ost/ost.hpp"
@@ -31,12 +32,13 @@ stats::Measured gaussian_width(const std::vector<double>& profile, const std::st
   const auto rough = half_maximum(profile);
   if (!rough) throw Error{Fault::data, subject + ": no bright line between two dark sides; light one row and focus"};
   enum : std::size_t { middle, sigma, light, ground };
-  const auto upto = [](double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); };
   const auto residuals = [&](const std::vector<double>& p) {
     std::vector<double> out;
     for (std::size_t i = 0; i < profile.size(); ++i) {
       const double from = static_cast<double>(i) - 0.5 - p[middle];
-      out.push_back(profile[i] - p[ground] - p[light] * (upto((from + 1) / p[sigma]) - upto(from / p[sigma])));
+      out.push_back(profile[i] - p[ground] -
+                    p[light] *
+                        (stats::normal_integral((from + 1) / p[sigma]) - stats::normal_integral(from / p[sigma])));
     }
     return out;
   };
@@ -94,15 +96,15 @@ stats::Measured line_width_px(const Image& image, const std::string& subject) {
 
 BeamWidths side_widths(const Image& image, const SideView& view, const model::Printer& printer, int planes) {
   if (std::abs(std::cos(printer.camera.azimuth_deg * rad_per_deg)) > std::sin(10 * rad_per_deg)) {
-    throw Error{Fault::data, "beam: the camera looks at " + format_number(printer.camera.azimuth_deg) +
-                                 " degrees to the beam; planes are resolved at 90 only (camera.azimuth_deg)"};
+    throw Error{Fault::data, "beam: the camera is at " + format_number(printer.camera.azimuth_deg) +
+                                 " degrees to the beam; planes are resolved only at 90 (camera.azimuth_deg)"};
   }
   const auto [inside, plane_mm] = middle_columns(view, image.width, printer);
   const int count = std::min(planes, static_cast<int>(inside.size()) / least_columns);
   if (count < 4) {
     throw Error{Fault::data, "beam: the resin's middle is " + std::to_string(inside.size()) +
                                  " columns wide; at least " + std::to_string(4 * least_columns) +
-                                 " are needed: a smaller --binning"};
+                                 " are required; reduce the binning"};
   }
   const double row_mm = view.pixel_mm / model::camera_magnification(printer);
   BeamWidths widths;
@@ -121,6 +123,20 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
   }
   return widths;
 }
+
+namespace {
+
+/// The largest growth of the width per distance from the narrowest plane.
+double steepest(const BeamWidths& widths, double focus_mm, double narrowest_mm) {
+  double growth = 0;
+  for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
+    const double away = std::abs(widths.plane_mm[i] - focus_mm);
+    if (away > 0) growth = std::max(growth, (widths.fwhm_mm[i].value - narrowest_mm) / away);
+  }
+  return growth;
+}
+
+}  // namespace
 
 MeasuredBeam measure_beam(const BeamWidths& widths) {
   const auto narrowest =
@@ -143,11 +159,7 @@ MeasuredBeam measure_beam(const BeamWidths& widths) {
     return out;
   };
   const double focus_mm = widths.plane_mm[narrowest - widths.fwhm_mm.begin()];
-  double growth_start = 0;
-  for (std::size_t i = 0; i < widths.plane_mm.size(); ++i) {
-    const double away = std::abs(widths.plane_mm[i] - focus_mm);
-    if (away > 0) growth_start = std::max(growth_start, (widths.fwhm_mm[i].value - narrowest->value) / away);
-  }
+  const double growth_start = steepest(widths, focus_mm, narrowest->value);
   const double scale = narrowest->value;
   const auto fit =
       stats::fit_curve(residuals, {scale, focus_mm, std::max(growth_start, 1e-4)}, {1e-4 * scale, 1e-3, 1e-6},

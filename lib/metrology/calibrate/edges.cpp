@@ -29,7 +29,7 @@ double radius_mm(const model::Printer& printer, double edge_px) {
 void require_camera_beside(double azimuth_deg) {
   const double from_light_deg = std::acos(std::cos(azimuth_deg * rad_per_deg)) * deg_per_rad;
   if (from_light_deg >= nearest_deg - 1e-9 && from_light_deg <= furthest_deg + 1e-9) return;
-  throw Error{Fault::data, "sweep: the camera looks at " + format_number(azimuth_deg) +
+  throw Error{Fault::data, "sweep: the camera is at " + format_number(azimuth_deg) +
                                " degrees to the beam; edges are detected from " + format_number(nearest_deg) + " to " +
                                format_number(furthest_deg) + " on either side (camera.azimuth_deg)"};
 }
@@ -47,9 +47,9 @@ std::vector<LitBand> lit_bands(const SweepScan& scan) {
     if (edges.clear) lit.push_back({b, edges});
   }
   if (!lit.empty()) return lit;
-  throw Error{Fault::data, "sweep: no height shows light between two dark sides in " +
+  throw Error{Fault::data, "sweep: at no height is there light between two dark sides in " +
                                std::to_string(scan.column.size()) +
-                               " frames; sweep beyond both edges of the vial, with the camera exposed"};
+                               " frames; sweep beyond both edges of the vial, and expose the camera longer"};
 }
 
 /// Centre of each lit band, and the means of what they all have.

@@ -13,8 +13,6 @@ namespace {
 
 constexpr float dead_below = 0.2F;
 
-std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
-
 double mean_of(const Image& image) {
   double sum = 0;
   for (const float value : image.values) sum += value;

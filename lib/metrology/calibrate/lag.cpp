@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
 
@@ -29,17 +30,28 @@ double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<
   return common / spread;
 }
 
+std::vector<double> phase_weights(const std::vector<double>& angle_deg, double phase_deg) {
+  std::vector<double> weight;
+  double sum = 0;
+  for (const double angle : angle_deg) {
+    weight.push_back(std::pow(std::sin((angle - phase_deg) * rad_per_deg), 2));
+    sum += weight.back();
+  }
+  for (double& part : weight) part /= sum;
+  return weight;
+}
+
 stats::Measured camera_lag_ms(const CameraAxis& forwards, double forwards_deg_s, const CameraAxis& backwards,
                               double backwards_deg_s) {
   for (const double speed_deg_s : {forwards_deg_s, backwards_deg_s}) {
     if (speed_deg_s > 0) continue;
-    throw Error{Fault::data, "lag: the stage turns by " + format_number(speed_deg_s, 4) +
+    throw Error{Fault::data, "lag: the stage rotates at " + format_number(speed_deg_s, 4) +
                                  " deg/s; capture one turn with vam-stage spin and one with --direction reversed"};
   }
   for (const auto* turn : {&forwards, &backwards}) {
     if (turn->phase_deg.sigma <= needed_phase_sigma_deg) continue;
-    throw Error{Fault::data, "lag: nothing is seen that turns: the phase of its circle is uncertain by " +
-                                 format_number(turn->phase_deg.sigma, 3) + " degrees; put a bead off the axis"};
+    throw Error{Fault::data, "lag: no object turns with the stage: the phase of its circle is uncertain by " +
+                                 format_number(turn->phase_deg.sigma, 3) + " degrees; place a bead off the axis"};
   }
   const double both_deg = std::remainder(forwards.phase_deg.value + backwards.phase_deg.value, 360.0);
   const double sigma_deg = std::hypot(forwards.phase_deg.sigma, backwards.phase_deg.sigma);

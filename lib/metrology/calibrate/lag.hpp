@@ -12,6 +12,10 @@ namespace vam::metrology {
 /// Degrees a second of the straight line through the angles; at least two different times. Throws Fault::data.
 [[nodiscard]] double turning_speed_deg_s(const std::vector<double>& time_s, const std::vector<double>& angle_deg);
 
+/// By how much a circle's phase follows an error of each frame's angle: frames at which the bead moves sideways count.
+/// The sum is 1.
+[[nodiscard]] std::vector<double> phase_weights(const std::vector<double>& angle_deg, double phase_deg);
+
 /// Milliseconds by which the time stamps of both turns are late; negative: early. A bead furthest towards high columns
 /// at the stage's own angle phi is so at the reported angles phi + speed * lag and, backwards, -phi + speed * lag, as
 /// reported angles increase either way. Speeds in deg/s, above 0. Throws Fault::data when a speed is not, or the phase

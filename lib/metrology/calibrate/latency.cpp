@@ -76,14 +76,15 @@ Latency measure_latency(const BlinkScan& scan) {
   const auto parts = lit_parts(scan, best_s);
   const double scatter = std::sqrt(best.misfit / static_cast<double>(parts.size()));
   if (!(best.light > 5 * scatter)) {
-    throw Error{Fault::data, "latency: the camera does not see the screen blink; light " +
+    throw Error{Fault::data, "latency: the blinking screen is not visible to the camera; light " +
                                  format_number(best.light, 3) + ", scatter " + format_number(scatter, 3)};
   }
   const auto partial =
       std::count_if(parts.begin(), parts.end(), [](double part) { return part > 0.02 && part < 0.98; });
   if (partial < 2) {
-    throw Error{Fault::data,
-                "latency: no frame was exposed across a flip; blink at a rate that is no multiple of the frame rate"};
+    throw Error{
+        Fault::data,
+        "latency: no frame was exposed across a flip; blink with a period that is not a multiple of the frame period"};
   }
   const auto residuals = [&](const std::vector<double>& p) {
     auto out = lit_parts(scan, 1e-3 * p[0]);

@@ -70,6 +70,19 @@ std::vector<stats::Measured> monotone(const std::vector<stats::Measured>& levels
   return out;
 }
 
+// A camera that clips, at whichever value, reads the same for the brightest levels.
+void require_rising_end(const std::vector<double>& grey, const std::vector<stats::Measured>& levels) {
+  constexpr double same = 1e-3;      // of full: far below the noise of a camera, which clipping takes away
+  constexpr double shortest = 0.06;  // of the grey range: one of 16 steps; a response of gamma 0.45 rises by 3 % there
+  const double full = levels.back().value;
+  std::size_t first = levels.size() - 1;
+  while (first > 0 && std::abs(levels[first - 1].value - full) <= same * full) --first;
+  if (grey.back() - grey[first] < shortest * grey.back()) return;
+  throw Error{Fault::data, "response: grey " + format_number(grey[first]) + " to " + format_number(grey.back()) +
+                               " have the same reading, " + format_number(full) +
+                               "; the camera saturates, shorten the exposure"};
+}
+
 }  // namespace
 
 ResponseCurve measure_response(const ResponseScan& scan) {
@@ -82,6 +95,7 @@ ResponseCurve measure_response(const ResponseScan& scan) {
     throw Error{Fault::data, "response: full grey reads " + format_number(full.value) + " and black " +
                                  format_number(risen.front().value) + "; no light reaches the camera"};
   }
+  require_rising_end(scan.grey, means);
   ResponseCurve curve;
   curve.grey = scan.grey;
   for (std::size_t i = 0; i < risen.size(); ++i) {
@@ -89,7 +103,7 @@ ResponseCurve measure_response(const ResponseScan& scan) {
       throw Error{Fault::data, "response: the intensity falls by " +
                                    format_number(100 * std::abs(means[i].value - risen[i].value) / full.value, 3) +
                                    " % of full around grey " + format_number(scan.grey[i]) +
-                                   "; let the lamp warm up, or the camera saturates"};
+                                   "; let the lamp warm up, or shorten the exposure of a saturated camera"};
     }
     const bool last = risen[i].value >= full.value;
     const double part = std::max(risen[i].value, 0.0) / full.value;

@@ -21,7 +21,8 @@ struct ResponseCurve {
 
 /// The mean of each level's readings, made monotone by least squares (pool adjacent violators). Sigma is the standard
 /// error of the readings, by Student's t. Throws Fault::data: fewer than 17 levels or 3 readings a level, levels that
-/// do not rise from 0, no light, or readings that fall against grey by more than the readings' scatter explains.
+/// do not rise from 0, no light, readings that fall against grey by more than the readings' scatter explains, or that
+/// are the same from one of the last levels on, as those of a camera that saturates.
 [[nodiscard]] ResponseCurve measure_response(const ResponseScan& scan);
 
 }  // namespace vam::metrology

@@ -18,7 +18,7 @@ double quantile(const std::vector<double>& sorted, double part) {
   return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
-Json to_json(const Deviation& d, double size_mm) {
+Json to_json(const SurfaceDeviation& d, double size_mm) {
   Json json{{"samples", d.samples},
             {"rms_mm", d.rms_mm},
             {"rms_percent", 100 * d.rms_mm / size_mm},
@@ -35,11 +35,11 @@ Json to_json(const Deviation& d, double size_mm) {
 
 }  // namespace
 
-Deviation deviation(std::span<const float> distances_mm) {
+SurfaceDeviation deviation(std::span<const float> distances_mm) {
   if (distances_mm.empty()) throw Error{Fault::data, "no surface to measure: the print has no area"};
   std::vector<double> sorted(distances_mm.begin(), distances_mm.end());
   std::sort(sorted.begin(), sorted.end());
-  Deviation d;
+  SurfaceDeviation d;
   d.samples = sorted.size();
   const auto n = static_cast<double>(sorted.size());
   for (const double x : sorted) {

@@ -14,7 +14,7 @@ namespace vam::metrology {
 
 /// Statistics of signed distances in mm, positive where the print stands outside the design. Of samples of equal
 /// area: vertices would weight a surface by how finely it is meshed.
-struct Deviation {
+struct SurfaceDeviation {
   std::size_t samples = 0;
   double rms_mm = 0;
   double mean_mm = 0;
@@ -27,13 +27,13 @@ struct Deviation {
 };
 
 /// Throws Fault::data when there are no distances.
-[[nodiscard]] Deviation deviation(std::span<const float> distances_mm);
+[[nodiscard]] SurfaceDeviation deviation(std::span<const float> distances_mm);
 
 /// Both directions: print to design, and design to print with the sign turned so that positive still means
 /// "print outside the design"; what is missing in the print shows only in the second.
 struct Comparison {
-  Deviation print_to_design;
-  Deviation design_to_print;
+  SurfaceDeviation print_to_design;
+  SurfaceDeviation design_to_print;
   double hausdorff_mm = 0;
   double largest_dimension_mm = 0;  // of the design; percentages refer to it
   std::vector<float> samples_mm;    // print to design, for the histogram

@@ -13,7 +13,7 @@ namespace vam::metrology {
 
 namespace {
 
-struct Plane {
+struct BasePlane {
   double at_middle = 0;
   double per_column = 0;
   double per_row = 0;
@@ -55,7 +55,7 @@ double otsu(const std::vector<float>& values) {
 
 // Least squares over the pixels with a reading for which use(pixel, height) holds.
 template <class Use>
-Plane fit_plane(const Image& heights, const Use& use) {
+BasePlane fit_plane(const Image& heights, const Use& use) {
   std::array<double, 6> s{};  // 1, x, y, xx, xy, yy
   std::array<double, 3> r{};
   const double mx = 0.5 * (heights.width - 1);
@@ -83,7 +83,7 @@ Plane fit_plane(const Image& heights, const Use& use) {
           (r[0] * c2 - r[1] * d1 + r[2] * d2) / determinant};
 }
 
-double plane_at(const Plane& plane, const Image& image, int i, int j) {
+double plane_at(const BasePlane& plane, const Image& image, int i, int j) {
   return plane.at_middle + plane.per_column * (i - 0.5 * (image.width - 1)) +
          plane.per_row * (j - 0.5 * (image.height - 1));
 }
@@ -95,7 +95,7 @@ std::vector<float> readings(const Image& image) {
   return values;
 }
 
-Image without(const Plane& plane, const Image& heights) {
+Image without(const BasePlane& plane, const Image& heights) {
   Image flat = heights;
   for (int j = 0; j < flat.height; ++j) {
     for (int i = 0; i < flat.width; ++i) flat(i, j) -= static_cast<float>(plane_at(plane, heights, i, j));
@@ -152,7 +152,7 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
     throw Error{Fault::data, "height image: only " + std::to_string(values.size()) + " of " +
                                  std::to_string(heights_mm.size()) + " pixels are readings"};
   }
-  Plane base = fit_plane(heights_mm, [](int, int, double) { return true; });
+  BasePlane base = fit_plane(heights_mm, [](int, int, double) { return true; });
   for (int round = 0; round < 12; ++round) {
     const double limit = otsu(readings(without(base, heights_mm)));
     base = fit_plane(heights_mm, [&](int i, int j, double h) { return h - plane_at(base, heights_mm, i, j) < limit; });

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 
@@ -18,17 +19,17 @@ double wrapped(double angle_deg) {
 }
 
 // Frames at one angle.
-struct Cluster {
+struct AngleCluster {
   double angle_deg;
   std::vector<int> frames;
 };
 
-std::vector<Cluster> clusters_of(std::span<const double> angles_deg, double closer_deg) {
+std::vector<AngleCluster> clusters_of(std::span<const double> angles_deg, double closer_deg) {
   std::vector<int> order(angles_deg.size());
   std::iota(order.begin(), order.end(), 0);
   const auto angle = [&](int i) { return wrapped(angles_deg[i]); };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return angle(a) < angle(b); });
-  std::vector<Cluster> clusters;
+  std::vector<AngleCluster> clusters;
   for (const int i : order) {
     if (clusters.empty() || angle(i) - clusters.back().angle_deg > closer_deg) clusters.push_back({angle(i), {}});
     clusters.back().frames.push_back(i);
@@ -41,7 +42,7 @@ std::vector<Cluster> clusters_of(std::span<const double> angles_deg, double clos
   return clusters;
 }
 
-std::vector<double> gaps_of(const std::vector<Cluster>& clusters) {
+std::vector<double> gaps_of(const std::vector<AngleCluster>& clusters) {
   std::vector<double> gaps;
   for (std::size_t i = 0; i < clusters.size(); ++i) {
     const double next = i + 1 < clusters.size() ? clusters[i + 1].angle_deg : clusters[0].angle_deg + 360;
@@ -54,12 +55,12 @@ std::vector<double> gaps_of(const std::vector<Cluster>& clusters) {
 
 AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_gap_deg) {
   constexpr int fewest = 8;
-  std::vector<Cluster> clusters = clusters_of(angles_deg, 1e-6);
-  if (static_cast<int>(clusters.size()) < fewest) {
+  std::vector<AngleCluster> clusters = clusters_of(angles_deg, 1e-6);
+  if (count_of(clusters) < fewest) {
     throw Error{Fault::data, "views: " + std::to_string(clusters.size()) + " different angles; a turn needs at least " +
                                  std::to_string(fewest)};
   }
-  if (angles == 0) angles = std::max(fewest, 2 * static_cast<int>(std::lround(180 / stats::median(gaps_of(clusters)))));
+  if (angles == 0) angles = std::max(fewest, 2 * round_int(180 / stats::median(gaps_of(clusters))));
   clusters = clusters_of(angles_deg, 36.0 / angles);
   const std::vector<double> gaps = gaps_of(clusters);
   const auto widest = static_cast<std::size_t>(std::max_element(gaps.begin(), gaps.end()) - gaps.begin());
@@ -68,18 +69,18 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
                                  " deg after " + format_number(clusters[widest].angle_deg, 4) + " deg (" +
                                  format_number(max_gap_deg, 4) + " deg is the maximum gap)"};
   }
-  summary_ = {angles, static_cast<int>(angles_deg.size()),
-              static_cast<int>(angles_deg.size()) - static_cast<int>(clusters.size())};
+  summary_ = {angles, count_of(angles_deg), count_of(angles_deg) - count_of(clusters)};
   taps_.resize(angles);
   for (int a = 0; a < angles; ++a) {
     const double angle = 360.0 * a / angles;
     // The last cluster at or below the angle; before the first one that is the last of all, over the circle.
-    const auto above = std::upper_bound(clusters.begin(), clusters.end(), angle,
-                                        [](double value, const Cluster& cluster) { return value < cluster.angle_deg; });
+    const auto above =
+        std::upper_bound(clusters.begin(), clusters.end(), angle,
+                         [](double value, const AngleCluster& cluster) { return value < cluster.angle_deg; });
     const std::size_t before =
         (static_cast<std::size_t>(above - clusters.begin()) + clusters.size() - 1) % clusters.size();
-    const Cluster& low = clusters[before];
-    const Cluster& high = clusters[(before + 1) % clusters.size()];
+    const AngleCluster& low = clusters[before];
+    const AngleCluster& high = clusters[(before + 1) % clusters.size()];
     const double part = wrapped(angle - low.angle_deg) / gaps[before];
     auto& taps = taps_[a];
     for (const int i : low.frames)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
 #include "metrology/ost/private/climb_kernel.hpp"
@@ -26,26 +27,26 @@ constexpr int angles_together = 4;
 constexpr double most_climb = 0.06;  // of a height from the axis to the rim, so that vectors of 16 can follow
 constexpr int widest = 14;           // detector columns that a tile sees: 7 sqrt(2) + 3
 
-struct Kernels {
+struct ClimbKernels {
   decltype(&baseline::climb_columns) climb;
   decltype(&baseline::place_tile) place;
   decltype(&baseline::add_tile) add;
 };
 
-Kernels kernels() {
+ClimbKernels kernels() {
   const Simd level = simd_level();
   return {VAM_KERNEL(climb_columns, level), VAM_KERNEL(place_tile, level), VAM_KERNEL(add_tile, level)};
 }
 
 // Detector values about a stretch of heights as [angle][column][height]; 0 where there are none.
-class Detector {
+class DetectorStretch {
  public:
-  Detector(const ClimbingRays& rays, const std::vector<Slab>& filtered, int first, int heights)
+  DetectorStretch(const ClimbingRays& rays, const std::vector<Slab>& filtered, int first, int heights)
       : columns_(rays.columns), length_((heights + 2 * spare + lanes - 1) / lanes * lanes) {
     values_.resize(static_cast<std::size_t>(start(rays.angles, -beside)));
     parallel_for(rays.angles, [&](int a) {
       const int begin = std::max(first - spare, 0);
-      const int end = std::min(first - spare + length_, static_cast<int>(filtered.size()) * lanes);
+      const int end = std::min(first - spare + length_, count_of(filtered) * lanes);
       for (int t = 0; t < columns_; ++t) {
         float* to = values_.data() + start(a, t) - (first - spare);
         for (int k = begin; k < end;) {
@@ -80,10 +81,10 @@ struct Scratch {
   std::array<float, tile_columns> gain{};
 };
 
-class Job {
+class BackProjection {
  public:
   /// The detector begins at slice `first`.
-  Job(const ClimbingRays& rays, const Detector& detector, int first, const model::Grid& grid)
+  BackProjection(const ClimbingRays& rays, const DetectorStretch& detector, int first, const model::Grid& grid)
       : rays_(rays), detector_(detector), first_(first), grid_(grid), kernels_(kernels()) {
     for (int a = 0; a < rays.angles; ++a) {
       const double theta = 2 * std::numbers::pi * a / rays.angles;
@@ -111,17 +112,17 @@ class Job {
  private:
   // The detector columns of one angle at the heights of the tile's middle, and each voxel column's place among them.
   void prepare(int angle, int m, int x0, int y0, int slice, int heights, Scratch& scratch) const {
-    const auto [c, s] = directions_[static_cast<std::size_t>(angle)];
+    const auto [c, s] = directions_[angle];
     const double x = grid_.x_mm(x0) / grid_.voxel_mm;
     const double y = grid_.y_mm(y0) / grid_.voxel_mm;
     constexpr double reach = tile - 1;
     const double t_first = x * c + y * s + 0.5 * (rays_.columns - 1);
-    const int left = static_cast<int>(std::floor(t_first + std::min(0.0, c * reach) + std::min(0.0, s * reach)));
+    const int left = floor_int(t_first + std::min(0.0, c * reach) + std::min(0.0, s * reach));
     const int seen = std::min(widest, 3 + static_cast<int>((std::abs(c) + std::abs(s)) * reach));
     const double u_mm = (-(x + 0.5 * reach) * s + (y + 0.5 * reach) * c) * grid_.voxel_mm;
     const double zero = -grid_.origin_mm[2] / grid_.voxel_mm;  // slice of height 0
     const int column = std::clamp(left + seen / 2, 0, rays_.columns - 1);
-    const double part = std::clamp(rays_.rate_per_mm[static_cast<std::size_t>(column)] * u_mm, -most_climb, most_climb);
+    const double part = std::clamp(rays_.rate_per_mm[column] * u_mm, -most_climb, most_climb);
     const double slope = 1 / (1 + part);
     kernels_.climb({detector_.at(angle, left), detector_.stride(), seen, zero + (slice - zero) * slope - first_, slope,
                     heights, scratch.shifted.data() + Index{m} * widest * climb_heights});
@@ -132,21 +133,20 @@ class Job {
       for (int q = 0; q < tile_columns; ++q) {
         const int right = q % tile;
         const int up = q / tile;
-        scratch.gain[static_cast<std::size_t>(q)] =
-            static_cast<float>(rays_.scale * std::exp(rate * (-(x + right) * s + (y + up) * c)));
+        scratch.gain[q] = static_cast<float>(rays_.scale * std::exp(rate * (-(x + right) * s + (y + up) * c)));
       }
     }
-    const auto entry = static_cast<std::size_t>(m) * tile_columns;
+    const auto entry = product(m, tile_columns);
     kernels_.place({static_cast<float>(t_first - left), static_cast<float>(c), static_cast<float>(s), tile,
                     static_cast<float>(seen) - 2, scratch.gain.data(), scratch.base.data() + entry,
                     scratch.low.data() + entry, scratch.high.data() + entry});
   }
 
   const ClimbingRays& rays_;
-  const Detector& detector_;
+  const DetectorStretch& detector_;
   int first_;
   const model::Grid& grid_;
-  Kernels kernels_;
+  ClimbKernels kernels_;
   std::vector<std::array<double, 2>> directions_;
 };
 
@@ -157,9 +157,8 @@ void put(const Scratch& scratch, int x0, int y0, int slice, int count, int colum
   for (int j = y0; j < std::min(y0 + block, g.ny); ++j) {
     const double half_mm = std::sqrt(std::max(0.0, (radius_mm - g.y_mm(j)) * (radius_mm + g.y_mm(j))));
     for (int x = x0; x < std::min(x0 + block, g.nx); x += tile) {
-      const int first = std::max(x, static_cast<int>(std::ceil((-half_mm - g.origin_mm[0]) / g.voxel_mm)));
-      const int last =
-          std::min({x + tile - 1, g.nx - 1, static_cast<int>(std::floor((half_mm - g.origin_mm[0]) / g.voxel_mm))});
+      const int first = std::max(x, ceil_int((-half_mm - g.origin_mm[0]) / g.voxel_mm));
+      const int last = std::min({x + tile - 1, g.nx - 1, floor_int((half_mm - g.origin_mm[0]) / g.voxel_mm)});
       const int n = (j - y0) / tile * tiles_across + (x - x0) / tile;
       const float* from =
           scratch.sums.data() + (Index{n} * tile_columns + Index{(j - y0) % tile} * tile) * climb_heights;
@@ -179,7 +178,7 @@ int heights_beyond(const ClimbingRays& rays, const model::Grid& grid) {
   const double radius_mm = 0.5 * rays.columns * grid.voxel_mm;
   const double farthest = std::max(std::abs(grid.z_mm(0)), std::abs(grid.z_mm(grid.nz - 1))) / grid.voxel_mm;
   const double part = std::min(most_climb, steepest * radius_mm);
-  return 2 + static_cast<int>(std::ceil(farthest * part / (1 - part)));
+  return 2 + ceil_int(farthest * part / (1 - part));
 }
 
 void back_project(const ClimbingRays& rays, const std::vector<Slab>& filtered, int beyond, int first, int count,
@@ -191,8 +190,8 @@ void back_project(const ClimbingRays& rays, const std::vector<Slab>& filtered, i
   for (int from = 0; from < count; from += climb_heights) {
     const int slices = std::min(climb_heights, count - from);
     const int heights = (slices + climb_step - 1) / climb_step * climb_step;
-    const Detector detector(rays, filtered, from, heights + 2 * beyond);
-    const Job job(rays, detector, first + from - beyond, g);
+    const DetectorStretch detector(rays, filtered, from, heights + 2 * beyond);
+    const BackProjection job(rays, detector, first + from - beyond, g);
     parallel_for(across * down, [&](int item) {
       thread_local Scratch scratch;
       const int x0 = item % across * block;

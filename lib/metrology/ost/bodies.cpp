@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "base/stats/median.hpp"
@@ -15,7 +16,7 @@ namespace vam::metrology {
 namespace {
 
 /// Voxels first...last - 1 of row (j, k), all on one side of the level.
-struct Run {
+struct VoxelRun {
   int first;
   int last;
 };
@@ -25,11 +26,11 @@ class Runs {
  public:
   /// reach: 1 where runs touch by corners, 0 where they need a common face.
   Runs(const model::Volume& volume, double level, bool above, int reach) : grid_(volume.grid), reach_(reach) {
-    const auto rows = static_cast<std::size_t>(grid_.ny) * static_cast<std::size_t>(grid_.nz);
-    std::vector<std::vector<Run>> found(rows);
+    const auto rows = product(grid_.ny, grid_.nz);
+    std::vector<std::vector<VoxelRun>> found(rows);
     parallel_for(grid_.nz, [&](int k) {
       for (int j = 0; j < grid_.ny; ++j) {
-        const float* in = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * grid_.nx;
+        const float* in = volume.slice(k) + std::ptrdiff_t{j} * grid_.nx;
         auto& row = found[row_at(j, k)];
         for (int i = 0; i < grid_.nx; ++i) {
           if ((static_cast<double>(in[i]) >= level) != above) continue;
@@ -67,9 +68,7 @@ class Runs {
   }
 
  private:
-  [[nodiscard]] std::size_t row_at(int j, int k) const {
-    return static_cast<std::size_t>(k) * static_cast<std::size_t>(grid_.ny) + static_cast<std::size_t>(j);
-  }
+  [[nodiscard]] std::size_t row_at(int j, int k) const { return flat_index(k, grid_.ny, j); }
 
   // With the rows before it that it touches.
   void join_row(int j, int k) {
@@ -95,7 +94,7 @@ class Runs {
 
   model::Grid grid_;
   int reach_;
-  std::vector<Run> runs_;
+  std::vector<VoxelRun> runs_;
   std::vector<std::size_t> starts_;
   std::vector<std::size_t> parent_;
 };
@@ -108,7 +107,7 @@ struct Body {
 
 std::vector<Body> measured(Runs& runs, const model::Grid& g, const std::optional<Neighbourhood>& inside) {
   std::vector<Body> bodies(runs.size());
-  runs.each([&](std::size_t r, const Run& run, int j, int k) {
+  runs.each([&](std::size_t r, const VoxelRun& run, int j, int k) {
     Body& body = bodies[runs.root(r)];
     body.voxels += run.last - run.first;
     body.border =
@@ -127,9 +126,9 @@ int fill_cavities(model::Volume& volume, double level) {
   Runs voids(volume, level, false, 0);
   const std::vector<Body> cavities = measured(voids, volume.grid, {});
   const auto small = [&](const Body& body) { return body.voxels > 0 && body.voxels < resolved && !body.border; };
-  voids.each([&](std::size_t r, const Run& run, int j, int k) {
+  voids.each([&](std::size_t r, const VoxelRun& run, int j, int k) {
     if (!small(cavities[voids.root(r)])) return;
-    float* row = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * volume.grid.nx;
+    float* row = volume.slice(k) + std::ptrdiff_t{j} * volume.grid.nx;
     std::fill(row + run.first, row + run.last, std::nextafter(static_cast<float>(level), 1e30F));
   });
   return static_cast<int>(std::count_if(cavities.begin(), cavities.end(), small));
@@ -151,7 +150,7 @@ Neighbourhood neighbourhood(const model::Volume& target, double margin_mm) {
   Neighbourhood box{{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
   Runs runs(target, 0.5, true, 1);
   if (runs.size() == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
-  runs.each([&](std::size_t, const Run& run, int j, int k) {
+  runs.each([&](std::size_t, const VoxelRun& run, int j, int k) {
     const double low[3] = {g.x_mm(run.first), g.y_mm(j), g.z_mm(k)};
     const double high[3] = {g.x_mm(run.last - 1), low[1], low[2]};
     for (std::size_t d = 0; d < 3; ++d) {
@@ -186,9 +185,9 @@ BodyCount keep_bodies(model::Volume& volume, double level, const BodyRules& rule
     (drop ? count.dropped_mm3 : count.kept_mm3) += mm3;
     if (drop) count.largest_dropped_mm3 = std::max(count.largest_dropped_mm3, mm3);
   }
-  runs.each([&](std::size_t r, const Run& run, int j, int k) {
+  runs.each([&](std::size_t r, const VoxelRun& run, int j, int k) {
     if (!dropped(bodies[runs.root(r)])) return;
-    float* row = volume.slice(k) + static_cast<std::ptrdiff_t>(j) * g.nx;
+    float* row = volume.slice(k) + std::ptrdiff_t{j} * g.nx;
     std::fill(row + run.first, row + run.last, 0.0F);
   });
   count.filled = fill_cavities(volume, level);

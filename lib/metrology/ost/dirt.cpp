@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "base/stats/median.hpp"
@@ -18,9 +19,9 @@ int opposite(const Image& sinogram, int angle) { return (angle + sinogram.height
 
 // Mean over the angles: one row a height.
 Image mean_over_angles(const std::vector<Image>& sinograms) {
-  Image mean(sinograms.front().width, static_cast<int>(sinograms.size()));
+  Image mean(sinograms.front().width, count_of(sinograms));
   parallel_for(mean.height, [&](int k) {
-    const Image& sinogram = sinograms[static_cast<std::size_t>(k)];
+    const Image& sinogram = sinograms[k];
     float* out = mean.row(k);
     const float share = 1.0F / static_cast<float>(sinogram.height);
     for (int a = 0; a < sinogram.height; ++a) {
@@ -55,14 +56,16 @@ Image departures(const Image& mean) {
   return out;
 }
 
-std::vector<char> grown(const std::vector<char>& marked, int width, int height, int by) {
-  std::vector<char> out(marked.size(), 0);
+using RayMask = std::vector<char>;  // [height][column] of one angle: 1 where marked
+
+// Marked places and those at most `by` pixels beside them.
+RayMask grown(const RayMask& marked, int width, int height, int by) {
+  RayMask out(marked.size(), 0);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      if (marked[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] == 0)
-        continue;
+      if (marked[product(y, width) + x] == 0) continue;
       for (int j = std::max(0, y - by); j <= std::min(height - 1, y + by); ++j) {
-        char* row = out.data() + static_cast<std::ptrdiff_t>(j) * width;
+        char* row = out.data() + std::ptrdiff_t{j} * width;
         std::fill(row + std::max(0, x - by), row + std::min(width, x + by + 1), char{1});
       }
     }
@@ -101,12 +104,55 @@ double typical_difference(const std::vector<Image>& sinograms) {
 float brightest_near(const std::vector<Image>& sinograms, int t, int angle, int k, int rows) {
   constexpr int columns = 2;
   float most = -1e30F;
-  for (int j = std::max(0, k - rows); j <= std::min(static_cast<int>(sinograms.size()) - 1, k + rows); ++j) {
-    const float* row = sinograms[static_cast<std::size_t>(j)].row(angle);
+  for (int j = std::max(0, k - rows); j <= std::min(count_of(sinograms) - 1, k + rows); ++j) {
+    const float* row = sinograms[j].row(angle);
     const int last = std::min(sinograms.front().width - 1, t + columns);
     for (int i = std::max(0, t - columns); i <= last; ++i) most = std::max(most, row[i]);
   }
   return most;
+}
+
+// What a ray must be brighter by than the other end of its line: above the noise and a share of the contrast.
+float bubble_contrast(const std::vector<Image>& sinograms) {
+  float most = 0;
+  for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
+  const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
+  return static_cast<float>(6 * noise + 0.03 * static_cast<double>(most));
+}
+
+// Rays of an angle that are brighter than the other end of their line and all near there. Empty: none.
+RayMask bright_rays(const std::vector<Image>& sinograms, std::span<const int> rows, int angle, float least) {
+  const int width = sinograms.front().width;
+  RayMask mask(sinograms.size() * width, 0);
+  bool any = false;
+  for (int k = 0; k < count_of(sinograms); ++k) {
+    const Image& s = sinograms[k];
+    const int other = opposite(s, angle);
+    const float* near = s.row(angle);
+    const float* far = s.row(other) + width - 1;
+    for (int t = 0; t < width; ++t) {
+      if (near[t] - far[-t] <= least) continue;
+      if (near[t] - brightest_near(sinograms, width - 1 - t, other, k, rows[k]) <= least) continue;
+      mask[product(k, width) + t] = 1;
+      any = true;
+    }
+  }
+  return any ? mask : RayMask{};
+}
+
+// Gives marked rays the value of the darker end of their line. marked: one mask an angle.
+void take_darker_ends(std::vector<Image>& sinograms, const std::vector<RayMask>& marked) {
+  parallel_for(count_of(sinograms), [&](int k) {
+    Image& s = sinograms[k];
+    const Image before = s;
+    for (int a = 0; a < s.height; ++a) {
+      if (marked[a].empty()) continue;
+      const char* row = marked[a].data() + std::ptrdiff_t{k} * s.width;
+      for (int t = 0; t < s.width; ++t) {
+        if (row[t] != 0) s(t, a) = std::min(before(t, a), before(s.width - 1 - t, opposite(s, a)));
+      }
+    }
+  });
 }
 
 }  // namespace
@@ -124,7 +170,7 @@ Dirt even_background(const Image& mean_view) {
   }
   // A tenth of a normal distribution about its middle is a quarter of a deviation wide.
   const double sigma = std::max(4 * static_cast<double>(sorted[best + tenth] - sorted[best]), 1e-5 * range);
-  double level = static_cast<double>(sorted[best + tenth / 2]);
+  double level = sorted[best + tenth / 2];
   constexpr double widest = 0.1;  // of the contrast
   const auto darker = std::lower_bound(sorted.begin(), sorted.end(), static_cast<float>(level - 4 * sigma));
   if (sigma > widest * range || darker - sorted.begin() > static_cast<std::ptrdiff_t>(n / 50)) return {};
@@ -149,18 +195,18 @@ double remove_specks(std::vector<Image>& sinograms) {
   const double noise = some.empty() ? 0.0 : stats::median(some) * sigmas_per_median;
   const auto most = static_cast<double>(*std::max_element(mean.values.begin(), mean.values.end()));
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
-  std::vector<char> marked(mean.size());
+  RayMask marked(mean.size());
   for (int k = 0; k < mean.height; ++k) {
     for (int t = 0; t < mean.width; ++t) {
       const std::size_t i = mean.index(t, k);
-      marked[i] = departure.values[i] > least && stays(sinograms[static_cast<std::size_t>(k)], t, 0.5F * least) ? 1 : 0;
+      marked[i] = departure.values[i] > least && stays(sinograms[k], t, 0.5F * least) ? 1 : 0;
     }
   }
   marked = grown(marked, mean.width, mean.height, 2);
   const auto count = std::count(marked.begin(), marked.end(), char{1});
   if (count == 0) return 0;
   parallel_for(mean.height, [&](int k) {
-    Image& s = sinograms[static_cast<std::size_t>(k)];
+    Image& s = sinograms[k];
     for (int t = 0; t < mean.width; ++t) {
       if (marked[mean.index(t, k)] == 0) continue;
       const int mirror = mean.width - 1 - t;
@@ -174,55 +220,24 @@ double remove_specks(std::vector<Image>& sinograms) {
 double remove_bubbles(std::vector<Image>& sinograms, std::span<const int> rows) {
   const int width = sinograms.front().width;
   const int angles = sinograms.front().height;
-  const auto heights = static_cast<int>(sinograms.size());
-  float most = 0;
-  for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
-  const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
-  const auto least = static_cast<float>(6 * noise + 0.03 * static_cast<double>(most));
-  std::vector<std::vector<char>> marked(static_cast<std::size_t>(angles));  // [height][column]
-  std::vector<long> counts(static_cast<std::size_t>(angles), 0);
+  const auto heights = count_of(sinograms);
+  const float least = bubble_contrast(sinograms);
+  std::vector<RayMask> marked(angles);
   parallel_for(angles, [&](int a) {
-    std::vector<char> here(static_cast<std::size_t>(width) * static_cast<std::size_t>(heights), 0);
-    bool any = false;
-    for (int k = 0; k < heights; ++k) {
-      const Image& s = sinograms[static_cast<std::size_t>(k)];
-      const int other = opposite(s, a);
-      const float* near = s.row(a);
-      const float* far = s.row(other) + width - 1;
-      for (int t = 0; t < width; ++t) {
-        if (near[t] - far[-t] <= least) continue;
-        if (near[t] - brightest_near(sinograms, width - 1 - t, other, k, rows[static_cast<std::size_t>(k)]) <= least)
-          continue;
-        here[static_cast<std::size_t>(k) * static_cast<std::size_t>(width) + static_cast<std::size_t>(t)] = 1;
-        any = true;
-      }
-    }
-    if (!any) return;
-    here = grown(here, width, heights, 3);
-    counts[static_cast<std::size_t>(a)] = std::count(here.begin(), here.end(), char{1});
-    marked[static_cast<std::size_t>(a)] = std::move(here);
+    marked[a] = bright_rays(sinograms, rows, a, least);
+    if (!marked[a].empty()) marked[a] = grown(marked[a], width, heights, 3);
   });
-  const long count = std::accumulate(counts.begin(), counts.end(), 0L);
+  std::ptrdiff_t count = 0;
+  for (const RayMask& mask : marked) count += std::count(mask.begin(), mask.end(), char{1});
   const double share = static_cast<double>(count) / (static_cast<double>(width) * angles * heights);
-  if (count == 0 || share > most_bubbles) return share;
-  parallel_for(heights, [&](int k) {
-    Image& s = sinograms[static_cast<std::size_t>(k)];
-    const Image before = s;
-    for (int a = 0; a < angles; ++a) {
-      if (marked[static_cast<std::size_t>(a)].empty()) continue;
-      const char* row = marked[static_cast<std::size_t>(a)].data() + static_cast<std::ptrdiff_t>(k) * width;
-      for (int t = 0; t < width; ++t) {
-        if (row[t] != 0) s(t, a) = std::min(before(t, a), before(width - 1 - t, opposite(s, a)));
-      }
-    }
-  });
+  if (count > 0 && share <= most_bubbles) take_darker_ends(sinograms, marked);
   return share;
 }
 
 Json to_json(const Dirt& dirt) {
   Json json{{"speck_percent", dirt.speck_percent},
             {"bubble_percent", dirt.bubble_percent},
-            {"contradicts", dirt.contradicts}};
+            {"bubbles_exceed_limit", dirt.bubbles_exceed_limit}};
   json["background"] = dirt.has_background ? Json(dirt.background) : Json();
   return json;
 }

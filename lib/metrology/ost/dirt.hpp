@@ -17,7 +17,7 @@ struct Dirt {
   bool has_background = false;  // false: no part of the image is empty, nothing was subtracted
   double speck_percent = 0;     // of the rays that the volume needs, seen through specks and taken from the other end
   double bubble_percent = 0;    // of them, brighter than the same line from the other end and taken from there
-  bool contradicts = false;     // so many rays differ that it is no dirt, and none was replaced for it
+  bool bubbles_exceed_limit = false;  // so many rays differ that it is no dirt, and none was replaced for it
 };
 
 /// The level of the emptiest tenth of a mean view, when hardly a pixel is darker: the shortest interval that holds a

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "metrology/ost/private/cubic.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -14,7 +15,7 @@ double tallest_mm(const Eye& eye) { return std::max(std::abs(eye.z_mm(0)), std::
 
 }  // namespace
 
-RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(static_cast<std::size_t>(eye.camera.columns)) {
+RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(eye.camera.columns) {
   const double high = std::max(tallest_mm(eye), 1e-3);
   const double low = 0.5 * high;
   std::vector<bool> hit(columns_.size());
@@ -29,7 +30,7 @@ RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(static_cast<std::
   }
   const auto first = static_cast<std::size_t>(std::find(hit.begin(), hit.end(), true) - hit.begin());
   if (first == hit.size()) {
-    std::fill(columns_.begin(), columns_.end(), Column{1, 0});
+    std::fill(columns_.begin(), columns_.end(), ColumnHeights{1, 0});
     return;
   }
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -38,7 +39,7 @@ RowOfHeight::RowOfHeight(const Eye& eye) : eye_(eye), columns_(static_cast<std::
 }
 
 double RowOfHeight::row(int column, double height_mm) const {
-  const auto& [linear, cubic] = columns_[static_cast<std::size_t>(column)];
+  const auto& [linear, cubic] = columns_[column];
   double z = height_mm / linear;
   for (int step = 0; step < 3; ++step) z -= (z * (linear + cubic * z * z) - height_mm) / (linear + 3 * cubic * z * z);
   return eye_.axis_row - z / eye_.camera.pixel_mm;
@@ -54,16 +55,16 @@ double climb_rate_per_mm(const Eye& eye, double x_v_mm) {
 }
 
 LevelRows::LevelRows(const RowOfHeight& map, int columns, int rows, std::span<const double> heights_mm)
-    : columns_(columns), heights_(static_cast<int>(heights_mm.size())) {
+    : columns_(columns), heights_(count_of(heights_mm)) {
   for (const double height : heights_mm) {
     for (int x = 0; x < columns; ++x) {
       const double row = std::clamp(map.row(x, height), 0.0, rows - 1.0);
       const double whole = std::floor(row);
       const auto weights = cubic_weights(static_cast<float>(row - whole));
-      Taps taps{static_cast<float>(row), std::clamp(static_cast<int>(whole) - 1, 0, std::max(0, rows - 4)), {}};
+      HeightTaps taps{static_cast<float>(row), std::clamp(static_cast<int>(whole) - 1, 0, std::max(0, rows - 4)), {}};
       for (int j = 0; j < 4; ++j) {
         const int at = std::clamp(static_cast<int>(whole) + j - 1, 0, rows - 1) - taps.first;
-        taps.weights[static_cast<std::size_t>(at)] += weights[static_cast<std::size_t>(j)];
+        taps.weights[at] += weights[j];
       }
       taps_.push_back(taps);
     }
@@ -78,7 +79,7 @@ Image LevelRows::of(const Image& image, const AxisPose& axis) const {
   const auto pitch = static_cast<std::ptrdiff_t>(image.width);
   for (int k = 0; k < heights_; ++k) {
     float* to = out.row(k);
-    const Taps* taps = taps_.data() + static_cast<std::ptrdiff_t>(k) * columns_;
+    const HeightTaps* taps = taps_.data() + std::ptrdiff_t{k} * columns_;
     for (int x = 0; x < columns_; ++x, ++taps) {
       if (axis.tilt_rad == 0) {
         const float* from = image.row(taps->first) + x;

@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
 #include "base/text.hpp"
@@ -33,7 +34,7 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
   out = Image(detector.columns, in.height);
   for (int c = 0; c < detector.columns; ++c) {
     const double at = camera.column(detector.x_mm(c));
-    const int low = static_cast<int>(std::floor(at));
+    const int low = floor_int(at);
     if (low < 0 || low + 1 >= in.width) continue;
     const auto f = static_cast<float>(at - low);
     for (int a = 0; a < in.height; ++a) out(c, a) = (1 - f) * in(low, a) + f * in(low + 1, a);
@@ -42,8 +43,8 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
 
 void subtract(std::vector<Image>& images, double level) {
   const auto value = static_cast<float>(level);
-  parallel_for(static_cast<int>(images.size()), [&](int i) {
-    for (float& v : images[static_cast<std::size_t>(i)].values) v -= value;
+  parallel_for(count_of(images), [&](int i) {
+    for (float& v : images[i].values) v -= value;
   });
 }
 
@@ -109,7 +110,7 @@ OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_m
   const int half = s.half_width(voxel_mm);
   s.detector = optics::centred_detector(2 * half + 1, voxel_mm);
   const double row_mm = pixel_mm / model::camera_magnification(printer);
-  const int slices = std::max(1, static_cast<int>(std::floor(rows * row_mm / voxel_mm)));
+  const int slices = std::max(1, floor_int(rows * row_mm / voxel_mm));
   const double middle_mm = (s.eye.axis_row - 0.5 * (rows - 1)) * row_mm;
   s.grid = model::centred_grid(2 * half + 1, 2 * half + 1, slices, voxel_mm, middle_mm - 0.5 * (slices - 1) * voxel_mm);
 }
@@ -121,7 +122,7 @@ int OstReconstructor::State::half_width(double voxel_mm) const {
   const auto edge = optics::chief_ray(eye.view, std::max(0.0, seen_mm));
   const double through_vial = options.refraction ? (edge.hits ? edge.x_v_mm : optics::reach_mm(eye.view)) : seen_mm;
   const double radius_mm = options.radius_mm > 0 ? std::min(options.radius_mm, through_vial) : through_vial;
-  const int half = static_cast<int>(std::floor(radius_mm / voxel_mm));
+  const int half = floor_int(radius_mm / voxel_mm);
   if (half >= 2) return half;
   throw Error{Fault::data, "views: the camera sees only " + format_number(radius_mm, 3) +
                                " mm beside the axis (column " + format_number(axis.column, 5) + " of " +
@@ -142,7 +143,7 @@ std::vector<Image> OstReconstructor::State::virtual_sinograms(std::span<const Im
                                                               std::span<const double> heights_mm) const {
   std::vector<Image> out(sinograms.size());
   if (!options.refraction) {
-    parallel_for(static_cast<int>(out.size()), [&](int k) {
+    parallel_for(count_of(out), [&](int k) {
       const auto i = static_cast<std::size_t>(k);
       rescale_columns(sinograms[i], eye.camera, detector, out[i]);
     });
@@ -176,12 +177,11 @@ void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<con
   const double rate = climb_rate_per_mm(eye, 0);
   std::vector<int> rows;
   for (const double height : heights_mm) {
-    rows.push_back(1 + static_cast<int>(std::ceil(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) /
-                                                  grid.voxel_mm)));
+    rows.push_back(1 + ceil_int(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) / grid.voxel_mm));
   }
   if (absorption_per_mm > 0) return;  // a line is not the same from its other end
   const double share = remove_bubbles(sinograms, rows);
-  found.contradicts = found.contradicts || share > most_bubbles;
+  found.bubbles_exceed_limit = found.bubbles_exceed_limit || share > most_bubbles;
   found.bubble_percent += 100 * part * share;
 }
 
@@ -204,14 +204,13 @@ void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<con
 void OstReconstructor::State::refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const {
   const auto geo = geometry(sinograms.front().height);
   const auto voxel = static_cast<float>(grid.voxel_mm);
-  for (int k = 0; k < static_cast<int>(sinograms.size()); k += lanes) {
-    const int count = std::min(lanes, static_cast<int>(sinograms.size()) - k);
+  for (int k = 0; k < count_of(sinograms); k += lanes) {
+    const int count = std::min(lanes, count_of(sinograms) - k);
     std::vector<Slab> images(1, Slab(grid.nx, grid.ny));
     pack(volume.slice(first + k), count, images[0]);
     scale(images, voxel);
-    const auto measured = packed(sinograms.subspan(static_cast<std::size_t>(k), static_cast<std::size_t>(count)),
-                                 geo.columns, geo.angles);
-    maximise_likelihood(geo, measured, options.statistical, images);
+    const auto measured = packed(sinograms.subspan(k, count), geo.columns, geo.angles);
+    maximise_likelihood(geo, measured, options.mlem_iterations, images);
     scale(images, 1 / voxel);
     unpack(images[0], count, volume.slice(first + k));
   }
@@ -247,9 +246,8 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     if (s.options.non_negative) {
       for (float* v = volume.slice(first); v != volume.slice(first + count); ++v) *v = std::max(*v, 0.0F);
     }
-    if (s.options.statistical > 0) {
-      s.refine_slices(std::span(sinograms).subspan(static_cast<std::size_t>(beyond), static_cast<std::size_t>(count)),
-                      first, volume);
+    if (s.options.mlem_iterations > 0) {
+      s.refine_slices(std::span(sinograms).subspan(beyond, count), first, volume);
     }
   }
   if (found != nullptr) *found = dirt;

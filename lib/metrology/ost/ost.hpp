@@ -21,7 +21,7 @@ struct OstOptions {
   bool refraction = true;          // false: columns taken as parallel rays (for comparison)
   bool clean = true;               // take out background, specks and bubbles
   bool non_negative = true;        // negative densities become 0
-  int statistical = 0;             // iterations of MLEM [SV82] after FBP, for noisy views
+  int mlem_iterations = 0;         // iterations of MLEM [SV82] after FBP, for noisy views
   std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
   double radius_mm = 0;            // of the reconstructed cylinder; 0: all that the camera sees through the vial
 };

@@ -22,7 +22,7 @@ double sample(const Image& image, double x, double y) {
   const int j = static_cast<int>(cy);
   const double fx = cx - i;
   const double fy = cy - j;
-  const auto v = [&](int a, int b) { return static_cast<double>(image(a, b)); };
+  const auto v = [&](int a, int b) { return image(a, b); };
   return (1 - fy) * ((1 - fx) * v(i, j) + fx * v(i + 1, j)) + fy * ((1 - fx) * v(i, j + 1) + fx * v(i + 1, j + 1));
 }
 
@@ -118,7 +118,7 @@ FittedCircle find_circle(const Image& image) {
 
 OverheadMean overhead_mean(const model::Volume& scatter) {
   const model::Grid& g = scatter.grid;
-  std::vector<double> held(static_cast<std::size_t>(g.nz));
+  std::vector<double> held(g.nz);
   for (int k = 0; k < g.nz; ++k) held[k] = std::accumulate(scatter.slice(k), scatter.slice(k) + g.slice_size(), 0.0);
   const double half = 0.5 * *std::max_element(held.begin(), held.end());
   if (!(half > 0)) throw Error{Fault::data, "standard: the volume is empty"};
@@ -131,7 +131,7 @@ OverheadMean overhead_mean(const model::Volume& scatter) {
   for (int k = first + rim; k <= last - rim; ++k) {
     for (int j = 0; j < g.ny; ++j) {
       float* out = result.mean.row(g.ny - 1 - j);
-      const float* in = scatter.slice(k) + static_cast<std::ptrdiff_t>(j) * g.nx;
+      const float* in = scatter.slice(k) + std::ptrdiff_t{j} * g.nx;
       for (int i = 0; i < g.nx; ++i) out[i] += share * in[i];
     }
   }

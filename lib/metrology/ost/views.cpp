@@ -5,6 +5,8 @@
 #include <numeric>
 
 #include "base/error.hpp"
+#include "base/image_size.hpp"
+#include "base/index.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
@@ -13,8 +15,6 @@
 namespace vam::metrology {
 
 namespace {
-
-std::string size_text(const Image& image) { return std::to_string(image.width) + " x " + std::to_string(image.height); }
 
 void require_same_size(const Image& image, const Image& field, const std::string& subject, const char* name) {
   if (field.values.empty() || (field.width == image.width && field.height == image.height)) return;
@@ -51,7 +51,7 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
       if (!(flat > 0)) {
         throw Error{Fault::data, "flat field: pixel " + std::to_string(i % static_cast<std::size_t>(raw.width)) + ", " +
                                      std::to_string(i / static_cast<std::size_t>(raw.width)) + " is " +
-                                     format_number(static_cast<double>(flat)) + "; every pixel must be above 0"};
+                                     format_number(flat) + "; every pixel must be above 0"};
       }
       image.values[i] *= mean / flat;
     }
@@ -62,15 +62,15 @@ Image corrected(const Image& raw, const CameraFields& fields, int binning, const
 std::string exposure_problem(const Image& raw) {
   const auto [low, high] = std::minmax_element(raw.values.begin(), raw.values.end());
   if (!(*high > *low)) {
-    return std::string(*low > 0 ? "without contrast" : "dark") + ", every pixel is " +
-           format_number(static_cast<double>(*low)) + "; check light and exposure";
+    return std::string(*low > 0 ? "without contrast" : "dark") + ", every pixel is " + format_number(*low) +
+           "; check light and exposure";
   }
   const auto full = std::count(raw.values.begin(), raw.values.end(), *high);
   constexpr double allowed = 0.02;
   const double part = static_cast<double>(full) / static_cast<double>(raw.size());
   if (part <= allowed) return "";
-  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " +
-         format_number(static_cast<double>(*high)) + "; shorten the exposure";
+  return "saturated, " + format_number(100 * part, 3) + " % of the pixels are at " + format_number(*high) +
+         "; shorten the exposure";
 }
 
 void require_exposed(const Image& raw, const std::string& subject) {
@@ -84,7 +84,7 @@ void require_alike(std::span<const CameraView> views) {
     double sum = 0;
     double squares = 0;
     for (const float v : view.image.values) {
-      sum += static_cast<double>(v);
+      sum += v;
       squares += static_cast<double>(v) * static_cast<double>(v);
     }
     const auto n = static_cast<double>(view.image.size());
@@ -118,7 +118,7 @@ Image mean_view(std::span<const CameraView> views) {
 
 Image straightened(const Image& image, const AxisPose& axis, double row_stretch) {
   if (axis.tilt_rad == 0 && row_stretch == 1) return image;
-  Image out(image.width, std::max(1, static_cast<int>(std::floor(image.height * row_stretch))));
+  Image out(image.width, std::max(1, floor_int(image.height * row_stretch)));
   const double middle_in = 0.5 * (image.height - 1);
   const double middle_out = 0.5 * (out.height - 1);
   const double c = std::cos(axis.tilt_rad);

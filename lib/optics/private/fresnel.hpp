@@ -1,4 +1,4 @@
-// Transmittance of an interface between two media [physics §2].
+// Fresnel transmittance T of an interface between two media [physics §2].
 #pragma once
 
 namespace vam::optics {

@@ -1,4 +1,4 @@
-// The inner loops of resample.cpp on 16 slices side by side, once per instruction set.
+// The inner loops of resample.cpp on 16 slices side by side, compiled once per instruction set.
 #pragma once
 
 namespace vam::optics {

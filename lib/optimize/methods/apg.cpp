@@ -107,9 +107,10 @@ class Apg final : public Method {
     enter_bounds(light, largest_light(options_, light), iterate);
     before_ = iterate;
     const DoseWindow& window = problem.demands.window;
+    const double half_width = options_.half_width > 0 ? options_.half_width : 0.5 * (window.high - window.low);
     length_ = filled(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
     momentum_ = filled(iterate.g.size(), momentum);
-    half_width_ = filled(iterate.g.size(), static_cast<float>(0.5 * (window.high - window.low)));
+    half_width_ = filled(iterate.g.size(), static_cast<float>(half_width));
     surface_ = SurfacePoints(problem);
     loss_ = losses(problem, light, iterate);
     widen(problem, light, iterate);

@@ -32,6 +32,9 @@ class Archive {
   void operator()(int& value) { move(&value, sizeof value); }
   void operator()(std::int64_t& value) { move(&value, sizeof value); }
   void operator()(std::uint64_t& value) { move(&value, sizeof value); }
+  template <class T>
+  requires std::is_enum_v<T>
+  void operator()(T& value) { move(&value, sizeof value); }
   void operator()(Slab& slab);
   void operator()(std::string& text);
   /// A checksum of everything up to here, written or compared.

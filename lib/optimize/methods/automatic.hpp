@@ -8,5 +8,6 @@ namespace vam::optimize {
 inline constexpr const char* automatic_method = "apg";
 inline constexpr const char* automatic_until = "ver=0,pw>=0.06";
 inline constexpr int automatic_iterations = 12;
+inline constexpr int automatic_refinements = 8;  // of projections that were made at half of the resolution
 
 }  // namespace vam::optimize

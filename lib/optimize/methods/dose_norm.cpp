@@ -59,7 +59,7 @@ class DoseNorm final : public Method {
   /// I_0 = max(f, B).
   [[nodiscard]] float goal(const Problem& problem, std::size_t s, std::size_t i) const {
     const float target = problem.target[s].values[i];
-    return problem.labels[s][i] == Label::outside ? target : std::max(target, static_cast<float>(options_.background));
+    return problem.labels[s][i] == Label::outside ? target : std::max(target, static_cast<float>(options_.void_dose));
   }
 
   void project(const Problem& problem, const light::Operator& light, Iterate& iterate) {
@@ -76,14 +76,13 @@ class DoseNorm final : public Method {
 
 MethodEntry dose_norm_method() {
   return {"dose-norm",
-          "Filtered back-projection of the target raised to a background in the void, divided once by the dose it "
-          "receives: fast, with a smaller process window than the iterative methods.",
-          "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (where "
-          "the text bounds the projections from below by the background, but the figures show them non-negative: "
-          "--min-intensity 0 is right)",
+          "Filtered back-projection of the target with a background dose in the void, divided once by the resulting "
+          "dose: fast, with a smaller process window than the iterative methods.",
+          "Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, Methods and fig S6 (its "
+          "text states the background as the lower bound of the projections, its figures show 0)",
           1,
           false,
-          {"--background", "--min-intensity"},
+          {"--void-dose", "--min-intensity"},
           make<DoseNorm>};
 }
 

@@ -22,11 +22,12 @@ struct Iterate {
 
 /// Defaults are the ones the manual shows. A method reads those it needs.
 struct MethodOptions {
-  double background = 0.5;   // B of the void, 0...1
+  double void_dose = 0.5;    // B of the void, 0...1
   double min_intensity = 0;  // lower bound on projected intensity
   bool offset = false;       // raise all projections by the lowest value instead of clipping
   double max_intensity = 0;  // upper bound on projected intensity; 0: none
   double power = 2;          // p of the norm, at least 1
+  double half_width = 0;     // of the window about the threshold to begin with, in doses; 0: that of the demands
 };
 
 class Method {
@@ -72,9 +73,9 @@ struct MethodEntry {
 [[nodiscard]] bool reads(const MethodEntry& method, const std::string& option);
 
 /// For MethodEntry::make.
-template <class Kind>
+template <class Chosen>
 std::unique_ptr<Method> make(const MethodOptions& options) {
-  return std::make_unique<Kind>(options);
+  return std::make_unique<Chosen>(options);
 }
 
 /// In the order of the manual.

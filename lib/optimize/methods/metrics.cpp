@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.hpp"
+
 namespace vam::optimize {
 
 namespace {
@@ -30,7 +32,7 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
     m.ipdr = std::max(m.ipdr, error);
     m.min_part = std::min(m.min_part, static_cast<double>(d));
     m.max_part = std::max(m.max_part, static_cast<double>(d));
-    m.mean_part += static_cast<double>(d);
+    m.mean_part += d;
   }
   if (m.part == 0) return {};
   const auto count = static_cast<double>(m.part);
@@ -44,8 +46,8 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
 }
 
 std::vector<model::DoseMetrics> grey_metrics(std::span<const Slab> dose, const Problem& problem) {
-  std::vector<model::DoseMetrics> result(static_cast<std::size_t>(problem.slices));
-  parallel_for(problem.slices, [&](int s) { result[s] = grey_figures(dose, problem, static_cast<std::size_t>(s)); });
+  std::vector<model::DoseMetrics> result(problem.slices);
+  parallel_for(problem.slices, [&](int s) { result[s] = grey_figures(dose, problem, s); });
   return result;
 }
 
@@ -71,7 +73,7 @@ namespace {
 /// As label(s, i) counts the voxels.
 template <class LabelOf>
 std::vector<model::DoseStatistics> counted(std::span<const Slab> dose, const Problem& problem, LabelOf label) {
-  std::vector<model::DoseStatistics> slices(static_cast<std::size_t>(problem.slices));
+  std::vector<model::DoseStatistics> slices(problem.slices);
   const int items = (problem.slices + lanes_per_item - 1) / lanes_per_item;
   parallel_for(items, [&](int item) {
     const int first = item * lanes_per_item;
@@ -104,7 +106,7 @@ std::vector<model::DoseMetrics> metrics(std::span<const Slab> dose, const Proble
   if (problem.demands.grey) return grey_metrics(dose, problem);
   const auto slices = statistics(dose, problem);
   std::vector<model::DoseMetrics> result(slices.size());
-  parallel_for(static_cast<int>(slices.size()), [&](int s) { result[s] = slices[s].metrics(); });
+  parallel_for(count_of(slices), [&](int s) { result[s] = slices[s].metrics(); });
   return result;
 }
 

@@ -31,11 +31,10 @@ double largest_eigenvalue(const light::Operator& light, const Problem& problem) 
   const std::size_t lane = slice % lanes;
   const auto& labels = problem.labels[slice / lanes];
   const light::Shape shape = light.object();
-  // An operator counts from the first; rows of any slab may light the slice where they are not its own.
-  const std::size_t count = light.rows_are_slices() ? slice / lanes + 1 : problem.labels.size();
-  std::vector<Slab> objects = slabs(count, shape.width, shape.height);
-  std::vector<Slab> sinograms = slabs(count, light.sinogram().width, light.sinogram().height);
-  Slab& object = objects[slice / lanes];
+  const std::size_t slab = slice / lanes;
+  const light::SlabRange lit = light.lit_by({slab, slab + 1});
+  std::vector<Slab> sinograms = slabs(lit.end - lit.first, light.sinogram().width, light.sinogram().height);
+  Slab object(shape.width, shape.height);
   for (int y = 0; y < shape.height; ++y) {
     for (int x = 0; x < shape.width; ++x) {
       const bool point = (x * 7 + y * 13) % 31 == 0;
@@ -52,16 +51,13 @@ double largest_eigenvalue(const light::Operator& light, const Problem& problem) 
     return std::sqrt(sum);
   };
   double norm = norm_inside();
-  if (norm == 0) return 1;
+  if (norm == 0 || sinograms.empty()) return 1;
   for (int i = 0; i < iterations; ++i) {
     const auto unit = static_cast<float>(1.0 / norm);
     for (float& v : object.values) v *= unit;
-    for (Slab& other : objects) {
-      if (&other != &object) std::fill(other.values.begin(), other.values.end(), 0.0F);
-    }
-    light.forward(objects, sinograms);
+    light.forward_within({slab, {&object, 1}}, {lit.first, sinograms});
     light.precondition(sinograms);
-    light.adjoint(sinograms, objects);
+    light.adjoint_within({lit.first, sinograms}, {slab, {&object, 1}});
     norm = norm_inside();
     if (norm == 0) return 1;
   }

@@ -4,19 +4,21 @@
 #include <array>
 #include <cmath>
 
+#include "base/index.hpp"
+
 namespace vam::optimize {
 
 namespace {
 
 constexpr float half = 0.5F;
-constexpr float cost = 0.125F;  // of a point, relative to a voxel
+constexpr float cost = 0.25F;  // of a point, relative to a voxel
 
 /// Coverage by voxel, in the order of the slices.
-class Volume {
+class TargetVolume {
  public:
   using At = std::array<int, 3>;  // x, y, slice
 
-  explicit Volume(const Problem& problem) : problem_(problem) {}
+  explicit TargetVolume(const Problem& problem) : problem_(problem) {}
 
   [[nodiscard]] float coverage(const At& at) const {
     const Slab& slab = problem_.target[0];
@@ -26,7 +28,7 @@ class Volume {
     return problem_.target[v.slab].values[v.i];
   }
   [[nodiscard]] SurfacePoint::Voxel voxel(const At& at) const {
-    const auto pixel = static_cast<std::size_t>(at[1]) * problem_.target[0].width + static_cast<std::size_t>(at[0]);
+    const auto pixel = static_cast<std::size_t>(at[1]) * problem_.target[0].width + at[0];
     return {static_cast<std::uint32_t>(at[2] / lanes), static_cast<std::uint32_t>(pixel * lanes + at[2] % lanes)};
   }
   [[nodiscard]] static At moved(At at, int axis, int by) {
@@ -69,14 +71,15 @@ class Volume {
 bool crosses(float a, float b) { return (a >= half) != (b >= half); }
 
 /// The points that begin in one row of voxels.
-class Row {
+class VoxelRow {
  public:
-  Row(const Problem& problem, const Volume& volume, int axes) : problem_(problem), volume_(volume), axes_(axes) {}
+  VoxelRow(const Problem& problem, const TargetVolume& volume, int axes)
+      : problem_(problem), volume_(volume), axes_(axes) {}
 
-  void find(const Volume::At& at, std::vector<SurfacePoint>& points) const {
+  void find(const TargetVolume::At& at, std::vector<SurfacePoint>& points) const {
     const float here = volume_.coverage(at);
     for (int axis = 0; axis < axes_; ++axis) {
-      const Volume::At next = Volume::moved(at, axis, 1);
+      const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
       if (!crosses(here, volume_.coverage(next)) || !is_steepest(at, axis)) continue;
       const SurfacePoint::Voxel from = volume_.voxel(at);
       const SurfacePoint::Voxel to = volume_.voxel(next);
@@ -87,8 +90,8 @@ class Row {
   }
 
  private:
-  [[nodiscard]] bool is_steepest(const Volume::At& at, int axis) const {
-    const Volume::At next = Volume::moved(at, axis, 1);
+  [[nodiscard]] bool is_steepest(const TargetVolume::At& at, int axis) const {
+    const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
     const auto slope = [&](int along) { return std::abs(volume_.slope(at, along) + volume_.slope(next, along)); };
     const float here = slope(axis);
     for (int other = 0; other < axes_; ++other) {
@@ -100,7 +103,7 @@ class Row {
   [[nodiscard]] bool is_lit(SurfacePoint::Voxel v) const { return problem_.labels[v.slab][v.i] != Label::outside; }
 
   const Problem& problem_;
-  const Volume& volume_;
+  const TargetVolume& volume_;
   int axes_;
 };
 
@@ -110,11 +113,11 @@ SurfacePoints::SurfacePoints(const Problem& problem)
     : threshold_(static_cast<float>(problem.demands.window.threshold())) {
   if (!asks_surface(problem.demands)) return;
   const Slab& slab = problem.target[0];
-  const Volume volume(problem);
-  const Row row(problem, volume, problem.stacked ? 3 : 2);
-  const int slabs = static_cast<int>(problem.target.size());
-  std::vector<std::vector<SurfacePoint>> rows(static_cast<std::size_t>(slabs) * slab.height);
-  parallel_for(static_cast<int>(rows.size()), [&](int n) {
+  const TargetVolume volume(problem);
+  const VoxelRow row(problem, volume, problem.stacked ? 3 : 2);
+  const int slabs = count_of(problem.target);
+  std::vector<std::vector<SurfacePoint>> rows(product(slabs, slab.height));
+  parallel_for(count_of(rows), [&](int n) {
     const int first = n / slab.height * lanes;
     for (int x = 0; x < slab.width - 1; ++x) {
       for (int k = first; k < std::min(first + lanes, problem.slices); ++k) row.find({x, n % slab.height, k}, rows[n]);
@@ -137,7 +140,7 @@ PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs)
   std::vector<double> sums(slabs * lanes, 0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SurfacePoint& p = points_[i];
-    sums[p.from.slab * lanes + p.from.i % lanes] += static_cast<double>(half * cost * p.weight * misses[i] * misses[i]);
+    sums[p.from.slab * lanes + p.from.i % lanes] += half * cost * p.weight * misses[i] * misses[i];
   }
   PerSlice result = filled(slabs, 0.0F);
   for (std::size_t k = 0; k < sums.size(); ++k) result[k / lanes][k % lanes] = static_cast<float>(sums[k]);

@@ -148,14 +148,14 @@ class Tolerant final : public Method {
       return third * 0.5F * r * bounds(problem, now, s, i).miss(d);
     });
     for (const auto& lane : losses) {
-      for (const float v : lane) loss_ += static_cast<double>(v);
+      for (const float v : lane) loss_ += v;
     }
     surface_->add_slopes(misses, doses, third);
   }
 
   /// The window grows about the threshold while nearly all doses of all lights are outside it, as in apg.
   void widen(const Problem& problem) {
-    const double half = static_cast<double>(half_width_);
+    const double half = half_width_;
     const double close = 0.5 * close_enough * close_enough * half * half * constrained_voxels(problem);
     if (loss_ <= close && half_width_ * wider <= widest) half_width_ *= wider;
   }
@@ -173,7 +173,7 @@ class Tolerant final : public Method {
     });
     double sum = 0;
     for (const auto& lane : along) {
-      for (const float v : lane) sum += static_cast<double>(v);
+      for (const float v : lane) sum += v;
     }
     return sum > 0;
   }

@@ -12,16 +12,17 @@ namespace vam::optimize {
 void Finished::take(std::vector<Image> images) {
   for (const Image& image : images) {
     if (std::all_of(image.values.begin(), image.values.end(), [](float v) { return std::isfinite(v); })) continue;
-    throw Error{Fault::data,
-                "projections of slice " + std::to_string(slices_) +
-                    " and those optimised with it are not finite; check the target's values and --weights"};
+    throw Error{Fault::data, "projections of slice " + std::to_string(slices_) +
+                                 " and those optimised with it are not finite; check the values of target and weights"};
   }
   for (Image& image : images) held_.emplace(jobs_++, std::move(image));
   for (; slices_ < static_cast<int>(schedule_.job_of_slice.size()); ++slices_) {
     const int job = schedule_.job_of_slice[slices_];
     if (job >= jobs_) return;
     const auto found = held_.find(job);
-    efficiency_.add(found->second.values);
+    const std::vector<float>& values = found->second.values;
+    efficiency_.add(values);
+    peaks_.push_back(values.empty() ? 0 : *std::max_element(values.begin(), values.end()));
     write_(slices_, found->second);
     if (schedule_.last_slice[job] == slices_) held_.erase(found);
   }

@@ -16,8 +16,14 @@ void exchange(Archive& archive, std::vector<FrontPoint>& front) {
   front.resize(static_cast<std::size_t>(std::clamp(count, 0, most)));
   for (FrontPoint& p : front) {
     model::DoseMetrics& m = p.metrics;
-    for (double* field : {&p.max_intensity, &p.peak, &m.ver, &m.pw, &m.iou, &m.min_part, &m.max_void, &m.iou_threshold})
+    for (double* field :
+         {&p.max_intensity, &p.peak, &p.efficiency, &m.ver, &m.pw, &m.iou, &m.min_part, &m.max_void, &m.iou_threshold})
       archive(*field);
+    auto faced = static_cast<int>(p.pw_tolerances.has_value());
+    archive(faced);
+    if (faced == 0) continue;
+    if (!p.pw_tolerances) p.pw_tolerances = 0;
+    archive(*p.pw_tolerances);
   }
 }
 
@@ -29,11 +35,11 @@ FrontPoint front_point(const Problem& problem, const light::Operator& light, dou
   state.g = collapse_images(
       all, [&](int k) { return shown[k]; }, light);
   light.adjoint(state.g, state.dose);
-  double peak = 0;
-  for (const Image& image : shown) {
-    peak = std::max(peak, static_cast<double>(*std::max_element(image.values.begin(), image.values.end())));
-  }
-  return {max_intensity, peak, body_metrics(state.dose, problem)};
+  model::LightEfficiency seen;
+  for (const Image& image : shown) seen.add(image.values);
+  FrontPoint point{max_intensity, seen.max, seen.value(), body_metrics(state.dose, problem), std::nullopt};
+  if (scenarios != nullptr) point.pw_tolerances = statistics_of_all(*scenarios, problem, state).metrics().pw;
+  return point;
 }
 
 }  // namespace vam::optimize

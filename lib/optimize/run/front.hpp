@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/image.hpp"
@@ -15,7 +16,9 @@ namespace vam::optimize {
 struct FrontPoint {
   double max_intensity = 0;  // the limit
   double peak = 0;           // largest intensity shown
+  double efficiency = 0;     // mean over largest intensity
   model::DoseMetrics metrics;
+  std::optional<double> pw_tolerances;  // window of all scenarios and the nominal light together, if there are any
 };
 /// Frames as the projector shows them.
 using Show = std::function<std::vector<Image>(std::vector<Image>)>;

@@ -6,9 +6,9 @@ namespace vam::optimize {
 
 namespace {
 
-enum class Record { finished = 1, open = 2 };
+enum class RecordTag { finished = 1, open = 2 };
 
-void begin(Archive& to, Record record) {
+void begin(Archive& to, RecordTag record) {
   auto tag = static_cast<int>(record);
   to(tag);
 }
@@ -25,7 +25,7 @@ void exchange(Archive& archive, const RunMark& mark) {
   archive(given_magic);
   if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a checkpoint of vam-optimize"};
   std::string job = mark.job;
-  Digest target = mark.target;
+  SliceDigest target = mark.target;
   int watched = mark.watched ? 1 : 0;
   archive(job);
   archive(target);
@@ -36,21 +36,21 @@ void exchange(Archive& archive, const RunMark& mark) {
 }
 
 void keep_finished(Archive& to, std::vector<Image>& images) {
-  begin(to, Record::finished);
+  begin(to, RecordTag::finished);
   auto count = static_cast<int>(images.size());
   to(count);
   for (Image& image : images) to(image.values);
 }
 
-void begin_open(Archive& to) { begin(to, Record::open); }
+void begin_open(Archive& to) { begin(to, RecordTag::open); }
 
 std::optional<std::vector<Image>> next_finished(Archive& from, light::Shape image, int most) {
   int tag = 0;
   from(tag);
-  if (tag == static_cast<int>(Record::open)) return std::nullopt;
+  if (tag == static_cast<int>(RecordTag::open)) return std::nullopt;
   int count = 0;
   from(count);
-  if (tag != static_cast<int>(Record::finished) || count < 1 || count > most) damaged(from);
+  if (tag != static_cast<int>(RecordTag::finished) || count < 1 || count > most) damaged(from);
   std::vector<Image> images(static_cast<std::size_t>(count), Image(image.width, image.height));
   for (Image& each : images) {
     const std::size_t pixels = each.size();

@@ -25,7 +25,7 @@ struct Interruption {
 /// Which run a state is of.
 struct RunMark {
   std::string job;
-  Digest target{};       // of all slices
+  SliceDigest target{};  // of all slices
   bool watched = false;  // the trace is part of the state
 };
 

@@ -18,12 +18,14 @@ void Ledger::end(const Outcome& outcome) {
   seen_ = -1;
   if (outcome.iterations < iterations_) return;
   iterations_ = outcome.iterations;
-  reason_ = outcome.reason;
+  stop_ = outcome.stop;
 }
 
 void Ledger::add(const model::DoseStatistics& statistics, const model::DoseMetrics& figures, int times) {
   total_.merge(statistics, times);
   figures_.add(figures, times);
+  min_part_.push_back(figures.part > 0 ? figures.min_part : -1);
+  max_void_.push_back(figures.void_ > 0 ? figures.max_void : -1);
 }
 
 void Ledger::exchange(Archive& archive) {
@@ -43,12 +45,14 @@ void Ledger::exchange(Archive& archive) {
   archive(outside_.gelled_voxels);
   archive(outside_.max_dose);
   figures_.exchange(archive);
-  archive(reason_);
+  archive(min_part_);
+  archive(max_void_);
+  archive(stop_);
   archive(iterations_);
   archive(dark_part_voxels_);
 }
 
-VolumeOutcome Ledger::outcome(bool grey) const {
+VolumeOutcome Ledger::outcome(bool grey, std::span<const int> job_of_slice) const {
   VolumeOutcome outcome;
   SliceFigures ended;  // passes that stopped earlier count with their last state
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -63,8 +67,11 @@ VolumeOutcome Ledger::outcome(bool grey) const {
   with_cut.merge(cut_);
   if (!grey) outcome.with_cut = with_cut.metrics();
   if (!grey) outcome.outside = outside_;
+  for (const int job : job_of_slice) {
+    if (!grey) outcome.asked.push_back({.min_part = min_part_[job], .max_void = max_void_[job]});
+  }
   outcome.iterations = iterations_;
-  outcome.reason = reason_;
+  outcome.stop = stop_;
   outcome.dark_part_voxels = dark_part_voxels_;
   return outcome;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::optimize {
@@ -14,7 +15,7 @@ float largest_inside(const std::vector<float>& slice, light::Shape shape, const 
   float most = 0;
   for (int y = 0; y < shape.height; ++y) {
     for (int x = 0; x < shape.width; ++x) {
-      const float value = slice[static_cast<std::size_t>(y) * shape.width + static_cast<std::size_t>(x)];
+      const float value = slice[flat_index(y, shape.width, x)];
       if (value > most && circle.contains(x, y)) most = value;
     }
   }
@@ -26,7 +27,7 @@ float largest_inside(const std::vector<float>& slice, light::Shape shape, const 
 void require_printable(const VolumeTask& task, light::Shape shape, const std::string& subject) {
   constexpr float half = 0.5F;
   if (task.demands.grey) return;
-  std::vector<float> slice(static_cast<std::size_t>(shape.width) * shape.height);
+  std::vector<float> slice(product(shape.width, shape.height));
   float most = 0;
   for (int k = 0; k < task.source.slices && most < half; ++k) {
     task.source.target(k, 1, slice.data());
@@ -34,7 +35,7 @@ void require_printable(const VolumeTask& task, light::Shape shape, const std::st
   }
   if (most <= model::coverage_rounding || most >= half) return;
   throw Error{Fault::data, subject + ": no voxel is at least half covered (maximum " + format_number(most, 2) +
-                               "); reduce --voxel or thicken the part"};
+                               "); use smaller voxels or thicken the part"};
 }
 
 void require_light(const VolumeOutcome& outcome, const std::string& subject) {
@@ -44,8 +45,8 @@ void require_light(const VolumeOutcome& outcome, const std::string& subject) {
   }
   if (outcome.metrics.max_part <= 0) {
     throw Error{Fault::data, subject +
-                                 ": no light reaches the part; check that the projector's columns and rows and "
-                                 "--max-intensity cover it"};
+                                 ": no light reaches the part; check that the projector's columns and rows cover it "
+                                 "and the maximum intensity is above 0"};
   }
 }
 

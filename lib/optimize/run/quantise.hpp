@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "resin/response.hpp"
+#include "resin/dither.hpp"
 
 namespace vam::optimize {
 
 /// Rounds fluence to the intensities of a projector's grey levels. Full grey is `full_scale`, or the largest value of
-/// all images when there is none: then images are held until finish(). With error feedback what rounding left over at
-/// one stage angle is added at the next, column by column, so that the sum over angles, which is the dose, stays right.
+/// all images when there is none: then images are held until finish(). With error feedback what rounding leaves over
+/// goes to the neighbouring columns and angles (resin::Dither), so that sums over angles, which are the dose, stay
+/// right.
 class Quantiser {
  public:
   using Emit = std::function<void(const Image&)>;
@@ -25,7 +26,7 @@ class Quantiser {
   [[nodiscard]] Image quantised(const Image& image, float full_scale) const;
   resin::GreyLevels levels_;
   std::optional<double> full_scale_;
-  bool error_feedback_;
+  std::optional<resin::Dither> dither_;
   Emit emit_;
   std::vector<Image> held_;
 };

@@ -1,5 +1,7 @@
 #include "optimize/run/run_method.hpp"
 
+#include <optional>
+
 #include "model/figures.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/slice_figures.hpp"
@@ -37,21 +39,35 @@ bool lost_patience(Standing& standing, const Limits& limits, double reached) {
   return limits.patience > 0 && standing.iteration - standing.best_at >= limits.patience;
 }
 
-/// Why to stop at this iterate; empty = go on.
-std::string look(const Problem& problem, const light::Operator& light, const Limits& limits, const Iterate& state,
-                 Standing& standing, const Watch& watch) {
+/// Whether to stop at this iterate, and why.
+std::optional<StopReason> look(const Problem& problem, const light::Operator& light, const Limits& limits,
+                               const Iterate& state, Standing& standing, const Watch& watch) {
   const bool last = standing.iteration == limits.iterations;
   if (watch || !last) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
     if (watch) watch(standing.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
-    if (standing.iteration >= limits.at_least && reached(limits.until, slices)) return "goal";
-    if (!last && lost_patience(standing, limits, mean_merit(slices))) return "no progress";
+    if (standing.iteration >= limits.at_least && reached(limits.until, slices)) return StopReason::goal;
+    if (!last && lost_patience(standing, limits, mean_merit(slices))) return StopReason::no_progress;
   }
-  return last ? "iterations" : "";
+  return last ? std::optional(StopReason::iterations) : std::nullopt;
 }
 
 }  // namespace
+
+std::string reason_name(StopReason stop) {
+  switch (stop) {
+    case StopReason::goal:
+      return "goal";
+    case StopReason::no_progress:
+      return "no progress";
+    case StopReason::interrupted:
+      return "interrupted";
+    case StopReason::iterations:
+      break;
+  }
+  return "iterations";
+}
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& state, Standing& standing, const Watch& watch, const Pause& pause) {
@@ -61,9 +77,9 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
     standing.iteration = 0;
   }
   for (;; ++standing.iteration) {
-    const std::string reason = looked ? "" : look(problem, light, limits, state, standing, watch);
-    if (!reason.empty()) return {standing.iteration, reason};
-    if (pause && pause()) return {standing.iteration, "interrupted"};
+    const auto stop = looked ? std::nullopt : look(problem, light, limits, state, standing, watch);
+    if (stop) return {standing.iteration, *stop};
+    if (pause && pause()) return {standing.iteration, StopReason::interrupted};
     method.step(problem, light, state);
     looked = false;
   }

@@ -19,9 +19,15 @@ struct Limits {
   double least_gain = 1e-4;             // an improvement of the mean of IoU + PW smaller than this is none
 };
 
+/// Why a run ended: all iterations done, the conditions met, nothing gained by further iterations, or broken off.
+enum class StopReason : int { iterations, goal, no_progress, interrupted };
+
+/// As reports have it: "iterations", "goal", "no progress", "interrupted".
+[[nodiscard]] std::string reason_name(StopReason stop);
+
 struct Outcome {
   int iterations = 0;
-  std::string reason;  // "iterations", "goal", "no progress" or "interrupted"
+  StopReason stop = StopReason::iterations;
 };
 
 /// Called with iteration 0 (the start) and after every step; one entry per slice of the pass.

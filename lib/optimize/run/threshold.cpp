@@ -8,10 +8,7 @@
 
 namespace vam::optimize {
 
-namespace {
-
-/// The least part and the largest void dose of all lights, wherever the window of one of them lies.
-PerSlice to_threshold_of_all(const Scenarios& scenarios, const Problem& problem, const Iterate& state) {
+model::DoseStatistics statistics_of_all(const Scenarios& scenarios, const Problem& problem, const Iterate& state) {
   model::DoseStatistics all;
   const auto add = [&](std::span<const Slab> doses) {
     for (const auto& slice : statistics(doses, problem)) all.merge(slice);
@@ -22,7 +19,14 @@ PerSlice to_threshold_of_all(const Scenarios& scenarios, const Problem& problem,
     scenarios.adjoint(one, state.g, dose);
     add(dose);
   }
-  const model::DoseMetrics m = all.metrics(false);
+  return all;
+}
+
+namespace {
+
+/// The least part and the largest void dose of all lights, wherever the window of one of them lies.
+PerSlice to_threshold_of_all(const Scenarios& scenarios, const Problem& problem, const Iterate& state) {
+  const model::DoseMetrics m = statistics_of_all(scenarios, problem, state).metrics(false);
   const double middle = 0.5 * (m.min_part + m.max_void);
   const double factor = m.part > 0 && middle > 0 ? problem.demands.window.threshold() / middle : 1;
   return filled(state.g.size(), static_cast<float>(factor));

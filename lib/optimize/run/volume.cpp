@@ -34,7 +34,7 @@ struct Work {
   }
 };
 
-Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, light::Shape image, bool alone) {
+Schedule scheduled(const VolumeTask& task, std::span<const SliceDigest> digests, light::Shape image, bool alone) {
   // Slices that share light or dose with their neighbours are not alike because they look alike.
   if (!alone) return make_schedule(digests, -1);
   const std::size_t bytes = static_cast<std::size_t>(image.width) * image.height * sizeof(float);
@@ -42,17 +42,17 @@ Schedule scheduled(const VolumeTask& task, std::span<const Digest> digests, ligh
 }
 
 /// One pass after the other.
-class Run {
+class VolumeRun {
  public:
-  Run(const VolumeTask& task, const light::Operator& light)
+  VolumeRun(const VolumeTask& task, const light::Operator& light)
       : task_(task),
         light_(light),
         reader_(task.source, light.object()),
-        whole_(light.couples_slices() || task.scenarios || task.front),
+        whole_(light.couples_slices() || task.scenarios || task.front || task.certify),
         halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
-    for (const Digest& slice : digests) {
+    for (const SliceDigest& slice : digests) {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
     settle_limit();
@@ -69,8 +69,12 @@ class Run {
       if (!run_pass(next_pass(), work)) return interrupted();
       work = {};
     }
-    VolumeOutcome outcome = ledger_.outcome(task_.demands.grey);
+    VolumeOutcome outcome = ledger_.outcome(task_.demands.grey, schedule_.job_of_slice);
+    for (std::size_t k = 0; k < outcome.asked.size(); ++k) {
+      outcome.asked[k].peak = static_cast<double>(finished_.peaks()[k]);
+    }
     outcome.front = std::move(front_);
+    outcome.certificate = std::move(certificate_);
     outcome.wrong = std::move(wrong_);
     outcome.jobs = jobs();
     outcome.efficiency = finished_.efficiency();
@@ -86,7 +90,7 @@ class Run {
 
   static VolumeOutcome interrupted() {
     VolumeOutcome outcome;
-    outcome.reason = "interrupted";
+    outcome.stop = StopReason::interrupted;
     return outcome;
   }
 
@@ -109,8 +113,8 @@ class Run {
     if (task_.raising.factor > 0) max_intensity_ = std::max(max_intensity_, least);
     const double reached = max_intensity_ * even.largest;
     if (task_.demands.grey || max_intensity_ >= least) return;
-    throw Error{Fault::usage, "an intensity of at most " + format_number(max_intensity_, 3) +
-                                  " (--max-intensity, --turns) gives a dose of at most " + format_number(reached, 3) +
+    throw Error{Fault::usage, "a maximum intensity of " + format_number(max_intensity_, 3) +
+                                  " gives a dose of at most " + format_number(reached, 3) +
                                   " if every pixel is lit at every angle, and the threshold is " +
                                   format_number(threshold) + "; more than " + format_number(least, 3) + " is needed"};
   }
@@ -140,12 +144,13 @@ class Run {
     }
     const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), task_.limits, task_.raising,
                                          work.state, work.search, watch, task_.interruption.pause, at_limit);
-    if (outcome.reason == "interrupted") {
+    if (outcome.stop == StopReason::interrupted) {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
     }
     ledger_.end(outcome);
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
+    if (task_.certify) certificate_ = certify(input.problem, light.blurred(), work.state.g);
     finish(input.problem, work.state, pass, light.sharp(), faced);
     return true;
   }
@@ -251,7 +256,7 @@ class Run {
   const VolumeTask& task_;
   const light::Operator& light_;
   SliceReader reader_;
-  bool whole_;  // slices share light, a scenario's light or a front: all of them are one pass
+  bool whole_;  // slices share light, a scenario's light, a front or a proof: all of them are one pass
   int halo_;
   double max_intensity_ = 0, even_intensity_ = 0;
   RunMark mark_;
@@ -259,6 +264,7 @@ class Run {
   std::vector<int> times_;  // slices that a job stands for
   Ledger ledger_;
   std::vector<FrontPoint> front_;
+  std::optional<Certificate> certificate_;
   std::vector<std::int64_t> wrong_;
   Finished finished_{schedule_, task_.write};
 };
@@ -270,9 +276,9 @@ VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
     const auto able = method_names([](const MethodEntry& entry) { return entry.make({})->keeps_scale(); });
     throw Error{Fault::usage,
                 "this method scales each slice separately and cannot compensate a blur between slices; use " +
-                    join(able, ", ") + ", or neglect the blur (--no-blur)"};
+                    join(able, ", ") + ", or neglect the blur"};
   }
-  return Run(task, light)();
+  return VolumeRun(task, light)();
 }
 
 }  // namespace vam::optimize

@@ -10,6 +10,7 @@
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
 #include "model/outside.hpp"
+#include "optimize/run/certify.hpp"
 #include "optimize/run/front.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
@@ -41,25 +42,35 @@ struct VolumeTask {
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>(double max_intensity)> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
+  bool certify = false;                                  // prove how good any light could be, after the work
   Show front;  // fills the outcome's front while the limit is raised; empty: none
   Interruption interruption;
 };
 
+/// What a slice asks of the exposure that all slices share.
+struct SliceDemand {
+  double min_part = -1;  // least dose of its part; -1: none
+  double max_void = -1;  // largest dose of its void; -1: none
+  double peak = 0;       // largest intensity
+};
+
 struct VolumeOutcome {
-  int jobs = 0;                           // distinct slices computed
-  int iterations = 0;                     // most of any pass
-  std::string reason;                     // of the pass with most iterations; "interrupted": there is no result
-  std::vector<model::DoseMetrics> trace;  // after 0, 1, ... iterations (SliceFigures::mean), when watched
-  model::DoseMetrics metrics;             // of the result, at the common threshold
-  model::DoseMetrics with_cut;            // with the voxels that the surface cuts: part from half coverage on
-  std::optional<model::Outside> outside;  // of the part's box, at that threshold; none of a grey target
-  std::vector<std::int64_t> wrong;        // where slices share light: of each slice, voxels on the wrong side of it
+  int jobs = 0;                              // distinct slices computed
+  int iterations = 0;                        // most of any pass
+  StopReason stop = StopReason::iterations;  // of the pass with most iterations; interrupted: there is no result
+  std::vector<model::DoseMetrics> trace;     // after 0, 1, ... iterations (SliceFigures::mean), when watched
+  model::DoseMetrics metrics;                // of the result, at the common threshold
+  model::DoseMetrics with_cut;               // with the voxels that the surface cuts: part from half coverage on
+  std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
+  std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
+  std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
   double efficiency = 0;
-  double max_intensity = 0;           // the limit, as raised; 0: none
-  double even_intensity = 0;          // 0: not asked for
-  double peak_intensity = 0;          // of the result
-  std::vector<FrontPoint> front;      // by rising limit, when asked for
-  std::int64_t dark_part_voxels = 0;  // of the part, behind the insert from everywhere
+  double max_intensity = 0;                // the limit, as raised; 0: none
+  double even_intensity = 0;               // 0: not asked for
+  double peak_intensity = 0;               // of the result
+  std::optional<Certificate> certificate;  // when asked for
+  std::vector<FrontPoint> front;           // by rising limit, when asked for
+  std::int64_t dark_part_voxels = 0;       // of the part, behind the insert from everywhere
 };
 
 /// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside

@@ -12,13 +12,19 @@ Json report(const VolumeOutcome& outcome) {
   Json json;
   json["distinct_slices"] = outcome.jobs;
   json["iterations"] = outcome.iterations;
-  json["stopped_by"] = outcome.reason;
+  json["stopped_by"] = reason_name(outcome.stop);
   for (const auto& name : model::figure_names()) json[name] = model::figure(outcome.metrics, name);
   json["efficiency"] = outcome.efficiency;
   json["peak_intensity"] = outcome.peak_intensity;
   if (outcome.max_intensity > 0) json["max_intensity"] = outcome.max_intensity;
   if (outcome.even_intensity > 0) json["even_intensity"] = outcome.even_intensity;
   if (outcome.outside) add_to(json, *outcome.outside);
+  if (outcome.certificate) {
+    const double ratio = outcome.metrics.min_part > 0 ? outcome.metrics.max_void / outcome.metrics.min_part : 0;
+    json["certificate"] = {{"void_over_part", ratio},
+                           {"least_void_over_part", outcome.certificate->least},
+                           {"unlimited_void_over_part", outcome.certificate->reached}};
+  }
   json["dark_part_voxels"] = outcome.dark_part_voxels;
   return json;
 }

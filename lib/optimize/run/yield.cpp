@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "light/blur.hpp"
 #include "light/simulation.hpp"
+#include "model/magnification.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/target/exclusions.hpp"
 
@@ -39,11 +40,13 @@ class Bench {
     }
   }
 
-  [[nodiscard]] Printed print(const model::Deviation& by) const {
+  [[nodiscard]] Printed print(const model::PrinterDeviation& by) const {
     const model::DeviatingPrinter off = model::deviate(trial_.printer, trial_.tolerances, by);
     optics::AxisAlignment alignment;
     alignment.angle_offset_rad = off.angle_offset_rad;
-    const light::Simulation simulation(off.printer, alignment, trial_.info, trial_.grid);
+    light::VialSetup setup = light::vial_setup(off.printer, alignment, trial_.info, trial_.grid);
+    setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
+    const light::Simulation simulation(setup);
     std::vector<Image> doses(static_cast<std::size_t>(trial_.grid.nz));
     simulation.dose(frames_, doses, inserts_);
     const model::Resin& resin = off.printer.resin;
@@ -92,7 +95,7 @@ Trials run_trials(const Trial& trial, const VolumeTask& task, std::span<const Im
   trials.nominal = bench.print({});
   for (std::size_t i = 0; i < trial.tolerances.size(); ++i) {
     if (trial.tolerances[i] == 0) continue;
-    model::Deviation plus{}, minus{};
+    model::PrinterDeviation plus{}, minus{};
     plus[i] = 1;
     minus[i] = -1;
     trials.singles.push_back({i, bench.print(minus), bench.print(plus)});
@@ -130,6 +133,7 @@ Json report(const Trials& trials, const model::Tolerances& tolerances) {
                               {"minus", figures_of(single.minus)},
                               {"plus", figures_of(single.plus)}});
   }
+  json["exact"] = model::exact_quantities(tolerances);
   json["costliest"] = model::tolerance_table[trials.costliest].name;
   json["printers"] = trials.printers;
   if (trials.printers > 0) json["yield"] = static_cast<double>(trials.good) / trials.printers;

@@ -36,18 +36,19 @@ class CureCurve {
   /// dose does it, the nearest.
   [[nodiscard]] DoseRange doses(float wanted, float tolerance) const;
   /// A step: misses are measured in dose.
-  [[nodiscard]] bool is_step() const { return kind_ == Kind::step; }
+  [[nodiscard]] bool is_step() const { return kind_ == CurveKind::step; }
 
  private:
-  enum class Kind { linear, step, logistic, table };
-  struct Point {
+  enum class CurveKind { linear, step, logistic, table };
+  struct CurvePoint {
     float dose, response, area;
   };
-  CureCurve(Kind kind, double threshold, double softness) : kind_(kind), threshold_(threshold), softness_(softness) {}
+  CureCurve(CurveKind kind, double threshold, double softness)
+      : kind_(kind), threshold_(threshold), softness_(softness) {}
   [[nodiscard]] std::size_t piece(float dose) const;
-  Kind kind_;
+  CurveKind kind_;
   double threshold_, softness_;
-  std::vector<Point> points_;
+  std::vector<CurvePoint> points_;
 };
 
 }  // namespace vam::optimize

@@ -96,8 +96,8 @@ void settle(Problem& problem) { settle(problem, 0); }
 void check(const Demands& demands) {
   const DoseWindow& w = demands.window;
   if (w.low >= 0 && w.low < w.high) return;
-  throw Error{Fault::usage, "--dose-low " + format_number(w.low) + " is not below --dose-high " +
-                                format_number(w.high) + "; the void's limit must lie below the part's"};
+  throw Error{Fault::usage, "the largest void dose, " + format_number(w.low) + ", is not below the least part dose, " +
+                                format_number(w.high)};
 }
 
 void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle) {

@@ -67,8 +67,8 @@ struct Slices {
   const float* tolerance = nullptr;  // >= 0
 };
 
-/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out (check with reach()). Slices
-/// that are not stacked are settled.
+/// Adds up to 16 slices in a slab of their own. What lies outside the circle is left out. Slices that are not
+/// stacked are settled.
 void append(Problem& problem, const Slices& slices, int count, int width, int height, const Circle& circle);
 
 /// A slice without any voxel wholly inside the part is a thin wall's or is cut by a flat end of the part: if its

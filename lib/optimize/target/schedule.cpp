@@ -6,7 +6,7 @@
 
 namespace vam::optimize {
 
-Digest digest(std::span<const float> slice, Digest seed) {
+SliceDigest digest(std::span<const float> slice, SliceDigest seed) {
   constexpr std::uint64_t prime_a = 0x9FB21C651E98DF25U;  // odd constants with well mixed bits (xxHash, wyhash)
   constexpr std::uint64_t prime_b = 0xA0761D6478BD642FU;
   for (std::size_t i = 0; i < slice.size(); i += 2) {
@@ -18,13 +18,13 @@ Digest digest(std::span<const float> slice, Digest seed) {
   return seed;
 }
 
-Schedule make_schedule(std::span<const Digest> slices, int keep) {
+Schedule make_schedule(std::span<const SliceDigest> slices, int keep) {
   struct Known {
     int job;
     int jobs_then;  // how many jobs there were when it was last used
   };
   Schedule schedule;
-  std::map<Digest, Known> known;
+  std::map<SliceDigest, Known> known;
   for (std::size_t k = 0; k < slices.size(); ++k) {
     const int jobs = static_cast<int>(schedule.slice_of_job.size());
     const auto found = known.find(slices[k]);

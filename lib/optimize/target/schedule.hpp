@@ -8,10 +8,11 @@
 
 namespace vam::optimize {
 
-using Digest = std::array<std::uint64_t, 2>;
+using SliceDigest = std::array<std::uint64_t, 2>;
 
 /// 128-bit digest of a slice's values: two slices with equal digests are equal, short of an accident of 2^-100.
-[[nodiscard]] Digest digest(std::span<const float> slice, Digest seed = {0x9E3779B97F4A7C15U, 0xC2B2AE3D27D4EB4FU});
+[[nodiscard]] SliceDigest digest(std::span<const float> slice,
+                                 SliceDigest seed = {0x9E3779B97F4A7C15U, 0xC2B2AE3D27D4EB4FU});
 
 struct Schedule {
   std::vector<int> job_of_slice;
@@ -21,6 +22,6 @@ struct Schedule {
 
 /// Slices in order; a slice takes the result of an earlier equal one if since that one's last use at most `keep` other
 /// jobs have begun, so that at most about `keep` finished results must be held for later.
-[[nodiscard]] Schedule make_schedule(std::span<const Digest> slices, int keep);
+[[nodiscard]] Schedule make_schedule(std::span<const SliceDigest> slices, int keep);
 
 }  // namespace vam::optimize

@@ -16,7 +16,7 @@ using model::Circle;
 
 /// What the checks want to know of one slice.
 struct Findings {
-  Digest digest{};
+  SliceDigest digest{};
   double reach = -1;  // of the part from the axis, voxels
   bool has_void = false;
   long shared_with_insert = 0;
@@ -116,9 +116,9 @@ std::vector<SliceData> SliceReader::read(int k, int count) const {
   return slices;
 }
 
-std::vector<Digest> check(const VolumeSource& source, light::Shape shape, const Circle& circle, bool grey) {
+std::vector<SliceDigest> check(const VolumeSource& source, light::Shape shape, const Circle& circle, bool grey) {
   const SliceReader reader(source, shape);
-  std::vector<Digest> digests;
+  std::vector<SliceDigest> digests;
   bool any_part = false;
   bool any_void = grey;
   for (int first = 0; first < source.slices; first += lanes) {

@@ -43,7 +43,7 @@ class SliceReader {
 /// Digests of all slices, everything that they hold included. Throws Fault::data for a target that is empty, or full,
 /// or reaches beyond the circle, one that shares voxels with the insert, and weights or tolerances below 0; `grey`:
 /// values are doses, so a full target is as good as any.
-[[nodiscard]] std::vector<Digest> check(const VolumeSource& source, light::Shape shape, const model::Circle& circle,
-                                        bool grey);
+[[nodiscard]] std::vector<SliceDigest> check(const VolumeSource& source, light::Shape shape,
+                                             const model::Circle& circle, bool grey);
 
 }  // namespace vam::optimize

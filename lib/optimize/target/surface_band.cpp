@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::optimize {
@@ -23,8 +24,8 @@ SurfaceBand::Distances SurfaceBand::to_kind(const std::vector<float>& slice, boo
   Distances along(slice.size());
   Distances across(slice.size(), far_away);
   parallel_for(height_, [&](int y) {
-    const float* from = slice.data() + static_cast<std::size_t>(y) * width;
-    float* row = along.data() + static_cast<std::size_t>(y) * width;
+    const float* from = slice.data() + product(y, width);
+    float* row = along.data() + product(y, width);
     const auto sweep = [&](auto begin, auto end, int step) {
       float d = far_away;
       for (auto x = begin; x != end; x += step) {
@@ -38,7 +39,7 @@ SurfaceBand::Distances SurfaceBand::to_kind(const std::vector<float>& slice, boo
   });
   const int reach = static_cast<int>(reach_);
   parallel_for(height_, [&](int y) {
-    float* to = across.data() + static_cast<std::size_t>(y) * width;
+    float* to = across.data() + product(y, width);
     for (int dy = std::max(-reach, -y); dy <= std::min(reach, height_ - 1 - y); ++dy) {
       const float* row = along.data() + static_cast<std::size_t>(y + dy) * width;
       const auto rise = static_cast<float>(dy * dy);
@@ -49,7 +50,7 @@ SurfaceBand::Distances SurfaceBand::to_kind(const std::vector<float>& slice, boo
 }
 
 void SurfaceBand::clear(int k, float* values) const {
-  const std::size_t pixels = static_cast<std::size_t>(width_) * height_;
+  const std::size_t pixels = product(width_, height_);
   const int reach = static_cast<int>(reach_);
   std::vector<float> here(pixels);
   std::vector<float> slice(pixels);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/index.hpp"
+
 namespace vam::resin {
 
 namespace {
@@ -28,10 +30,7 @@ FeatureErrors CureTotals::all() const {
 }
 
 CureMap::CureMap(int width, int height, int slices, const CureLimits& limits)
-    : width_(width),
-      limits_(limits),
-      pixels_(static_cast<std::size_t>(width) * height),
-      rows_(static_cast<std::size_t>(height)) {
+    : width_(width), limits_(limits), pixels_(product(width, height)), rows_(height) {
   for (CureTotals& row : rows_) row.by_height.resize(slices + 1);
 }
 
@@ -41,7 +40,7 @@ void CureMap::settle(Pixel& pixel, float extra, CureTotals& totals) {
   FeatureErrors& errors = totals.by_height[pixel.pending];
   const double through = static_cast<double>(pixel.above) + static_cast<double>(extra);
   ++errors.features;
-  errors.under += static_cast<double>(pixel.under);
+  errors.under += pixel.under;
   errors.through += through;
   errors.worst = std::max(errors.worst, static_cast<double>(pixel.under) + through);
   pixel.pending = 0;
@@ -68,7 +67,7 @@ void CureMap::step(Pixel& pixel, bool solid, double cured, CureTotals& totals) c
 
 void CureMap::add_row(int y, const float* phi, double full, const float* below, const float* solid) {
   CureTotals& totals = rows_[y];
-  Pixel* pixel = pixels_.data() + static_cast<std::size_t>(y) * width_;
+  Pixel* pixel = pixels_.data() + product(y, width_);
   for (int x = 0; x < width_; ++x) {
     const double light = full * static_cast<double>(phi[x]);
     const auto next = static_cast<double>(below[x]);
@@ -108,7 +107,7 @@ CureTotals CureMap::finish() {
 CureTotals judge_column(const std::vector<std::uint8_t>& part, const std::vector<double>& phi,
                         const CureLimits& limits) {
   const std::vector<double> omega = dose_at_nodes(phi, limits);
-  CureMap map(1, 1, static_cast<int>(part.size()), limits);
+  CureMap map(1, 1, count_of(part), limits);
   for (std::size_t n = 0; n < phi.size(); ++n) {
     const auto light = static_cast<float>(phi[n]);
     const auto below = static_cast<float>(omega[n + 1]);

@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::resin {
@@ -25,7 +26,7 @@ PartColumns::PartColumns(int width, int height, int slices, ExposureMode exposur
       slices_(slices),
       nodes_(exposure == ExposureMode::continuous ? slices + 1 : slices),
       planes_(exposure == ExposureMode::continuous),
-      pixels_(static_cast<std::size_t>(width) * height),
+      pixels_(product(width, height)),
       stride_(static_cast<std::size_t>(nodes_ + 63) / 64),
       words_(pixels_ * stride_) {}
 
@@ -53,8 +54,8 @@ std::uint64_t PartColumns::bits(std::size_t column, int first) const {
 }
 
 void PartColumns::unpack_row(int y, int first, int count, float* out, std::size_t stride) const {
-  std::vector<std::uint64_t> row(static_cast<std::size_t>(width_));
-  const std::size_t start = static_cast<std::size_t>(y) * row.size();
+  std::vector<std::uint64_t> row(width_);
+  const std::size_t start = product(y, row.size());
   for (int done = 0; done < count; done += word_bits) {
     for (std::size_t x = 0; x < row.size(); ++x) row[x] = bits(start + x, first + done);
     for (int k = 0; k < std::min(word_bits, count - done); ++k) {
@@ -65,8 +66,7 @@ void PartColumns::unpack_row(int y, int first, int count, float* out, std::size_
 }
 
 void PartColumns::unpack(int first, int count, float* out) const {
-  parallel_for(height_,
-               [&](int y) { unpack_row(y, first, count, out + static_cast<std::size_t>(y) * width_, pixels_); });
+  parallel_for(height_, [&](int y) { unpack_row(y, first, count, out + product(y, width_), pixels_); });
 }
 
 void PartColumns::append(int count, const float* values, float threshold) {
@@ -77,7 +77,7 @@ void PartColumns::append(int count, const float* values, float threshold) {
     const int bit = filled_ % word_bits;
     const int batch = std::min(count - done, word_bits - bit);
     parallel_for(height_, [&](int y) {
-      const std::size_t start = static_cast<std::size_t>(y) * row_pixels;
+      const std::size_t start = product(y, row_pixels);
       std::uint64_t* word = staged_.data() + start;
       for (int k = 0; k < batch; ++k) {
         const float* value = values + static_cast<std::size_t>(done + k) * pixels_ + start;
@@ -95,8 +95,8 @@ void PartColumns::append(int count, const float* values, float threshold) {
 void PartColumns::flush() {
   const auto index = static_cast<std::size_t>(filled_ - 1) / 64;
   parallel_for(height_, [&](int y) {
-    const std::size_t start = static_cast<std::size_t>(y) * width_;
-    for (std::size_t p = start; p < start + static_cast<std::size_t>(width_); ++p) {
+    const std::size_t start = product(y, width_);
+    for (std::size_t p = start; p < start + width_; ++p) {
       words_[p * stride_ + index] = staged_[p];
       staged_[p] = 0;
     }
@@ -142,12 +142,12 @@ int PartColumns::next_slice(std::size_t column, int n, bool solid) const {
 }
 
 PartSurvey survey(const PartColumns& part) {
-  std::vector<PartSurvey> rows(static_cast<std::size_t>(part.height()));
+  std::vector<PartSurvey> rows(part.height());
   parallel_for(part.height(), [&](int y) {
     PartSurvey& row = rows[y];
     row.gaps.resize(part.slices() + 1);
-    const std::size_t start = static_cast<std::size_t>(y) * part.width();
-    for (std::size_t p = start; p < start + static_cast<std::size_t>(part.width()); ++p) {
+    const std::size_t start = product(y, part.width());
+    for (std::size_t p = start; p < start + part.width(); ++p) {
       int begin = part.next_slice(p, 0, true);
       if (begin < part.slices()) ++row.columns;
       while (begin < part.slices()) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
 #include "base/text.hpp"
@@ -79,11 +80,11 @@ SliceCorrection::SliceCorrection(const PartColumns& part, const CureLimits& limi
     : part_(part), limits_(limits), dose_(limits, limit, slices), cursor_(part, dose_), omega_(part.columns()) {
   parallel_for(part_.height(), [&](int y) {
     cursor_.place(y, 0);
-    const std::size_t start = static_cast<std::size_t>(y) * part_.width();
+    const std::size_t start = product(y, part_.width());
     for (int x = 0; x < part_.width(); ++x) {
       const double low = dose_.table()[cursor_.below(y)[x]];
       const double high = dose_.table()[cursor_.above(y)[x]];
-      omega_[start + static_cast<std::size_t>(x)] = std::fabs(std::min(low, high));
+      omega_[start + x] = std::fabs(std::min(low, high));
     }
   });
 }
@@ -95,9 +96,8 @@ void SliceCorrection::next(Image& slice) {
   const CorrectionKernels& kernel = kernels();
   parallel_for(part_.height(), [&](int y) {
     cursor_.step_down(y, node);
-    kernel.forward({dose_.table(), cursor_.below(y), cursor_.above(y),
-                    omega_.data() + static_cast<std::size_t>(y) * part_.width(), slice.row(y), part_.width(), node,
-                    limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
+    kernel.forward({dose_.table(), cursor_.below(y), cursor_.above(y), omega_.data() + product(y, part_.width()),
+                    slice.row(y), part_.width(), node, limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
   });
 }
 
@@ -130,7 +130,7 @@ int LevelCorrection::level_for(double phi) const {
   const double need = phi - 0.5 * dose_tolerance / limits_.gain;
   const double bin = std::clamp(need / limits_.phi_max * guess_bins, 0.0, static_cast<double>(guess_bins));
   int level = first_guess_[static_cast<std::size_t>(bin)];
-  while (level + 1 < static_cast<int>(phi_.size()) && phi_[level] < need) ++level;
+  while (level + 1 < count_of(phi_) && phi_[level] < need) ++level;
   return level;
 }
 
@@ -141,14 +141,14 @@ void LevelCorrection::previous(std::vector<std::uint16_t>& slice) {
   const CorrectionKernels& kernel = kernels();
   parallel_for(part_.height(), [&](int y) {
     cursor_.step_up(y, node);
-    const std::size_t start = static_cast<std::size_t>(y) * part_.width();
-    std::vector<float> wanted(static_cast<std::size_t>(part_.width()));
+    const std::size_t start = product(y, part_.width());
+    std::vector<float> wanted(part_.width());
     double* omega = omega_.data() + start;
     kernel.wanted({dose_.table(), cursor_.below(y), cursor_.above(y), omega, wanted.data(), part_.width(), node,
                    limits_.q, limits_.gain, limits_.phi_min, limits_.phi_max});
     for (int x = 0; x < part_.width(); ++x) {
       const int level = level_for(static_cast<double>(wanted[x]));
-      slice[start + static_cast<std::size_t>(x)] = static_cast<std::uint16_t>(level);
+      slice[start + x] = static_cast<std::uint16_t>(level);
       omega[x] = limits_.gain * phi_[level] + limits_.q * omega[x];
     }
   });

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "resin/curethrough/target_dose.hpp"
@@ -33,7 +34,7 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
   point.printable = burst_slices(limits) > 0 && limits.settled(limits.phi_min) < 1;
   if (!point.printable) return point;
   point.extra_slices = extra_slices(part, limits);
-  Column column = correct_column(part, limits, {omega_max}, point.extra_slices);
+  CorrectedColumn column = correct_column(part, limits, {omega_max}, point.extra_slices);
   // The same light in units of the dose that really cures.
   const double scale = assumed.full_cure_dose_mj_cm3 / study.process.full_cure_dose_mj_cm3;
   for (double& phi : column.phi) phi *= scale;
@@ -55,10 +56,10 @@ StudyPoint judge(const std::vector<std::uint8_t>& part, const Study& study, cons
 std::vector<std::uint8_t> graded_ladder(const std::vector<int>& heights) {
   std::vector<std::uint8_t> part;
   for (const int height : heights) {
-    part.insert(part.end(), static_cast<std::size_t>(height), std::uint8_t{0});
-    part.insert(part.end(), static_cast<std::size_t>(height), std::uint8_t{1});
+    part.insert(part.end(), height, std::uint8_t{0});
+    part.insert(part.end(), height, std::uint8_t{1});
   }
-  if (!heights.empty()) part.insert(part.end(), static_cast<std::size_t>(heights.back()), std::uint8_t{0});
+  if (!heights.empty()) part.insert(part.end(), heights.back(), std::uint8_t{0});
   return part;
 }
 
@@ -71,7 +72,7 @@ std::vector<StudyPoint> run_study(const std::vector<std::uint8_t>& part, const S
   const CureLimits truth = limits_of(study.process);
   const CureTotals plain = judge_column(part, plain_column(part, truth), truth);
   std::vector<StudyPoint> points(study.dose_factors.size() * study.omega_max.size());
-  parallel_for(static_cast<int>(points.size()), [&](int i) {
+  parallel_for(count_of(points), [&](int i) {
     const auto index = static_cast<std::size_t>(i);
     points[index] = judge(part, study, plain, study.dose_factors[index / study.omega_max.size()],
                           study.omega_max[index % study.omega_max.size()]);

@@ -14,8 +14,8 @@ namespace vam::resin {
 
 struct Study {
   Process process;                   // full_cure_dose_mj_cm3 is the dose that really cures: what the print is judged by
-  double gel_dose_mj_cm3 = 0;        // D_gel: what dose_factors multiply
-  std::vector<double> dose_factors;  // assumed full-cure dose / D_gel
+  double gel_dose_mj_cm3 = 0;        // D_c: what dose_factors multiply
+  std::vector<double> dose_factors;  // assumed full-cure dose / D_c
   std::vector<double> omega_max;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::resin {
@@ -13,15 +14,15 @@ namespace {
 constexpr double unreachable = 1e300;
 
 // A run of equal nodes.
-struct Run {
+struct FeatureRun {
   int first;
   int last;
   bool inside;
 };
 
-std::vector<Run> runs_of(std::span<const std::uint8_t> nodes) {
-  std::vector<Run> runs;
-  for (int n = 0; n < static_cast<int>(nodes.size()); ++n) {
+std::vector<FeatureRun> runs_of(std::span<const std::uint8_t> nodes) {
+  std::vector<FeatureRun> runs;
+  for (int n = 0; n < count_of(nodes); ++n) {
     const bool inside = nodes[n] != 0;
     if (runs.empty() || runs.back().inside != inside) runs.push_back({n, n, inside});
     runs.back().last = n;
@@ -30,10 +31,10 @@ std::vector<Run> runs_of(std::span<const std::uint8_t> nodes) {
 }
 
 // Target at every node of the column, by the look-up rule of TargetDose.
-std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose) {
+std::vector<double> targets(const std::vector<FeatureRun>& runs, const TargetDose& dose) {
   std::vector<double> target(static_cast<std::size_t>(dose.slices()) + 1);
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const Run& run = runs[r];
+    const FeatureRun& run = runs[r];
     int below = 0;
     int above = 0;
     if (run.inside) {
@@ -51,9 +52,9 @@ std::vector<double> targets(const std::vector<Run>& runs, const TargetDose& dose
 }
 
 // The largest violation of constraints i-iii by the doses really reached.
-double excess(const std::vector<Run>& runs, const std::vector<double>& omega, const DoseLimit& limit) {
+double excess(const std::vector<FeatureRun>& runs, const std::vector<double>& omega, const DoseLimit& limit) {
   double worst = 0;
-  for (const Run& run : runs) {
+  for (const FeatureRun& run : runs) {
     const bool unlimited = limit.strong_base && run.first == 0;
     const double omega_max = unlimited ? unreachable : limit.omega_max;
     for (int n = run.first; n <= run.last; ++n) {
@@ -87,9 +88,7 @@ TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int sli
   values_.resize(sections * static_cast<std::size_t>(slices + 1));
   for (int d = 0; d <= slices; ++d) {
     const double power = std::pow(limits.q, d);
-    const auto put = [&](Section s, double value) {
-      values_[static_cast<std::size_t>(section(s)) + static_cast<std::size_t>(d)] = value;
-    };
+    const auto put = [&](Stretch s, double value) { values_[static_cast<std::size_t>(section(s)) + d] = value; };
     const double drained = (1 - lowest * (1 - power)) / power;  // may overflow to inf: no limit
     const double filled = std::max(1.0, highest * (1 - power) + power);
     put(fill, std::min(filled, omega_max));
@@ -103,17 +102,17 @@ TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int sli
   }
 }
 
-Column correct_column(std::span<const std::uint8_t> part, const CureLimits& limits, const DoseLimit& limit,
-                      int extra_slices) {
-  const int slices = static_cast<int>(part.size()) + extra_slices;
+CorrectedColumn correct_column(std::span<const std::uint8_t> part, const CureLimits& limits, const DoseLimit& limit,
+                               int extra_slices) {
+  const int slices = count_of(part) + extra_slices;
   const TargetDose dose(limits, limit, slices);
   std::vector<std::uint8_t> nodes = nodes_of(part, limits.exposure);
   nodes.resize(slices + 1, 0);
   if (limits.exposure == ExposureMode::continuous && extra_slices == 0 && !part.empty()) nodes.back() = part.back();
-  const std::vector<Run> runs = runs_of(nodes);
+  const std::vector<FeatureRun> runs = runs_of(nodes);
   const std::vector<double> target = targets(runs, dose);
 
-  Column column;
+  CorrectedColumn column;
   column.phi.resize(slices);
   column.omega.resize(slices + 1, 0.0);
   for (std::size_t n = column.phi.size(); n-- > 0;) {
@@ -133,9 +132,9 @@ int extra_slices(int last_slice, int slices, const CureLimits& limits) {
 }
 
 int extra_slices(std::span<const std::uint8_t> part, const CureLimits& limits) {
-  int last = static_cast<int>(part.size()) - 1;
+  int last = count_of(part) - 1;
   while (last >= 0 && part[last] == 0) --last;
-  return extra_slices(last, static_cast<int>(part.size()), limits);
+  return extra_slices(last, count_of(part), limits);
 }
 
 std::vector<double> plain_column(std::span<const std::uint8_t> part, const CureLimits& limits) {

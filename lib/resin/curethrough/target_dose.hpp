@@ -50,15 +50,15 @@ class TargetDose {
   [[nodiscard]] int above_none() const { return section(none); }            ///< no feature further up
 
  private:
-  enum Section { fill, strong, drain, open, fall, rise, dark, none, sections };
-  [[nodiscard]] int section(Section s) const { return static_cast<int>(s) * (slices_ + 1); }
+  enum Stretch { fill, strong, drain, open, fall, rise, dark, none, sections };
+  [[nodiscard]] int section(Stretch s) const { return static_cast<int>(s) * (slices_ + 1); }
   int slices_;
   bool strong_base_;
   std::vector<double> values_;
 };
 
 /// One corrected column.
-struct Column {
+struct CorrectedColumn {
   std::vector<double> phi;    // per slice, the extra ones included; every value in [phi_min, phi_max]
   std::vector<double> omega;  // per node, phi.size() + 1 values
   int fused_gaps = 0;         // gaps of a single slice: there is no node in which the dose could fall below 1
@@ -69,8 +69,8 @@ struct Column {
 /// The exact solution for part[n] = "slice n is in the part", followed by extra_slices empty slices. When no Phi
 /// satisfies every constraint the column is marked infeasible and holds the nearest attempt; nothing is clipped
 /// silently.
-[[nodiscard]] Column correct_column(std::span<const std::uint8_t> part, const CureLimits& limits,
-                                    const DoseLimit& limit, int extra_slices);
+[[nodiscard]] CorrectedColumn correct_column(std::span<const std::uint8_t> part, const CureLimits& limits,
+                                             const DoseLimit& limit, int extra_slices);
 
 /// Slices after the part's own that the burst below its last feature needs; 0 for an empty column or without a burst.
 [[nodiscard]] int extra_slices(std::span<const std::uint8_t> part, const CureLimits& limits);

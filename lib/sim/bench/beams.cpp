@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "base/index.hpp"
+#include "base/stats/normal.hpp"
 #include "model/circle.hpp"
 
 namespace vam::sim {
@@ -14,14 +16,12 @@ namespace {
 constexpr int sheets = 512;
 constexpr double reach = 4;  // standard deviations of a blur
 
-double normal_integral(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
-
 // Part of a stretch from top to bottom, blurred, that a row gives: a box moved over a box, or a Gaussian over one.
 double share(int row, double top, double bottom, double sigma) {
   if (sigma <= 0) return std::max(0.0, std::min(bottom, row + 0.5) - std::max(top, row - 0.5)) / (bottom - top);
   const double middle = 0.5 * (top + bottom);
   const double wide = std::hypot(sigma, (bottom - top) / std::sqrt(12.0));
-  return normal_integral((row + 0.5 - middle) / wide) - normal_integral((row - 0.5 - middle) / wide);
+  return stats::normal_integral((row + 0.5 - middle) / wide) - stats::normal_integral((row - 0.5 - middle) / wide);
 }
 
 std::vector<double> blurred(const std::vector<double>& light, double sigma) {
@@ -30,8 +30,8 @@ std::vector<double> blurred(const std::vector<double>& light, double sigma) {
   std::vector<double> kernel;
   double sum = 0;
   for (std::ptrdiff_t i = -half; i <= half; ++i) {
-    kernel.push_back(normal_integral((static_cast<double>(i) + 0.5) / sigma) -
-                     normal_integral((static_cast<double>(i) - 0.5) / sigma));
+    kernel.push_back(stats::normal_integral((static_cast<double>(i) + 0.5) / sigma) -
+                     stats::normal_integral((static_cast<double>(i) - 0.5) / sigma));
     sum += kernel.back();
   }
   std::vector<double> out(light.size());
@@ -115,7 +115,7 @@ double LitRow::mean(double from, double to) const {
 LitImage::LitImage(const GreyImage& image, double gamma) : image_(image), gamma_(gamma) {
   const auto width = static_cast<std::size_t>(image.width);
   for (int row = 0; row < image.height; ++row) {
-    const auto* values = image.values.data() + static_cast<std::size_t>(row) * width;
+    const auto* values = image.values.data() + product(row, width);
     const bool same = row > 0 && std::equal(values, values + width, values - width);
     twin_.push_back(same ? twin_.back() : row);
   }
@@ -130,8 +130,8 @@ double LitImage::light(int column, int row) const {
 
 int LitImage::uniform(double top, double bottom, double sigma_px) const {
   const double more = reach * sigma_px;
-  const auto first = static_cast<int>(std::floor(top - more + 0.5));
-  const auto last = static_cast<int>(std::floor(bottom + more + 0.5));
+  const auto first = floor_int(top - more + 0.5);
+  const auto last = floor_int(bottom + more + 0.5);
   if (last < 0 || first >= image_.height) return image_.height;  // all dark
   if (first < 0 || last >= image_.height) return -1;
   const int twin = twin_[first];
@@ -140,9 +140,9 @@ int LitImage::uniform(double top, double bottom, double sigma_px) const {
 
 LitRow LitImage::between(double top, double bottom, double sigma_px) const {
   const double more = reach * sigma_px;
-  std::vector<double> sum(static_cast<std::size_t>(image_.width));
-  const auto last = std::min(static_cast<int>(std::floor(bottom + more + 0.5)), image_.height - 1);
-  for (int row = std::max(static_cast<int>(std::floor(top - more + 0.5)), 0); row <= last; ++row) {
+  std::vector<double> sum(image_.width);
+  const auto last = std::min(floor_int(bottom + more + 0.5), image_.height - 1);
+  for (int row = std::max(floor_int(top - more + 0.5), 0); row <= last; ++row) {
     const double part = share(row, top, bottom, sigma_px);
     for (int c = 0; c < image_.width; ++c) sum[c] += part * light(c, row);
   }

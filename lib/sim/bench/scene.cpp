@@ -8,6 +8,7 @@
 
 #include "base/constants.hpp"
 #include "base/image.hpp"
+#include "base/index.hpp"
 #include "base/random.hpp"
 #include "sim/bench/private/beams.hpp"
 
@@ -38,7 +39,7 @@ double normal(std::uint64_t key) {
 }
 
 // What a camera column sees: its chief ray in the resin, and what each of the projector's sheets of light gives it.
-struct Sight {
+struct ColumnSight {
   SimRay ray;
   std::vector<float> gains;  // for full light
   std::vector<float> blurs;  // which of the beam's widths it has, between two of them
@@ -53,9 +54,9 @@ struct SimScene::State {
   int bits = 8;
   double pixel_mm = 0;
   SimBeams beams;
-  std::vector<double> blurs_px;  // standard deviations of the beam, from its focus outwards
-  double furthest_mm = 0;        // from the focus to the end of the resin
-  std::vector<Sight> sights;     // of each column
+  std::vector<double> blurs_px;     // standard deviations of the beam, from its focus outwards
+  double furthest_mm = 0;           // from the focus to the end of the resin
+  std::vector<ColumnSight> sights;  // of each column
 
   State(const SimBench& about, int binning, int depth) : bench(about), bits(depth), beams(about.printer) {
     columns = bench.columns / binning;
@@ -71,12 +72,12 @@ struct SimScene::State {
     for (int c = 0; c < columns; ++c) sights.push_back(sight(c, to_camera));
   }
 
-  [[nodiscard]] Sight sight(int column, const SimShells& shells) const {
+  [[nodiscard]] ColumnSight sight(int column, const SimShells& shells) const {
     const auto ray_at = [&](double place) {
       return sim_ray((place - 0.5 * (columns - 1)) * pixel_mm, bench.printer.camera.distance_mm, shells);
     };
     const std::size_t sheets = beams.columns().size() - 1;
-    Sight seen{ray_at(column), std::vector<float>(sheets), std::vector<float>(sheets)};
+    ColumnSight seen{ray_at(column), std::vector<float>(sheets), std::vector<float>(sheets)};
     const double diameter_mm = 2 * model::resin_radius_mm(bench.printer.vial);
     for (int i = 0; i < rays_a_column; ++i) {
       const SimRay ray = ray_at(column + (i + 0.5) / rays_a_column - 0.5);
@@ -101,9 +102,9 @@ struct SimScene::State {
         sheets[b].push_back(lit[b].mean(ends[k] + shift, ends[k + 1] + shift));
       }
     }
-    std::vector<double> light(static_cast<std::size_t>(columns));
+    std::vector<double> light(columns);
     for (std::size_t c = 0; c < light.size(); ++c) {
-      const Sight& seen = sights[c];
+      const ColumnSight& seen = sights[c];
       for (std::size_t k = 0; k < seen.gains.size(); ++k) {
         const auto narrow = std::min(static_cast<std::size_t>(seen.blurs[k]), lit.size() - 1);
         const auto wide = std::min(narrow + 1, lit.size() - 1);
@@ -145,7 +146,7 @@ struct SimScene::State {
 class GlowingRow {
  public:
   GlowingRow(const SimScene::State& scene, const GreyImage* image, double shift)
-      : scene_(scene), shift_(shift), light_(static_cast<std::size_t>(scene.columns)) {
+      : scene_(scene), shift_(shift), light_(scene.columns) {
     if (image != nullptr) image_.emplace(*image, scene.bench.gamma);
   }
   // Between two heights, top first.
@@ -198,7 +199,7 @@ Image SimScene::State::light(const SimMoment& moment) const {
     for (int c = 0; c < columns; ++c) {
       // The image of a vial that stands moved_px to the right, between two computed columns.
       const double from = c - moved_px;
-      const auto left = static_cast<int>(std::floor(from));
+      const auto left = floor_int(from);
       const double part = from - left;
       double value = printed(from, z_mm, moment.angle_deg, growth);
       for (const auto& [column, weight] : {std::pair(left, 1 - part), std::pair(left + 1, part)}) {

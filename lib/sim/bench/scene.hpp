@@ -1,6 +1,6 @@
 // What a camera beside the vial would see, for simulated cameras: the projector's image as fluorescence in the resin,
-// and the print, which scatters; or an even card in the vial's place. Its rays are traced by code of its own, from the
-// same closed form as those of lib/optics; tests/oracle holds both to vector Snell.
+// and the print, which scatters; or an even card in the vial's place. Its rays are traced by vectors, which shares
+// nothing with lib/optics.
 #pragma once
 
 #include <memory>

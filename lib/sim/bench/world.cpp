@@ -52,7 +52,7 @@ void SimWorld::read_logs() {
   for (const Json& line : shown_.fresh()) {
     if (line.value("event", "") == "pattern" && sources_.draw) sources_.images = sources_.draw(line);
     if (line.value("event", "") != "flip") continue;
-    const double t_s = line.value("t_monotonic_s", 0.0);
+    const double t_s = line.value("t_monotonic_s", 0.0) + sources_.latency_s;
     double lit_s = 0;
     if (!flips_.empty()) {
       lit_s = flips_.back().lit_before_s;

@@ -8,6 +8,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/camera/camera_backends.hpp"
 #include "sim/cameras/open_camera.hpp"
@@ -19,20 +20,21 @@ namespace {
 
 // As vam-sim-camera(1) has them, with underscores.
 const std::vector<std::string>& option_names() {
-  static const std::vector<std::string> names{"columns",      "rows",  "axis_column", "tilt",       "centre", "wobble",
-                                              "wobble_phase", "beam",  "divergence",  "focus",      "gamma",  "glow",
-                                              "card",         "noise", "vignetting",  "background", "part",   "lit",
-                                              "flips",        "seed",  "angles",      "speed",      "bits",   "lag",
-                                              "lose",         "cut",   "vanish",      "pace",       "shrink", "log"};
+  static const std::vector<std::string> names{
+      "columns",    "rows", "axis_offset", "tilt",  "centre", "wobble", "wobble_phase", "beam",   "divergence",
+      "focus",      "glow", "card",        "noise", "lag",    "lit",    "background",   "part",   "projector_gamma",
+      "vignetting", "drop", "flips",       "seed",  "follow", "speed",  "incomplete",   "unplug", "bits",
+      "pace",       "log",  "shrink"};
   return names;
 }
 
-// The former names, most with their unit, stand for the same options.
+// The former names, which work for one release.
 device::Address with_present_names(const device::Address& address) {
   device::Address renamed = address;
-  const auto rename = [&renamed](const char* former, const char* present) {
+  const auto rename = [&renamed, &address](const char* former, const char* present) {
     auto option = renamed.options.extract(former);
     if (option.empty()) return;
+    warn("device '" + address.text + "': option " + former + " is now " + present);
     option.key() = present;
     renamed.options.insert(std::move(option));
   };
@@ -47,6 +49,12 @@ device::Address with_present_names(const device::Address& address) {
   rename("lit_s", "lit");
   rename("lag_ms", "lag");
   rename("shown", "flips");
+  rename("angles", "follow");
+  rename("axis_column", "axis_offset");
+  rename("gamma", "projector_gamma");
+  rename("lose", "drop");
+  rename("cut", "incomplete");
+  rename("vanish", "unplug");
   return renamed;
 }
 
@@ -57,7 +65,7 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   bench.printer = room.printer;
   bench.columns = address.integer("columns", 8, 8192).value_or(bench.columns);
   bench.rows = address.integer("rows", 8, 8192).value_or(bench.rows);
-  bench.axis_column = address.number("axis_column", bench.axis_column, -4096, 4096);
+  bench.axis_column = address.number("axis_offset", bench.axis_column, -4096, 4096);
   bench.tilt_deg = address.number("tilt", bench.tilt_deg, -30, 30);
   bench.centre_px = address.number("centre", bench.centre_px, -4096, 4096);
   bench.wobble_mm = address.number("wobble", bench.wobble_mm, 0, 100);
@@ -67,7 +75,7 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   bench.focus_mm = address.number("focus", bench.focus_mm, -1000, 1000);
   bench.card = address.integer("card", 0, 1).value_or(0) == 1;
   bench.glow = address.number("glow", bench.glow, 0, 1e4);
-  bench.gamma = address.number("gamma", bench.gamma, 0.1, 10);
+  bench.gamma = address.number("projector_gamma", bench.gamma, 0.1, 10);
   bench.vignetting = address.number("vignetting", bench.vignetting, 0, 1);
   bench.background = address.number("background", bench.background, 0, 1);
   bench.noise = address.number("noise", bench.noise, 0, 1);
@@ -75,16 +83,16 @@ SimCameraSettings settings_of(const device::Address& address, const device::Came
   bench.seed = address.integer("seed", 0, 1000000000).value_or(bench.seed);
   if (address.options.contains("part")) bench.bodies = parse_bodies(address.word("part", ""));
   sim.sources.speed_deg_s = address.number("speed", 0, -1000, 1000);
-  sim.sources.angles = address.word("angles", "");
+  sim.sources.angles = address.word("follow", "");
   sim.sources.shown = address.word("flips", "");
   sim.sources.images = room.images;
   sim.fps = requested.fps.value_or(sim.fps);
   sim.exposure_us = requested.exposure_us.value_or(sim.exposure_us);
   sim.bits = address.integer("bits", 8, 16).value_or(sim.bits);
   sim.lag_s = 1e-3 * address.number("lag", 0, -1000, 1000);
-  sim.lose = parse_frames(address.word("lose", ""));
-  sim.cut = parse_frames(address.word("cut", ""));
-  sim.vanish = address.integer("vanish", 0, 1000000000).value_or(-1);
+  sim.drop = parse_frames(address.word("drop", ""));
+  sim.incomplete = parse_frames(address.word("incomplete", ""));
+  sim.unplug = address.integer("unplug", 0, 1000000000).value_or(-1);
   sim.shrink = address.integer("shrink", 1, 1000000000).value_or(-1);
   if (sim.bits != 8 && sim.bits != 16) throw Error{Fault::usage, "device '" + address.text + "': bits=8 or bits=16"};
   return sim;
@@ -124,7 +132,7 @@ class SimCamera final : public device::Camera {
     world_.emplace(sim_.sources, start_s_);
   }
   void trigger() override {
-    if (!triggered_) throw Error{Fault::usage, "sim: not in trigger mode; use --trigger software"};
+    if (!triggered_) throw Error{Fault::usage, "sim: not in trigger mode; select the software trigger"};
     trigger_s_ = clock_.now_s();
   }
 
@@ -139,13 +147,13 @@ class SimCamera final : public device::Camera {
       }
       if (in_step_) clock_.sleep_until(frame.time_s + 0.5e-6 * sim_.exposure_us);
       clock_.sleep_until(0);  // a signal ends this, too
-      if (frame.number == sim_.vanish)
+      if (frame.number == sim_.unplug)
         throw Error{Fault::absent, "sim: the camera is disconnected; check cable and power"};
       if (frame.number == sim_.shrink) {
         const auto other = device::another_size(mode(), scene_.columns(), scene_.rows() / 2);
         throw Error{Fault::protocol, "sim: sends images of " + *other + "; run it again"};
       }
-      if (sim_.lose.contains(frame.number) && !triggered_) continue;
+      if (sim_.drop.contains(frame.number) && !triggered_) continue;
       const double middle_s = frame.time_s - sim_.lag_s;
       const double half_s = 0.5e-6 * sim_.exposure_us;
       frame.levels =
@@ -160,7 +168,7 @@ class SimCamera final : public device::Camera {
               {"lit_s", moment.lit_s},
               {"levels", fingerprint(frame.levels)}});
       }
-      if (sim_.cut.contains(frame.number)) {
+      if (sim_.incomplete.contains(frame.number)) {
         frame.complete = false;
         const auto half = frame.levels.values.begin() + static_cast<std::ptrdiff_t>(frame.levels.values.size() / 2);
         std::fill(half, frame.levels.values.end(), std::uint16_t{0});
@@ -219,6 +227,10 @@ std::unique_ptr<device::Camera> open_sim_camera(const device::Address& requested
   if (settings.trigger != "free" && settings.trigger != "software") {
     throw Error{Fault::usage,
                 "device '" + address.text + "': no trigger " + settings.trigger + "; available: software"};
+  }
+  if (settings.gain || settings.black_level || settings.gamma != 1 || !settings.format.empty()) {
+    throw Error{Fault::usage, "device '" + address.text +
+                                  "': has no setting for gain, gamma, black level or pixel format; omit them"};
   }
   SimCameraSettings sim = settings_of(address, settings, bench);
   const int binning = settings.binning.value_or(1);

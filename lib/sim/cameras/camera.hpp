@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -18,11 +19,14 @@ struct SimCameraSettings {
   double fps = 25;
   double exposure_us = 20000;
   int bits = 8;
-  double lag_s = 0;     // from what a frame shows to its time stamp
-  std::set<long> lose;  // numbers of frames that never arrive
-  std::set<long> cut;   // and of those whose lower half does not
-  long vanish = -1;     // the camera is unplugged before this frame
-  long shrink = -1;     // from this frame on, one after the first, images are half as high
+  std::string maker = "aravis";
+  std::optional<device::StampMoment> stamp;  // that time stamps name; none: as the maker says
+  bool latch = true;                         // the camera's clock can be read
+  double lag_s = 0;                          // from that moment to the time stamp
+  std::set<long> drop;                       // numbers of frames that never arrive
+  std::set<long> incomplete;                 // and of those whose lower half does not
+  long unplug = -1;                          // the camera is unplugged before this frame
+  long shrink = -1;                          // from this frame on, one after the first, images are half as high
 };
 
 /// "3,7" to numbers of frames. Throws Fault::usage.

@@ -16,6 +16,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "sim/cameras/gv_clock.hpp"
+#include "sim/cameras/makers.hpp"
 
 namespace vam::sim {
 
@@ -25,10 +27,10 @@ namespace {
 constexpr double cut_ratio = 0.4;
 constexpr unsigned gain_auto_off = 1;  // and 2 is Continuous, in the description of Aravis' fake camera
 constexpr unsigned gain_auto_on = 2;
-constexpr double readout_s = 0.004;  // from the end of an exposure to the time stamp
+constexpr double readout_s = 0.004;  // from the end of an exposure, and its time stamp, to the frame
 
 // Aravis' own description lets the region be as large as the sensor whatever the binning is; no real camera does.
-std::string description() {
+std::string description(const SimCameraSettings& settings) {
   ArvFakeCamera* plain = arv_fake_camera_new("plain");
   std::size_t size = 0;
   const char* text = arv_fake_camera_get_genicam_xml(plain, &size);
@@ -48,17 +50,19 @@ std::string description() {
     if (before == std::string::npos) throw Error{Fault::bug, "the fake camera's description has no " + name};
     xml.insert(before, node);
   }
+  xml.insert(xml.find("<Port Name=\"Device\""),
+             sim_maker(settings.maker).nodes + (settings.latch ? GvClock::nodes() : ""));
   return xml;
 }
 
 // Aravis takes the description from a file.
 class DescriptionFile {
  public:
-  DescriptionFile() {
+  explicit DescriptionFile(const SimCameraSettings& settings) {
     const char* folder = std::getenv("TMPDIR");
     path_ = std::string(folder != nullptr && *folder != '\0' ? folder : "/tmp") + "/vam-sim-camera-XXXXXX";
     const int file = mkstemp(path_.data());
-    const std::string xml = description();
+    const std::string xml = description(settings);
     const bool good = file >= 0 && write(file, xml.data(), xml.size()) == static_cast<ssize_t>(xml.size());
     if (file >= 0) close(file);
     if (!good) throw Error{Fault::no_output, path_ + ": cannot be written (" + std::strerror(errno) + ")"};
@@ -97,6 +101,8 @@ struct SimGvCamera::State {
   SimLog log;
   ArvGvFakeCamera* server = nullptr;
   std::optional<SimWorld> world;
+  std::unique_ptr<GvClock> clock;
+  device::StampMoment stamp = device::StampMoment::end;
   std::unique_ptr<SimScene> scene;
   std::pair<unsigned, int> scene_of;  // binning and bits
   long next = 0;
@@ -109,13 +115,22 @@ struct SimGvCamera::State {
     return value;
   }
 
+  // The bootstrap registers of GigE Vision for these: 32 bytes each.
+  void name(const SimMaker& maker) const {
+    for (const auto& [place, text] : {std::pair(0x48U, maker.vendor), std::pair(0x68U, maker.model)}) {
+      std::string bytes = text;
+      bytes.resize(32, '\0');
+      arv_fake_camera_write_memory(registers(), place, 32, bytes.data());
+    }
+  }
+
   void set(unsigned place, unsigned value) const { arv_fake_camera_write_register(registers(), place, value); }
 
   // In the server's thread, right before the frame's packets leave.
   void fill(ArvBuffer* buffer, double exposure_us, ArvPixelFormat format) {
     const double now_s = device::real_clock().now_s();
     const long number = next++;
-    if (number == settings.vanish) std::_Exit(0);  // no goodbye: the cable is pulled
+    if (number == settings.unplug) std::_Exit(0);  // no goodbye: the cable is pulled
     if (number + 1 == settings.shrink) set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, get(ARV_FAKE_CAMERA_REGISTER_HEIGHT) / 2);
     if (!world) world.emplace(settings.sources, now_s);
     const int bits = format == ARV_PIXEL_FORMAT_MONO_16 ? 16 : 8;
@@ -125,15 +140,17 @@ struct SimGvCamera::State {
       scene_of = wanted;
     }
     // The exposure ended a while ago: what was on until then has come to the logs.
-    const double end_s = now_s - readout_s - settings.lag_s;
+    const double end_s = now_s - readout_s - std::max(settings.lag_s, 0.0);
     const double middle_s = end_s - 0.5e-6 * exposure_us;
     GreyImage levels =
         region(scene->render(world->during(end_s - 1e-6 * exposure_us, end_s), exposure_us, number), buffer);
     const SimMoment moment = world->at(middle_s);
+    arv_buffer_set_timestamp(buffer,
+                             clock->ns(middle_s - device::to_middle_s(stamp, 1e-6 * exposure_us) + settings.lag_s));
     amplify(levels, number);
     copy(levels, buffer);
-    const bool lost = settings.lose.contains(number);
-    const bool cut = settings.cut.contains(number);
+    const bool lost = settings.drop.contains(number);
+    const bool cut = settings.incomplete.contains(number);
     g_object_set(server, "gvsp-lost-ratio", lost ? 1.0 : cut ? cut_ratio : 0.0, nullptr);
     if (!log) return;
     log({{"t_monotonic_s", middle_s},
@@ -146,11 +163,15 @@ struct SimGvCamera::State {
          {"levels", fingerprint(levels)}});
   }
 
-  // Gain in dB, as many makers count GainRaw or Gain; while it is automatic, as cameras are delivered, it wanders.
+  // Gain in dB, as many makers count GainRaw or Gain. While it is automatic, as cameras are delivered, it wanders, and
+  // a value that was set is lost (Point Grey, Flea3 USB 3.0 Technical Reference, GAIN: a write in auto mode is
+  // ignored).
   void amplify(GreyImage& levels, long number) const {
-    const bool automatic = get(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE) != gain_auto_off;
-    const double gain_db = automatic ? 3 + 3 * std::sin(static_cast<double>(number))
-                                     : static_cast<double>(get(ARV_FAKE_CAMERA_REGISTER_GAIN_RAW));
+    if (get(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE) != gain_auto_off) {
+      set(ARV_FAKE_CAMERA_REGISTER_GAIN_RAW,
+          static_cast<unsigned>(std::lround(3 + 3 * std::sin(static_cast<double>(number)))));
+    }
+    const auto gain_db = static_cast<double>(get(ARV_FAKE_CAMERA_REGISTER_GAIN_RAW));
     if (gain_db == 0) return;
     const double factor = std::pow(10, gain_db / 20);
     for (auto& level : levels.values) {
@@ -177,6 +198,17 @@ struct SimGvCamera::State {
       if (levels.bits > 8) *bytes++ = static_cast<std::uint8_t>(level >> 8U);
     }
   }
+
+  void set_registers() const {
+    const auto put = [&](unsigned place, double value) { set(place, static_cast<unsigned>(value)); };
+    put(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, settings.bench.columns);
+    put(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, settings.bench.rows);
+    put(ARV_FAKE_CAMERA_REGISTER_WIDTH, settings.bench.columns);
+    put(ARV_FAKE_CAMERA_REGISTER_HEIGHT, settings.bench.rows);
+    put(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, 1e6 / settings.fps);
+    put(ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US, settings.exposure_us);
+    put(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE, gain_auto_on);
+  }
 };
 
 SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& address, const std::string& serial,
@@ -186,21 +218,22 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
   state_->settings = settings;
   state_->log = std::move(log);
   g_random_set_seed(static_cast<guint32>(settings.bench.seed));
-  const DescriptionFile description;
+  const DescriptionFile description(settings);
   state_->server = arv_gv_fake_camera_new_full(address.c_str(), serial.c_str(), description.path());
   if (arv_gv_fake_camera_is_running(state_->server) == 0) {
     g_object_unref(state_->server);
     throw Error{Fault::busy, address + ": cannot serve a camera there; use the address of a network interface"};
   }
   ArvFakeCamera* camera = state_->registers();
-  const auto set = [&](unsigned place, double value) { state_->set(place, static_cast<unsigned>(value)); };
-  set(ARV_FAKE_CAMERA_REGISTER_SENSOR_WIDTH, settings.bench.columns);
-  set(ARV_FAKE_CAMERA_REGISTER_SENSOR_HEIGHT, settings.bench.rows);
-  set(ARV_FAKE_CAMERA_REGISTER_WIDTH, settings.bench.columns);
-  set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, settings.bench.rows);
-  set(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, 1e6 / settings.fps);
-  set(ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US, settings.exposure_us);
-  set(ARV_FAKE_CAMERA_REGISTER_GAIN_MODE, gain_auto_on);
+  state_->set_registers();
+  const SimMaker& maker = sim_maker(settings.maker);
+  state_->name(maker);
+  state_->stamp = settings.stamp.value_or(maker.stamp);
+  state_->clock = std::make_unique<GvClock>([state = state_.get()](unsigned place) { return state->get(place); },
+                                            [camera](unsigned place, const std::string& bytes) {
+                                              arv_fake_camera_write_memory(
+                                                  camera, place, static_cast<guint32>(bytes.size()), bytes.data());
+                                            });
   arv_fake_camera_set_fill_pattern(
       camera,
       [](ArvBuffer* buffer, void* state, guint32 exposure_us, guint32, ArvPixelFormat format) {
@@ -214,6 +247,9 @@ SimGvCamera::SimGvCamera(const SimCameraSettings& settings, const std::string& a
       state_.get());
 }
 
-SimGvCamera::~SimGvCamera() { g_object_unref(state_->server); }
+SimGvCamera::~SimGvCamera() {
+  state_->clock.reset();
+  g_object_unref(state_->server);
+}
 
 }  // namespace vam::sim

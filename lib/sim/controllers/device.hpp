@@ -17,6 +17,8 @@ namespace vam::sim {
 class SimDevice {
  public:
   virtual ~SimDevice() = default;
+  /// A user has opened the port, before his first byte.
+  virtual void opened(double /*now_s*/) {}
   /// Bytes that arrive at now_s.
   virtual void receive(std::string_view bytes, double now_s) = 0;
   /// Lets time pass.

@@ -91,6 +91,7 @@ class SimGcs final : public SimController {
 
   void on_standing() override {
     if (homing_) referenced_ = motor_.target_deg() == 0;
+    if (referenced_) unknown_deg_ = 0;
     homing_ = false;
   }
 
@@ -161,8 +162,8 @@ class SimGcs final : public SimController {
   }
 
   std::string query(const std::string& command, const std::vector<std::string>& words) {
-    if (command == "POS?") return "=" + decimal(motor_.angle_deg()) + "\n";
-    if (command == "MOV?") return "=" + decimal(motor_.target_deg()) + "\n";
+    if (command == "POS?") return "=" + decimal(motor_.angle_deg() - unknown_deg_) + "\n";
+    if (command == "MOV?") return "=" + decimal(motor_.target_deg() - unknown_deg_) + "\n";
     if (command == "ONT?") return motor_.moving() ? "=0\n" : "=1\n";
     if (command == "SVO?") return servo_ ? "=1\n" : "=0\n";
     if (command == "FRF?") return referenced_ ? "=1\n" : "=0\n";
@@ -198,6 +199,7 @@ class SimGcs final : public SimController {
       if (motor_.moving()) return refuse(axis_in_motion);
       motor_.set_angle(value);
       referenced_ = true;
+      unknown_deg_ = 0;
       note("zeroed", {{"angle_deg", value}});
     } else if (command == "VEL") {
       if (value < 0 || value > settings_.max_speed_deg_s) return refuse(too_fast);
@@ -229,7 +231,8 @@ class SimGcs final : public SimController {
   double speed_deg_s_ = 10;
   bool addressed_ = false;
   bool servo_ = false;
-  bool referenced_ = false;
+  bool referenced_ = settings_.referenced;
+  double unknown_deg_ = referenced_ ? 0 : settings_.home_deg;  // a stage without reference counts from its power-on
   bool reference_mode_ = true;
   bool homing_ = false;
 };

@@ -35,6 +35,7 @@ struct SimGcsSettings {
   double jitter_s = 0;        // a random part more, of either half
   std::uint64_t seed = 1;
   int address = 1;
+  bool referenced = false;     // GCS: at power-on, as if a former user had found the reference
   bool reset_at_open = false;  // GRBL, as most boards do by the DTR line: greets, and counts from where it stands
   bool old_firmware = false;   // Zaber: 6.28, which takes no speed with a motion
   double log_period_s = 0.01;  // of the true angle, while the stage moves

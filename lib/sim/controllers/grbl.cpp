@@ -19,6 +19,15 @@ class SimGrbl final : public SimController {
  public:
   using SimController::SimController;
 
+  // Interface: a board that the opened port resets stops, has lost its position, and greets.
+  void opened(double now_s) override {
+    advance(now_s);
+    if (!settings_.reset_at_open) return;
+    if (motor_.moving()) motor_.brake();
+    homing_ = alarm_ = greeted_ = false;
+    line_.clear();
+  }
+
  private:
   // Commands, "Real-Time Commands": single bytes, acted on at once, anywhere in a line, without an "ok".
   void hear(char c) override {
@@ -38,8 +47,8 @@ class SimGrbl final : public SimController {
 
   void on_standing() override {
     if (!homing_) return;
-    homing_ = false;
-    motor_.set_angle(0);
+    homing_ = alarm_ = false;  // Commands, "$H": it also unlocks
+    unknown_deg_ = 0;
     if (std::exchange(asked_while_homing_, false)) answer(status());
     answer_spoilt(homing_fault_, homing_fault_ == "error" ? "ALARM:9\r\n" : "ok\r\n", "");
   }
@@ -70,8 +79,8 @@ class SimGrbl final : public SimController {
   std::string status() const {
     const char* state = alarm_ ? "Alarm" : homing_ ? "Home" : motor_.moving() ? "Jog" : "Idle";
     std::array<char, 120> text{};
-    std::snprintf(text.data(), text.size(), "<%s|MPos:%.3f,0.000,0.000|FS:%.0f,0>\r\n", state, motor_.angle_deg(),
-                  60 * motor_.speed_deg_s());
+    std::snprintf(text.data(), text.size(), "<%s|MPos:%.3f,0.000,0.000|FS:%.0f,0>\r\n", state,
+                  motor_.angle_deg() - unknown_deg_, 60 * motor_.speed_deg_s());
     return text.data();
   }
 
@@ -83,10 +92,9 @@ class SimGrbl final : public SimController {
     return text.data();
   }
 
-  // Interface: a board that is reset by the opened port greets, and counts from where it stands.
   void handle(const std::string& line) {
     if (settings_.reset_at_open && !std::exchange(greeted_, true)) {
-      motor_.set_angle(0);
+      unknown_deg_ = motor_.angle_deg();
       return answer("\r\nGrbl 1.1h ['$' for help]\r\n");
     }
     if (line.empty()) return answer("ok\r\n");
@@ -120,9 +128,10 @@ class SimGrbl final : public SimController {
     const bool good = target_deg && feed && *feed > 0 && !alarm_ && !homing_;
     const bool inside = good && *target_deg >= settings_.min_deg && *target_deg <= settings_.max_deg;
     reply(line, "$J", inside ? "ok\r\n" : good ? "error:15\r\n" : "error:9\r\n");
-    if (inside && !silent()) go(*target_deg, std::min(*feed / 60, settings_.max_speed_deg_s));
+    if (inside && !silent()) go(*target_deg + unknown_deg_, std::min(*feed / 60, settings_.max_speed_deg_s));
   }
 
+  double unknown_deg_ = settings_.home_deg;  // a board that was not homed counts from where it was switched on
   bool homing_ = false;
   bool greeted_ = false;
   bool asked_while_homing_ = false;

@@ -26,6 +26,7 @@ SimGcsSettings sim_settings(const device::Address& address) {
   settings.max_deg = address.number("travel_deg", settings.max_deg, 0, 1e7);
   settings.min_deg = -settings.max_deg;
   settings.home_deg = address.number("home_deg", settings.home_deg, -180, 180);
+  settings.referenced = true;  // it lives as long as one command: nobody could have homed it before
   settings.seed = static_cast<std::uint64_t>(address.integer("seed", 0, 1000000000).value_or(1));
   settings.address = address.integer("address", 1, 16).value_or(1);
   for (const auto& fault : split(address.word("fault", ""), ',')) settings.faults.push_back(parse_sim_fault(fault));

@@ -10,7 +10,9 @@ namespace {
 
 class SimPort final : public device::Port {
  public:
-  SimPort(std::unique_ptr<SimDevice> device, device::Clock& clock) : device_(std::move(device)), clock_(clock) {}
+  SimPort(std::unique_ptr<SimDevice> device, device::Clock& clock) : device_(std::move(device)), clock_(clock) {
+    device_->opened(clock_.now_s());
+  }
 
   void write(std::string_view bytes) override {
     require_plugged();

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/inotify.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -45,9 +46,23 @@ Pty::Pty() {
   cfmakeraw(&settings);
   tcsetattr(slave_, TCSANOW, &settings);
   fcntl(master_, F_SETFL, O_NONBLOCK);
+  opens_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  if (opens_ < 0 || inotify_add_watch(opens_, name.data(), IN_OPEN) < 0) {
+    throw Error{Fault::absent, path_ + ": cannot be watched (" + std::strerror(errno) + ")"};
+  }
 }
 
-Pty::~Pty() { unplug(); }
+Pty::~Pty() {
+  unplug();
+  if (opens_ >= 0) close(opens_);
+}
+
+bool Pty::take_opened() {
+  std::array<char, 4096> events{};
+  bool opened = false;
+  while (read(opens_, events.data(), events.size()) > 0) opened = true;
+  return opened;
+}
 
 void Pty::unplug() {
   if (master_ >= 0) close(master_);
@@ -76,6 +91,8 @@ void serve(Pty& pty, SimDevice& device, std::optional<int> baud) {
     if ((watched[0].revents & POLLIN) != 0) {
       std::array<char, 4096> bytes{};
       const ssize_t count = read(pty.master(), bytes.data(), bytes.size());
+      // After the bytes were read: a user opens before he writes.
+      if (pty.take_opened()) device.opened(clock.now_s());
       if (count > 0) {
         const std::string text(bytes.data(), static_cast<std::size_t>(count));
         device.receive(right_rate ? text : garbled(text), clock.now_s());

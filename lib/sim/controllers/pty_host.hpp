@@ -19,10 +19,13 @@ class Pty {
   [[nodiscard]] const std::string& path() const { return path_; }
   /// What the tool at the other end has set.
   [[nodiscard]] int baud() const;
+  /// Whether a user has opened it since the last call.
+  [[nodiscard]] bool take_opened();
   void unplug();
 
  private:
   int master_ = -1;
+  int opens_ = -1;  // inotify's
   int slave_ = -1;  // keeps the terminal alive between its users
   std::string path_;
 };

@@ -38,16 +38,10 @@ class SimTic final : public device::UsbLink {
       case 0x8C:
         break;  // Reset command timeout, as every other command does, too
       case 0x89:
-        motor_.brake();
-        uncertain_ = true;
-        homing_ = to_position_ = false;
-        note("halt");
+        brake();
         break;  // Halt and hold: abruptly, so that the position is uncertain
       case 0xE3:
-        if (argument != 0) throw Error{Fault::protocol, name_ + ": turns to positions only"};
-        to_position_ = false;
-        motor_.halt();
-        note("slowing");
+        slow_to(argument);
         break;  // Set target velocity: 0 decelerates
       case 0xE6:
         motor_.set_speed(argument * 1e-4 / settings_.steps_per_deg);
@@ -76,7 +70,11 @@ class SimTic final : public device::UsbLink {
     heard_s_ = clock_.now_s();
     const std::string answer = packed(variable(index), length);
     if (spoils("garbage")) return std::string(answer.size(), '\x5A');
-    return spoils("truncated") ? answer.substr(0, answer.size() / 2) : answer;
+    if (spoils("truncated")) {  // as the link to a real one says
+      throw Error{Fault::protocol,
+                  name_ + ": answered " + std::to_string(length / 2) + " bytes instead of " + std::to_string(length)};
+    }
+    return answer;
   }
 
   void write_report(const std::string&) override { throw Error{Fault::protocol, name_ + ": has no reports"}; }
@@ -117,6 +115,20 @@ class SimTic final : public device::UsbLink {
   }
 
   // Settings, "Command timeout": stops when no command came for so long.
+  void brake() {
+    motor_.brake();
+    uncertain_ = true;
+    homing_ = to_position_ = false;
+    note("halt");
+  }
+
+  void slow_to(std::int32_t speed) {
+    if (speed != 0) throw Error{Fault::protocol, name_ + ": turns to positions only"};
+    to_position_ = false;
+    motor_.halt();
+    note("slowing");
+  }
+
   void advance() {
     const bool moved = motor_.moving();
     motor_.advance(std::min(clock_.now_s(), heard_s_ + settings_.command_timeout_s));

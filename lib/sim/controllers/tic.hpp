@@ -23,6 +23,7 @@ struct SimTicSettings {
   int fault_after = 0;
 };
 
+/// A link that answers as the controller would; faults show as errors of its transfers.
 [[nodiscard]] std::unique_ptr<device::UsbLink> make_sim_tic(const SimTicSettings& settings, device::Clock& clock,
                                                             SimLog log);
 

@@ -11,20 +11,20 @@ namespace vam::solid {
 namespace {
 
 // A triangle by its sorted corners, whichever way round it runs.
-struct Key {
+struct TriangleKey {
   Triangle sorted;
   int index;
   bool even;  // an even permutation of the sorted corners
 };
 
 // All triangles, those with the same corners next to each other, in the order of the file.
-std::vector<Key> sorted_keys(const model::TriangleSoup& mesh) {
+std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
   // Counting sort by the lowest corner, then each short bucket by the others.
   std::vector<std::size_t> first(mesh.points.size() + 1);
   for (const Triangle& t : mesh.triangles) ++first[static_cast<std::size_t>(std::min({t[0], t[1], t[2]})) + 1];
   for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  std::vector<Key> keys(mesh.triangles.size());
+  std::vector<TriangleKey> keys(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     Triangle t = mesh.triangles[i];
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -34,7 +34,8 @@ std::vector<Key> sorted_keys(const model::TriangleSoup& mesh) {
   }
   for (std::size_t low = 0; low + 1 < first.size(); ++low) {
     std::sort(keys.begin() + static_cast<std::ptrdiff_t>(first[low]),
-              keys.begin() + static_cast<std::ptrdiff_t>(first[low + 1]), [](const Key& a, const Key& b) {
+              keys.begin() + static_cast<std::ptrdiff_t>(first[low + 1]),
+              [](const TriangleKey& a, const TriangleKey& b) {
                 return a.sorted != b.sorted ? a.sorted < b.sorted : a.index < b.index;
               });
   }
@@ -102,7 +103,7 @@ class Patches {
 }  // namespace
 
 long drop_duplicates(model::TriangleSoup& mesh) {
-  const std::vector<Key> keys = sorted_keys(mesh);
+  const std::vector<TriangleKey> keys = sorted_keys(mesh);
   std::vector<char> drop(mesh.triangles.size(), 0);
   std::vector<std::size_t> cancelling;  // the first of copies that cancel
   for (auto group = keys.begin(); group != keys.end();) {
@@ -110,7 +111,7 @@ long drop_duplicates(model::TriangleSoup& mesh) {
     auto stop = group;
     for (; stop != keys.end() && stop->sorted == group->sorted; ++stop) balance += stop->even ? 1 : -1;
     const auto keep =
-        std::find_if(group, stop, [&](const Key& key) { return balance == 0 || key.even == (balance > 0); });
+        std::find_if(group, stop, [&](const TriangleKey& key) { return balance == 0 || key.even == (balance > 0); });
     for (auto key = group; key != stop; ++key) drop[key->index] = key != keep ? 1 : 0;
     if (balance == 0) cancelling.push_back(static_cast<std::size_t>(keep->index));
     group = stop;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "solid/mesh/private/triangle_tree.hpp"
 #include "solid/mesh/surface.hpp"
@@ -19,15 +20,15 @@ double edge(const Vector3& a, const Vector3& b, double x, double y) {
 }
 
 // Raises the pixels that a triangle covers, by barycentric coordinates of their middles.
-void raise(const Corners& t, HeightMap& map) {
+void raise(const TriangleCorners& t, HeightMap& map) {
   const double area = edge(t[0], t[1], t[2][0], t[2][1]);
   if (area == 0) return;  // upright: its edges belong to its neighbours
   const auto [low_x, high_x] = std::minmax({t[0][0], t[1][0], t[2][0]});
   const auto [low_y, high_y] = std::minmax({t[0][1], t[1][1], t[2][1]});
   const auto column = [&](double x) { return (x - map.x_mm) / map.pixel_mm; };
   const auto row = [&](double y) { return (map.y_mm - y) / map.pixel_mm; };
-  for (int j = static_cast<int>(std::ceil(row(high_y))); j <= static_cast<int>(std::floor(row(low_y))); ++j) {
-    for (int i = static_cast<int>(std::ceil(column(low_x))); i <= static_cast<int>(std::floor(column(high_x))); ++i) {
+  for (int j = ceil_int(row(high_y)); j <= floor_int(row(low_y)); ++j) {
+    for (int i = ceil_int(column(low_x)); i <= floor_int(column(high_x)); ++i) {
       const double x = map.x_mm + i * map.pixel_mm;
       const double y = map.y_mm - j * map.pixel_mm;
       const double a = edge(t[1], t[2], x, y) / area;
@@ -55,7 +56,7 @@ HeightMap height_map(const model::TriangleSoup& mesh, double pixel_mm) {
   HeightMap map{Image(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN()),
                 pixel_mm, 0.5 * (box.low[0] + box.high[0] - (width - 1) * pixel_mm),
                 0.5 * (box.low[1] + box.high[1] + (height - 1) * pixel_mm)};
-  for (const Corners& triangle : corners_of(mesh)) raise(triangle, map);
+  for (const TriangleCorners& triangle : corners_of(mesh)) raise(triangle, map);
   return map;
 }
 

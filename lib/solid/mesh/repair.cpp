@@ -22,7 +22,7 @@ void drop(model::TriangleSoup& mesh, Repair& done) {
 }
 
 struct Border {
-  std::vector<int> points;      // of open edges
+  std::vector<int> points;      // of boundary edges
   std::vector<double> lengths;  // of those edges
 };
 
@@ -58,8 +58,8 @@ void close_cracks(model::TriangleSoup& mesh, Repair& done) {
 void count_edges(const model::TriangleSoup& mesh, Repair& done) {
   EdgeTable(mesh.triangles, mesh.points.size()).for_each([&](int, std::span<const HalfEdge> edge) {
     const auto rising = std::count_if(edge.begin(), edge.end(), [](const HalfEdge& half) { return half.rising; });
-    if (edge.size() % 2 != 0) ++done.open_edges;
-    if (edge.size() > 2) ++done.crowded_edges;
+    if (edge.size() % 2 != 0) ++done.boundary_edges;
+    if (edge.size() > 2) ++done.non_manifold_edges;
     if (2 * rising != static_cast<std::ptrdiff_t>(edge.size())) ++done.unbalanced_edges;
   });
 }
@@ -93,8 +93,8 @@ std::string Repair::summary() const {
   say(degenerate_dropped, "dropped ", " degenerate triangles");
   say(duplicates_dropped, "dropped ", " duplicate triangles");
   say(flipped, "turned over ", " triangles");
-  say(open_edges, "", " open edges remain");
-  say(crowded_edges, "", " edges have more than two triangles");
+  say(boundary_edges, "", " boundary edges remain");
+  say(non_manifold_edges, "", " non-manifold edges (more than two triangles)");
   say(unorientable, "", " edges cannot be oriented");
   return join(parts, ", ");
 }

@@ -13,19 +13,19 @@ struct Repair {
   double weld_distance = 0;     // of near points, in the mesh's unit; 0 when none were needed
   long degenerate_dropped = 0;  // triangles that use a point twice
   long duplicates_dropped = 0;
-  long flipped = 0;           // triangles turned over
-  long components = 0;        // connected through edges shared by two triangles
-  long cavities = 0;          // closed components that bound a void
-  long open_edges = 0;        // borders of holes: edges with an odd number of triangles
-  long crowded_edges = 0;     // non-manifold: more than two triangles
-  long unbalanced_edges = 0;  // as many triangles one way as the other: not so. 0 means that inside is exact
-  long unorientable = 0;      // edges across which no consistent orientation exists
+  long flipped = 0;             // triangles turned over
+  long components = 0;          // connected through edges shared by two triangles
+  long cavities = 0;            // closed components that bound a void
+  long boundary_edges = 0;      // borders of holes: edges with an odd number of triangles
+  long non_manifold_edges = 0;  // non-manifold: more than two triangles
+  long unbalanced_edges = 0;    // as many triangles one way as the other: not so. 0 means that inside is exact
+  long unorientable = 0;        // edges across which no consistent orientation exists
 
   /// Every edge is run through as often one way as the other, so winding numbers are whole numbers everywhere.
   [[nodiscard]] bool closed() const { return unbalanced_edges == 0; }
   /// Was the mesh changed, beyond the welding of equal points that every STL file needs?
   [[nodiscard]] bool changed() const;
-  /// "welded 12 near points, dropped 3 duplicate triangles, turned over 7 triangles; 40 open edges remain"
+  /// "welded 12 near points, dropped 3 duplicate triangles, turned over 7 triangles; 40 boundary edges remain"
   [[nodiscard]] std::string summary() const;
 };
 

@@ -12,12 +12,12 @@ namespace vam::solid {
 
 namespace {
 
-Corners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
+TriangleCorners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
   const auto& t = mesh.triangles[triangle];
   return {mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
 }
 
-Vector3 twice_area(const Corners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
+Vector3 twice_area(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
 }  // namespace
 
@@ -76,7 +76,7 @@ std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int c
   for (int s = 0; s < count; ++s) {
     const double at = (s + unit(random)) / count * total;
     while (triangle + 1 < running.size() && running[triangle] < at) ++triangle;
-    const Corners c = corners(mesh, triangle);
+    const TriangleCorners c = corners(mesh, triangle);
     const Vector3 normal = twice_area(c);
     const double area = length(normal);
     if (!(area > 0)) continue;

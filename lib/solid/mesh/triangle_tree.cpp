@@ -10,12 +10,12 @@ namespace {
 constexpr int leaf_size = 4;
 
 // Builds the nodes over an order of the triangles.
-class Builder {
+class TreeBuilder {
  public:
-  Builder(const std::vector<Corners>& soup, std::vector<TriangleNode>& nodes) : soup_(soup), nodes_(nodes) {
+  TreeBuilder(const std::vector<TriangleCorners>& soup, std::vector<TriangleNode>& nodes) : soup_(soup), nodes_(nodes) {
     order_.resize(soup.size());
     std::iota(order_.begin(), order_.end(), 0);
-    for (const Corners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
+    for (const TriangleCorners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
     nodes_.reserve(soup.size());
     if (!soup.empty()) build(0, static_cast<int>(soup.size()));
   }
@@ -65,7 +65,7 @@ class Builder {
     }
   }
 
-  const std::vector<Corners>& soup_;
+  const std::vector<TriangleCorners>& soup_;
   std::vector<TriangleNode>& nodes_;
   std::vector<Vector3> centroids_;
   std::vector<int> order_;
@@ -82,8 +82,8 @@ double distance2(const TriangleNode& node, const Vector3& p) {
 
 }  // namespace
 
-TriangleTree::TriangleTree(std::vector<Corners> soup) {
-  const Builder builder(soup, nodes);
+TriangleTree::TriangleTree(std::vector<TriangleCorners> soup) {
+  const TreeBuilder builder(soup, nodes);
   triangles.reserve(soup.size());
   for (const int i : builder.order()) triangles.push_back(soup[i]);
 }
@@ -122,18 +122,18 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
   return best;
 }
 
-std::vector<Corners> corners_of(const model::TriangleSoup& mesh) {
-  std::vector<Corners> triangles;
+std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh) {
+  std::vector<TriangleCorners> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
-    const Corners c{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
+    const TriangleCorners c{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]};
     const Vector3 normal = cross(c[1] - c[0], c[2] - c[0]);
     if (dot(normal, normal) > 0) triangles.push_back(c);
   }
   return triangles;
 }
 
-Vector3 nearest_on(const Corners& triangle, const Vector3& p) {
+Vector3 nearest_on(const TriangleCorners& triangle, const Vector3& p) {
   const auto& [a, b, c] = triangle;
   const Vector3 ab = b - a;
   const Vector3 ac = c - a;

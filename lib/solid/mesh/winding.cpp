@@ -9,18 +9,18 @@ namespace {
 
 constexpr double far = 2.0;  // a node is summarised beyond this many radii
 
-Vector3 area_vector(const Corners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
+Vector3 area_vector(const TriangleCorners& t) { return 0.5 * cross(t[1] - t[0], t[2] - t[0]); }
 
-Vector3 centroid(const Corners& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
+Vector3 centroid(const TriangleCorners& t) { return (1.0 / 3.0) * (t[0] + t[1] + t[2]); }
 
 // Solid angles of the triangles seen from a point: tan(angle / 2) = numerator / denominator [OS83; physics §13.2].
 // Small half angles are added by multiplying complex numbers, so that a leaf needs one arctangent.
-double triangle_angles(const Corners* begin, const Corners* end, const Vector3& point) {
+double triangle_angles(const TriangleCorners* begin, const TriangleCorners* end, const Vector3& point) {
   constexpr double small = 0.75;  // atan(0.75) x 4 triangles stays below pi
   double re = 1;
   double im = 0;
   double half = 0;
-  for (const Corners* t = begin; t != end; ++t) {
+  for (const TriangleCorners* t = begin; t != end; ++t) {
     const Vector3 a = (*t)[0] - point;
     const Vector3 b = (*t)[1] - point;
     const Vector3 c = (*t)[2] - point;
@@ -63,7 +63,7 @@ WindingNumber::WindingNumber(std::shared_ptr<const TriangleTree> tree) : tree_(s
 WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
   Cluster leaf;
   for (int i = node.begin; i < node.end; ++i) {
-    const Corners& t = tree_->triangles[i];
+    const TriangleCorners& t = tree_->triangles[i];
     const Vector3 a = area_vector(t);
     leaf.weight += length(a);
     leaf.area = leaf.area + a;
@@ -71,7 +71,7 @@ WindingNumber::Cluster WindingNumber::of_leaf(const TriangleNode& node) const {
   }
   leaf.centre = (1 / leaf.weight) * leaf.centre;
   for (int i = node.begin; i < node.end; ++i) {
-    const Corners& t = tree_->triangles[i];
+    const TriangleCorners& t = tree_->triangles[i];
     const Vector3 offset = centroid(t) - leaf.centre;
     for (std::size_t d = 0; d < 3; ++d) leaf.second[d] = leaf.second[d] + offset[d] * area_vector(t);
   }

@@ -61,7 +61,7 @@ Field hollow_cylinder(Values v) {
   const double outer = v[0] / 2;
   const double inner = v[1] / 2;
   const double half = v[2] / 2;
-  require(inner < outer, "--shape hollow-cylinder: inner must be below outer");
+  require(inner < outer, "shape hollow-cylinder: inner must be below outer");
   return upright([=](const Point& p) { return sdf::tube(p, inner, outer, half); }, outer, half,
                  1 / std::max(inner, least_radius));
 }
@@ -75,7 +75,7 @@ Field cone(Values v) {
   const double bottom = v[0] / 2;
   const double top = v[1] / 2;
   const double half = v[2] / 2;
-  require(bottom + top > 0, "--shape cone: bottom and top cannot both be 0");
+  require(bottom + top > 0, "shape cone: bottom and top cannot both be 0");
   return upright([=](const Point& p) { return sdf::frustum(p, bottom, top, half); }, std::max(bottom, top), half,
                  1 / std::max(bottom, top));
 }
@@ -83,7 +83,7 @@ Field cone(Values v) {
 Field torus(Values v) {
   const double tube = v[1] / 2;
   const double ring = v[0] / 2 - tube;
-  require(ring >= tube, "--shape torus: tube must not exceed half of outer");
+  require(ring >= tube, "shape torus: tube must not exceed half of outer");
   return upright([=](const Point& p) { return sdf::torus(p, ring, tube); }, ring + tube, tube, 1 / tube);
 }
 
@@ -95,9 +95,9 @@ Field egg_shell(Values v) {
   const double distance = v[0] - low - high;
   const double wall = v[2];
   const double opening = v[3] / 2;
-  require(distance > low - high, "--shape egg-shell: length must be at least 1.01 times diameter");
-  require(wall < high, "--shape egg-shell: wall fills the egg; take less than 0.31 times diameter");
-  require(opening <= high, "--shape egg-shell: opening must be below 0.62 times diameter");
+  require(distance > low - high, "shape egg-shell: length must be at least 1.01 times diameter");
+  require(wall < high, "shape egg-shell: wall fills the egg; take less than 0.31 times diameter");
+  require(opening <= high, "shape egg-shell: opening must be below 0.62 times diameter");
   // Profile of the hull of two balls: where its upper part has the radius r.
   const double slant = (low - high) / distance;
   const double flat = std::sqrt(1 - slant * slant);

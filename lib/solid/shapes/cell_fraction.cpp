@@ -52,12 +52,12 @@ struct Fit {
   double even = 0;  // largest residual that is the same at opposite corners, the cell's middle included
   double odd = 0;   // largest residual that changes its sign
 
-  Fit(const Corners& corners, double middle) {
+  Fit(const CubeValues& corners, double middle) {
     for (unsigned c = 0; c < 8; ++c) {
       mean += corners[c] / 8;
       slope = slope + (corners[c] / 2) * corner_sign(c);
     }
-    Corners residual{};
+    CubeValues residual{};
     for (unsigned c = 0; c < 8; ++c) residual[c] = corners[c] - mean - dot(slope, corner_sign(c));
     even = std::abs(middle - mean);
     for (unsigned c = 0; c < 4; ++c) {
@@ -68,8 +68,8 @@ struct Fit {
 };
 
 // The mean over the cell's eight parts.
-double halved_fraction(const Field& field, const Point& centre, double edge_mm, const Corners& corners, double middle,
-                       int depth) {
+double halved_fraction(const Field& field, const Point& centre, double edge_mm, const CubeValues& corners,
+                       double middle, int depth) {
   // Nodes of the eight parts, 3 x 3 x 3: the corners and the middle are known.
   std::array<double, 27> nodes{};
   for (unsigned n = 0; n < 27; ++n) {
@@ -84,7 +84,7 @@ double halved_fraction(const Field& field, const Point& centre, double edge_mm, 
   double fraction = 0;
   for (unsigned part = 0; part < 8; ++part) {
     const unsigned first = (part & 1U) + 3 * (part >> 1U & 1U) + 9 * (part >> 2U);
-    Corners part_corners{};
+    CubeValues part_corners{};
     for (unsigned c = 0; c < 8; ++c) part_corners[c] = nodes[first + (c & 1U) + 3 * (c >> 1U & 1U) + 9 * (c >> 2U)];
     fraction +=
         cell_fraction(field, centre + (edge_mm / 2) * corner_sign(part), edge_mm / 2, part_corners, depth + 1) / 8;
@@ -94,7 +94,7 @@ double halved_fraction(const Field& field, const Point& centre, double edge_mm, 
 
 }  // namespace
 
-double cell_fraction(const Field& field, const Point& centre, double edge_mm, const Corners& corners, int depth) {
+double cell_fraction(const Field& field, const Point& centre, double edge_mm, const CubeValues& corners, int depth) {
   const double middle = field.value(centre);
   if (std::abs(middle) > clear_mm(field, half_diagonal * edge_mm)) return middle < 0 ? 1 : 0;
   const Fit fit(corners, middle);

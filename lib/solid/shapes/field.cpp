@@ -15,6 +15,22 @@ double Field::support_mm(const Point& d) const {
   return std::min({by_box, by_cylinder, by_ball});
 }
 
+namespace {
+
+// Largest stretch of a linear map. The Frobenius norm bounds the spectral one; for a rotation with one scale it is
+// sqrt(3) too large, so the largest row of m m^T is used (Gershgorin), which is exact there.
+double largest_stretch(const Affine& map) {
+  double squared = 0;
+  for (const Point& row : map.linear) {
+    double sum = 0;
+    for (const Point& other : map.linear) sum += std::abs(dot(row, other));
+    squared = std::max(squared, sum);
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
 Field transformed(const Field& field, const Affine& map) {
   const Affine back = inverse(map);
   // Support of the image in direction d: support of the original along the transposed map of d.
@@ -24,17 +40,10 @@ Field transformed(const Field& field, const Affine& map) {
     const double norm = length(pulled);
     return norm * field.support_mm((1 / norm) * pulled) + dot(d, map.shift);
   };
-  // The Frobenius norm bounds the spectral one; for a rotation with one scale it is sqrt(3) too large, so use the
-  // largest row of back * back^T (Gershgorin), which is exact there.
-  double lipschitz_squared = 0;
-  for (const Point& row : back.linear) {
-    double sum = 0;
-    for (const Point& other : back.linear) sum += std::abs(dot(row, other));
-    lipschitz_squared = std::max(lipschitz_squared, sum);
-  }
+  const double steeper = largest_stretch(back);
   Field result;
-  result.lipschitz = field.lipschitz * std::sqrt(lipschitz_squared);
-  result.curvature_per_mm = field.curvature_per_mm * std::sqrt(lipschitz_squared);
+  result.lipschitz = field.lipschitz * steeper;
+  result.curvature_per_mm = field.curvature_per_mm * steeper;
   for (std::size_t a = 0; a < 3; ++a) {
     Point d{};
     d[a] = 1;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "solid/shapes/field.hpp"
 #include "solid/shapes/private/cell_fraction.hpp"
@@ -18,9 +19,9 @@ constexpr int block = 4;    // voxels along the edge of the smallest box
 constexpr int widest = 16;  // and of the largest one
 
 // The field at the corners of a block's voxels, x fastest.
-class Lattice {
+class SampleLattice {
  public:
-  Lattice(const Field& field, const Point& first, double voxel_mm) {
+  SampleLattice(const Field& field, const Point& first, double voxel_mm) {
     for (int k = 0; k <= block; ++k) {
       for (int j = 0; j <= block; ++j) {
         for (int i = 0; i <= block; ++i) {
@@ -31,8 +32,8 @@ class Lattice {
   }
 
   // Of the voxel that is the i, j, k-th of the block.
-  [[nodiscard]] Corners corners(int i, int j, int k) const {
-    Corners corners{};
+  [[nodiscard]] CubeValues corners(int i, int j, int k) const {
+    CubeValues corners{};
     for (int c = 0; c < 8; ++c) {
       corners[c] = values_[index(i + (c & 1), j + ((c >> 1) & 1), k + (c >> 2))];
     }
@@ -41,9 +42,7 @@ class Lattice {
 
  private:
   static constexpr std::size_t side = block + 1;
-  static std::size_t index(int i, int j, int k) {
-    return (static_cast<std::size_t>(k) * side + static_cast<std::size_t>(j)) * side + static_cast<std::size_t>(i);
-  }
+  static std::size_t index(int i, int j, int k) { return flat_index(k, side, j) * side + i; }
   std::array<double, side * side * side> values_{};
 };
 
@@ -83,7 +82,7 @@ class Cover {
 
   void voxel_by_voxel(int i, int j, int k) {
     const double edge_mm = grid_.voxel_mm;
-    const Lattice lattice(field_, voxel(i, j, k), edge_mm);
+    const SampleLattice lattice(field_, voxel(i, j, k), edge_mm);
     each(block, i, j, k, [&](int x, int y, int z) {
       return cell_fraction(field_, voxel(i + x, j + y, k + z), edge_mm, lattice.corners(x, y, z));
     });

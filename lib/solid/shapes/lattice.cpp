@@ -9,7 +9,7 @@ namespace vam::solid::build {
 namespace {
 
 // The gyroid's level-set approximation F = sin x cos y + sin y cos z + sin z cos x [OST22 Methods, "Gyroid design"].
-struct Level {
+struct LevelValue {
   Point sine;
   Point cosine;
 
@@ -20,14 +20,14 @@ struct Level {
   }
 };
 
-Level level_at(const Point& p) {
+LevelValue level_at(const Point& p) {
   return {{std::sin(p[0]), std::sin(p[1]), std::sin(p[2])}, {std::cos(p[0]), std::cos(p[1]), std::cos(p[2])}};
 }
 
 // The level at a small distance d (radians) from a known one, by the addition theorem with power series: to 1e-6 for
 // |d| < 1, at a tenth of the price.
-Level level_near(const Level& at, const Point& d) {
-  Level moved{};
+LevelValue level_near(const LevelValue& at, const Point& d) {
+  LevelValue moved{};
   for (std::size_t a = 0; a < 3; ++a) {
     const double q = d[a] * d[a];
     const double s = d[a] * (1 - q / 6 * (1 - q / 20 * (1 - q / 42)));
@@ -42,13 +42,13 @@ Level level_near(const Level& at, const Point& d) {
 // tangent plane at the foot point, found by Newton steps along the gradient. So a sheet has the same thickness
 // everywhere.
 double gyroid_distance(const Point& p, double near) {
-  const Level level = level_at(p);
+  const LevelValue level = level_at(p);
   const double bound = std::abs(level.value()) / std::numbers::sqrt3;
   if (bound > near) return bound;
   Point normal = level.gradient();
   Point step = (-level.value() / dot(normal, normal)) * normal;  // from p to the foot point
   for (int i = 0; i < 3; ++i) {
-    const Level at = level_near(level, step);
+    const LevelValue at = level_near(level, step);
     normal = at.gradient();
     // The point nearest to p of the plane on which the linearised F vanishes.
     step = ((dot(step, normal) - at.value()) / dot(normal, normal)) * normal;
@@ -64,7 +64,7 @@ Field gyroid(Values v) {
   const double radius = v[2] / 2;
   const double half = v[3] / 2;
   require(v[1] <= 0.2 * v[0],
-          "--shape gyroid: sheet must not exceed 0.2 times cell (beyond it the offset surface is not smooth)");
+          "shape gyroid: sheet must not exceed 0.2 times cell (beyond it the offset surface is not smooth)");
   // Exact well beyond the sheet's surface, but not near the extrema of F (1.5), where Newton's steps go astray.
   const double near = std::min(1.6 * k * half_sheet, 1.25 / std::numbers::sqrt3);
   Field field = solid(
@@ -86,7 +86,7 @@ Field octet(Values v) {
   const double strut = v[1] / 2;
   const double across = v[2];
   const double layers = v[3];
-  require(2 * strut < 0.5 * cell, "--shape octet: strut must be below half of cell");
+  require(2 * strut < 0.5 * cell, "shape octet: strut must be below half of cell");
   const Point count{across, across, layers};
   const Point half = (0.5 * cell) * count;
   Field field = solid(
@@ -119,7 +119,7 @@ Field ball_in_cage(Values v) {
   const double ring = v[0] / 2 - strut;
   const double ball = v[2] / 2;
   const double meridians = v[3];  // great circles through the poles
-  require(ball + strut < ring, "--shape ball-in-cage: ball touches the cage; ball must be below diameter - 2 strut");
+  require(ball + strut < ring, "shape ball-in-cage: ball touches the cage; ball must be below diameter - 2 strut");
   const double sector = std::numbers::pi / meridians;
   Field field = solid(
       [=](const Point& p) {

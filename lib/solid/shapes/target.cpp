@@ -13,8 +13,8 @@ Field disc_grid(Values v) {
   const double radius = v[1];
   const double reach = v[2] / 2 - radius;  // of the centres
   const double half = v[3] / 2;
-  require(2 * radius < period, "--shape disc-grid: discs touch; radius must be below half of period");
-  require(reach >= 0, "--shape disc-grid: no disc fits; diameter must be at least 2 radius");
+  require(2 * radius < period, "shape disc-grid: discs touch; radius must be below half of period");
+  require(reach >= 0, "shape disc-grid: no disc fits; diameter must be at least 2 radius");
   const double inside = reach * reach * (1 + 1e-12);  // a disc that just touches the border counts
   const int most = static_cast<int>(reach / period) + 1;
   double extent = radius;
@@ -53,7 +53,7 @@ Field ladder(Values v) {
   const double rung = v[3];
   const double gap = v[4];
   const double rungs = v[5];
-  require(rail < half_width, "--shape ladder: rail must be below half of width");
+  require(rail < half_width, "shape ladder: rail must be below half of width");
   const double half = 0.5 * (rungs * rung + (rungs + 1) * gap);
   return solid(
       [=](const Point& p) {
@@ -68,6 +68,33 @@ Field ladder(Values v) {
       {-half_width, -half_depth, -half}, {half_width, half_depth, half}, 1e300, 0);
 }
 
+namespace {
+
+struct Bar {
+  double middle;
+  double half_width;
+};
+
+// Bars from 0 on, each followed by a gap of its own width; widths grow by a constant factor. The total width.
+double lay_bars(int steps, double finest, double coarsest, std::vector<Bar>& bars) {
+  double total = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double width = steps == 1 ? finest : finest * std::pow(coarsest / finest, i / (steps - 1.0));
+    bars.push_back({total + width / 2, width / 2});
+    total += i + 1 < steps ? 2 * width : width;
+  }
+  return total;
+}
+
+// Distance to the nearest bar, negative within.
+double nearest(const std::vector<Bar>& bars, double at) {
+  double distance = 1e300;
+  for (const Bar& bar : bars) distance = std::min(distance, std::abs(at - bar.middle) - bar.half_width);
+  return distance;
+}
+
+}  // namespace
+
 // On a round base: for y > 0 straight bars, for y < 0 half rings about the axis. Each bar is followed by a gap of its
 // own width; widths grow by a constant factor, bars from left to right and rings from the axis outwards.
 Field resolution(Values v) {
@@ -77,21 +104,12 @@ Field resolution(Values v) {
   const double radius = v[3] / 2;
   const double half = v[4] / 2;
   const double base = v[5];
-  require(coarsest >= finest, "--shape resolution: coarsest must not be below finest");
-  require(base < 2 * half, "--shape resolution: base must be below height");
-  struct Bar {
-    double middle;
-    double half_width;
-  };
+  require(coarsest >= finest, "shape resolution: coarsest must not be below finest");
+  require(base < 2 * half, "shape resolution: base must be below height");
   std::vector<Bar> bars;
   std::vector<Bar> rings;
-  double total = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double width = steps == 1 ? finest : finest * std::pow(coarsest / finest, i / (steps - 1.0));
-    bars.push_back({total + width / 2, width / 2});
-    total += i + 1 < steps ? 2 * width : width;
-  }
-  require(total <= 2 * radius, "--shape resolution: bars are wider than diameter; reduce steps or coarsest");
+  const double total = lay_bars(steps, finest, coarsest, bars);
+  require(total <= 2 * radius, "shape resolution: bars are wider than diameter; reduce steps or coarsest");
   for (const Bar& bar : bars) {
     // The first ring leaves a hole of its own width around the axis.
     const double middle = bar.middle + finest;
@@ -103,12 +121,7 @@ Field resolution(Values v) {
       [=](const Point& p) {
         const double r = std::hypot(p[0], p[1]);
         const double plate = sdf::cylinder({p[0], p[1], p[2] + half - base / 2}, radius, base / 2);
-        double pattern = 1e300;
-        if (p[1] >= 0) {
-          for (const Bar& bar : bars) pattern = std::min(pattern, std::abs(p[0] - bar.middle) - bar.half_width);
-        } else {
-          for (const Bar& ring : rings) pattern = std::min(pattern, std::abs(r - ring.middle) - ring.half_width);
-        }
+        const double pattern = p[1] >= 0 ? nearest(bars, p[0]) : nearest(rings, r);
         const double relief = std::max({pattern, apart - std::abs(p[1]), sdf::cylinder(p, radius, half)});
         return base > 0 ? std::min(plate, relief) : relief;
       },

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 
@@ -20,9 +21,7 @@ void beside(const model::Grid& grid, int i, int j, Visit visit) {
   if (j + 1 < grid.ny) visit(i, j + 1);
 }
 
-std::size_t place(const model::Grid& grid, int i, int j) {
-  return static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) + static_cast<std::size_t>(i);
-}
+std::size_t place(const model::Grid& grid, int i, int j) { return flat_index(j, grid.nx, i); }
 
 }  // namespace
 
@@ -53,7 +52,7 @@ GrownInsert::GrownInsert(const model::Grid& grid, const std::function<void(int k
 
 void GrownInsert::grow(int k, float* slice) const {
   const double reach = clearance_px_ + 1;
-  const int slices = static_cast<int>(std::ceil(reach * stretch_z_));
+  const int slices = ceil_int(reach * stretch_z_);
   for (int from = std::max(0, k - slices); from <= std::min(grid_.nz - 1, k + slices); ++from) {
     const double dz = (from - k) / stretch_z_;
     const double across = reach * reach - dz * dz;
@@ -82,7 +81,7 @@ void InsertFit::add(const float* part, const float* insert) {
       has_part = has_part || part[at] > 0;
       if (insert[at] <= 0) continue;
       has_insert = true;
-      insert_ += static_cast<double>(insert[at]);
+      insert_ += insert[at];
       shared_ += std::max(0.0, static_cast<double>(part[at]) + static_cast<double>(insert[at]) - 1);
       if (last_part_[at] > 0 || touches(part, i, j)) ++contact_;
     }
@@ -132,7 +131,7 @@ Part without_insert(const Part& part, std::function<void(int k, float* out)> rea
         std::vector<float> insert(size);
         read(k0 + s, insert.data());
         grown.grow(k0 + s, insert.data());
-        const std::size_t first = static_cast<std::size_t>(s) * size;
+        const std::size_t first = product(s, size);
         for (std::size_t n = 0; n < size; ++n) left[first + n] = std::clamp(slices[first + n] - insert[n], 0.0F, 1.0F);
       });
       sink(k0, count, left.data());

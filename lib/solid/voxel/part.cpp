@@ -17,7 +17,7 @@ namespace vam::solid {
 Part shape_part(const std::string& text, const Placement& placement, const Writable& room) {
   const Field shape = make_shape(text);
   Part part;
-  part.subject = "--shape " + text;
+  part.subject = "shape " + text;
   part.map = place(shape, placement, room, part.subject);
   const Field placed = transformed(shape, part.map);
   part.extent = extent(placed);
@@ -52,8 +52,8 @@ void require_settled(const Vote& vote, const Repair& repair, const std::string& 
   const std::string found = vote.inside == 0 ? "it encloses no volume"
                                              : std::to_string(vote.undecided) + " of " + std::to_string(vote.inside) +
                                                    " voxels are undecided";
-  throw Error{Fault::data, subject + ": inside is ambiguous: the surface has " + std::to_string(repair.open_edges) +
-                               " open edges and " + found + "; close it in a mesh editor"};
+  throw Error{Fault::data, subject + ": inside is ambiguous: the surface has " + std::to_string(repair.boundary_edges) +
+                               " boundary edges and " + found + "; close it in a mesh editor"};
 }
 
 }  // namespace
@@ -65,8 +65,8 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
   part.map = map;
   part.repair = repair(mesh, subject);
   if (mode == FillMode::exact && !part.repair->closed()) {
-    throw Error{Fault::data,
-                subject + ": is not closed (" + part.repair->summary() + "); --fill auto votes on what is inside"};
+    throw Error{Fault::data, subject + ": is not closed (" + part.repair->summary() +
+                                 "); automatic filling votes on what is inside"};
   }
   part.voted = mode == FillMode::vote || !part.repair->closed();
   part.extent = extent(mesh);
@@ -115,7 +115,7 @@ FillSummary fill(const Part& part, const model::Grid& grid, const SliceSink& sin
   });
   if (voxels == 0) {
     throw Error{Fault::data, part.subject + ": covers no voxel of " + format_number(grid.voxel_mm) +
-                                 " mm; check --unit and --voxel"};
+                                 " mm; check its unit and the voxel size"};
   }
   content.volume_mm3 = voxels * grid.voxel_mm * grid.voxel_mm * grid.voxel_mm;
   return content;
@@ -143,8 +143,8 @@ Json figures(const Part& part, const FillSummary& content, const model::Grid& gr
                         {"triangles_flipped", done.flipped},
                         {"components", done.components},
                         {"cavities", done.cavities},
-                        {"open_edges", done.open_edges},
-                        {"crowded_edges", done.crowded_edges},
+                        {"boundary_edges", done.boundary_edges},
+                        {"non_manifold_edges", done.non_manifold_edges},
                         {"undecided_voxels", content.vote.undecided}};
   }
   return report;

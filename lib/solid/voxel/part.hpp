@@ -17,7 +17,7 @@ namespace vam::solid {
 
 /// A placed part: where it is, and how to cover a grid with it.
 struct Part {
-  std::string subject;  // begins messages: the file's name, or "--shape gyroid"
+  std::string subject;  // begins messages: the file's name, or "shape gyroid"
   PlacedExtent extent;
   Affine map;                    // from the file's coordinates to the target's frame
   std::optional<Repair> repair;  // of a mesh

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "solid/voxel/part.hpp"
 
 namespace vam::solid {
@@ -15,8 +16,7 @@ struct Offsets {
   int j;
 };
 Offsets offsets(const ImageStack& stack, const model::Grid& grid) {
-  return {static_cast<int>(std::floor((grid.nx - stack.width) / 2.0)),
-          static_cast<int>(std::floor((grid.ny - stack.height) / 2.0))};
+  return {floor_int((grid.nx - stack.width) / 2.0), floor_int((grid.ny - stack.height) / 2.0)};
 }
 
 PlacedExtent image_extent(const ImageStack& stack, double voxel_mm, double stretch_z) {
@@ -48,7 +48,7 @@ void add_image(const Image& image, float share, const model::Grid& grid, Offsets
     if (j < 0 || j >= grid.ny) continue;
     const int first = std::max(0, -at.i);
     const int last = std::min(image.width, grid.nx - at.i);
-    float* line = slice + static_cast<std::ptrdiff_t>(j) * grid.nx + at.i;
+    float* line = slice + std::ptrdiff_t{j} * grid.nx + at.i;
     for (int column = first; column < last; ++column) line[column] += share * image(column, row);
   }
 }
@@ -66,9 +66,9 @@ void fill_images(const ImageStack& stack, double stretch_z, const model::Grid& g
       const auto to_image = [&](double k) { return grid.z_mm(k) / (stretch_z * grid.voxel_mm) + 0.5 * stack.count; };
       const double low = to_image(k0 + s - 0.5);
       const double high = to_image(k0 + s + 0.5);
-      float* slice = slices.data() + static_cast<std::size_t>(s) * grid.slice_size();
-      const int last = std::min(stack.count - 1, static_cast<int>(std::ceil(high - 1e-9)) - 1);
-      for (int p = std::max(0, static_cast<int>(std::floor(low + 1e-9))); p <= last; ++p) {
+      float* slice = slices.data() + product(s, grid.slice_size());
+      const int last = std::min(stack.count - 1, ceil_int(high - 1e-9) - 1);
+      for (int p = std::max(0, floor_int(low + 1e-9)); p <= last; ++p) {
         if (p != held) image = stack.read(held = p);
         const double share = (std::min<double>(high, p + 1) - std::max<double>(low, p)) / (high - low);
         add_image(image, static_cast<float>(share), grid, at, slice);

@@ -26,7 +26,7 @@ void require_room(const Writable& room, double voxel_mm, const std::string& subj
   if (room.radius_mm > beyond_surface * voxel_mm) return;
   throw Error{Fault::data, subject + ": voxels of " + format_number(voxel_mm) +
                                " mm are as large as the writable radius of " + format_number(room.radius_mm, 4) +
-                               " mm; take a smaller --voxel"};
+                               " mm; use smaller voxels"};
 }
 
 using ExtentUnder = std::function<PlacedExtent(const Affine&)>;
@@ -62,14 +62,14 @@ std::string three_digits(double value) {
 }
 
 /// "--scale 0.264 or --fit-writable": what makes the part fit.
-std::string smaller(const SizeOption& size, double factor) {
-  const std::string value = factor > 0 ? size.flag + " " + three_digits(size.value * factor) : "a smaller " + size.flag;
-  return size.flag == "--voxel" ? value : value + " or --fit-writable";
+std::string smaller(const PlacementAdvice& advice, double factor) {
+  const std::string& size = advice.size;
+  return (factor > 0 ? size + " " + three_digits(advice.value * factor) : "a smaller " + size) + advice.or_fit;
 }
 
 /// `what` reaches that far from the axis.
 void require_radius(double reach_mm, const Writable& room, double voxel_mm, const std::string& what,
-                    const std::string& remedy) {
+                    const std::string& remedy, const std::string& beyond) {
   if (reach_mm <= room.radius_mm + rounding_mm) return;
   const auto both = [&](double mm) {
     return format_number(mm, 4) + " mm (" + format_number(mm / voxel_mm, 4) + " voxels)";
@@ -78,8 +78,7 @@ void require_radius(double reach_mm, const Writable& room, double voxel_mm, cons
   if (!room.from_all_sides) {
     throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; " + remedy + " fits it"};
   }
-  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) + "; " + remedy +
-                               " fits it, --extent resin allows it as far as light comes from some angles"};
+  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) + "; " + remedy + " fits it" + beyond};
 }
 
 }  // namespace
@@ -168,34 +167,34 @@ model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius
     throw Error{Fault::data, subject + ": " + format_number(side) + " x " + format_number(side) + " x " +
                                  format_number(last - first) + " voxels of " + format_number(voxel_mm) +
                                  " mm are more than " + std::to_string(most_voxels) +
-                                 " per axis; check --unit, or take a larger --voxel or a smaller --fit"};
+                                 " per axis; check its unit, or use larger voxels or a smaller part"};
   }
   return model::centred_grid(static_cast<int>(side), static_cast<int>(side), static_cast<int>(last - first), voxel_mm,
                              (first + lattice.z_phase + 0.5) * voxel_mm);
 }
 
-void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject) {
-  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach", "a smaller --voxel or --scale");
+void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject,
+                 const PlacementAdvice& advice) {
+  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach", "smaller voxels or a smaller scale",
+                 advice.beyond);
 }
 
 void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject,
-                      const SizeOption& size) {
+                      const PlacementAdvice& advice) {
   const Point mm = part.box.size();
   const Point middle = part.box.centre();
   const bool aside = std::hypot(middle[0], middle[1]) > room.radius_mm;
-  const std::string remedy =
-      (aside ? "leave out --no-centre; " : "") + smaller(size, fitting_factor(part, room, voxel_mm));
+  const std::string remedy = (aside ? advice.off_axis : "") + smaller(advice, fitting_factor(part, room, voxel_mm));
   require_radius(part.radius_mm, room, voxel_mm,
                  subject + ": " + format_number(mm[0], 4) + " x " + format_number(mm[1], 4) + " x " +
-                     format_number(mm[2] / size.stretch_z, 4) + " mm, reaches",
-                 remedy);
+                     format_number(mm[2] / advice.stretch_z, 4) + " mm, reaches",
+                 remedy, advice.beyond);
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
     const bool fits = part.box.size()[2] <= room.high_mm - room.low_mm + rounding_mm;
     throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
                                  format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
                                  format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) + " mm; " +
-                                 (fits ? "--place auto finds a height in them"
-                                       : remedy + " fits it, --any-height allows it for vam-optimize --helix")};
+                                 (fits ? advice.too_high : remedy + " fits it" + advice.too_tall)};
   }
 }
 
@@ -203,7 +202,7 @@ void require_within(const PlacedExtent& insert, double vial_radius_mm, const std
   if (insert.radius_mm <= vial_radius_mm) return;
   throw Error{Fault::data, subject + ": reaches " + format_number(insert.radius_mm, 4) +
                                " mm from the axis, beyond the vial's inner radius of " +
-                               format_number(vial_radius_mm, 4) + " mm; check --unit and --no-centre"};
+                               format_number(vial_radius_mm, 4) + " mm; check its unit and position"};
 }
 
 }  // namespace vam::solid

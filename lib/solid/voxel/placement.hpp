@@ -81,20 +81,26 @@ struct Lattice {
 [[nodiscard]] model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius_mm,
                                       const Lattice& lattice, const std::string& subject);
 
-/// The option that sets the size of a part, with its value in force.
-struct SizeOption {
-  std::string flag = "--scale";
-  double value = 1;
-  double stretch_z = 1;  // of the part, undone in the size that is reported
+/// What a caller can offer for a part that does not fit, in its own words, for the end of messages.
+struct PlacementAdvice {
+  std::string size = "scale";                // what sets the size of the part
+  double value = 1;                          // its value in force
+  double stretch_z = 1;                      // of the part, undone in the size that is reported
+  std::string or_fit;                        // " or ...": what else fits it
+  std::string off_axis;                      // "...; ": for a part beside the axis
+  std::string beyond;                        // ", ... allows it": beyond the writable radius
+  std::string too_high = "move it along z";  // for a part that fits at another height
+  std::string too_tall;                      // ", ... allows it": for a part taller than the image
 };
 
-/// Throws Fault::data, with both numbers, also in voxels, and the option that makes it fit, when the part leaves the
+/// Throws Fault::data, with both numbers, also in voxels, and the size that makes it fit, when the part leaves the
 /// writable cylinder.
 void require_writable(const PlacedExtent& part, const Writable& room, double voxel_mm, const std::string& subject,
-                      const SizeOption& size = {});
+                      const PlacementAdvice& advice = {});
 
 /// The same for the centre of the farthest voxel that the part covers: what vam-optimize looks at.
-void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject);
+void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject,
+                 const PlacementAdvice& advice = {});
 
 /// Throws Fault::data when an insert is wider than the vial.
 void require_within(const PlacedExtent& insert, double vial_radius_mm, const std::string& subject);

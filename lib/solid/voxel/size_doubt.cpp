@@ -30,9 +30,9 @@ std::string likely_unit(double largest_mm, const Writable& room) {
   std::vector<std::string> likely;
   for (const auto& [name, mm] : units) {
     const double widths = largest_mm * mm / (2 * room.radius_mm);
-    if (mm != 1 && widths > 0.25 && widths < 12) likely.push_back(std::string(name) + " (--unit " + name + ")");
+    if (mm != 1 && widths > 0.25 && widths < 12) likely.emplace_back(name);
   }
-  return likely.empty() ? "" : "; is the file in " + join(likely, " or ") + "?";
+  return likely.empty() ? "" : "; is its unit " + join(likely, " or ") + "?";
 }
 
 std::string size_doubt(const Part& part, const FillSummary& content, const model::Grid& grid, double stretch_z,
@@ -46,7 +46,7 @@ std::string size_doubt(const Part& part, const FillSummary& content, const model
     return part.subject + ": no voxel of " + format_number(grid.voxel_mm) + " mm is wholly inside the part, which is " +
            format_number(largest_mm, 3) + " mm large (a voxel is covered to " +
            format_number(static_cast<double>(content.most), 2) + " at most)" +
-           (unit.empty() ? "; --voxel " + format_number(thinner, 2) + " or thicker walls may help" : unit);
+           (unit.empty() ? "; voxels of " + format_number(thinner, 2) + " mm or thicker walls may help" : unit);
   }
   return unit.empty() ? "" : part.subject + ": the part is only " + format_number(largest_mm, 3) + " mm large" + unit;
 }

@@ -12,7 +12,7 @@ namespace vam::solid {
 [[nodiscard]] const std::vector<std::string>& unit_names();
 [[nodiscard]] double mm_per(const std::string& unit);
 
-/// "; is the file in m (--unit m)?" for a part that is so many mm large when read in mm: the units in which it would
+/// "; is its unit m?" for a part that is so many mm large when read in mm: the units in which it would
 /// be between a quarter and twelve times as large as the writable width. Empty where there is none.
 [[nodiscard]] std::string likely_unit(double largest_mm, const Writable& room);
 

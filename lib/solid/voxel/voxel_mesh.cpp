@@ -11,7 +11,7 @@ namespace {
 constexpr double rounding = 1e-6;
 
 // The part of a triangle between the planes z = 0 and z = nz, in triangles.
-void add_between(const Corners& corners, int nz, std::vector<Corners>& triangles) {
+void add_between(const TriangleCorners& corners, int nz, std::vector<TriangleCorners>& triangles) {
   Polygon below;
   Polygon rest;
   Polygon inside;
@@ -26,7 +26,7 @@ void add_between(const Corners& corners, int nz, std::vector<Corners>& triangles
 
 }  // namespace
 
-std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid) {
+std::vector<TriangleCorners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid) {
   std::vector<Vector3> points(mesh.points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) points[i][a] = (mesh.points[i][a] - grid.origin_mm[a]) / grid.voxel_mm + 0.5;
@@ -35,10 +35,10 @@ std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Gri
     };
     if (!within(0, grid.nx) || !within(1, grid.ny)) throw Error{Fault::bug, "voxelize: the mesh leaves its grid"};
   }
-  std::vector<Corners> triangles;
+  std::vector<TriangleCorners> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
-    Corners corners{};
+    TriangleCorners corners{};
     for (std::size_t c = 0; c < 3; ++c) corners[c] = points[triangle[c]];
     const double low = std::min({corners[0][2], corners[1][2], corners[2][2]});
     const double high = std::max({corners[0][2], corners[1][2], corners[2][2]});
@@ -51,17 +51,17 @@ std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Gri
   return triangles;
 }
 
-Polygon polygon(const Corners& corners) {
+Polygon polygon(const TriangleCorners& corners) {
   Polygon result;
   for (const Vector3& corner : corners) result.add(corner);
   return result;
 }
 
-Bins::Bins(const std::vector<Corners>& triangles, std::size_t axis, int layers)
+Bins::Bins(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers)
     : first_(static_cast<std::size_t>(layers) + 1) {
   std::vector<Span> spans;
   spans.reserve(triangles.size());
-  for (const Corners& t : triangles) {
+  for (const TriangleCorners& t : triangles) {
     const double low = std::min({t[0][axis], t[1][axis], t[2][axis]});
     const double high = std::max({t[0][axis], t[1][axis], t[2][axis]});
     spans.push_back(span_of(low, high, layers));

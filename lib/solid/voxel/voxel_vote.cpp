@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::solid {
@@ -20,12 +21,10 @@ struct SliceSums {
   std::vector<double> z_behind;  // what all pieces of this slice add to the slices above
 };
 
-std::size_t column(const model::Grid& grid, int i, int j) {
-  return static_cast<std::size_t>(j) * grid.nx + static_cast<std::size_t>(i);
-}
+std::size_t column(const model::Grid& grid, int i, int j) { return flat_index(j, grid.nx, i); }
 
 // For every column along z the total of its pieces, which is 0 unless a hole lies above or below.
-std::vector<double> column_totals(const std::vector<Corners>& triangles, const model::Grid& grid) {
+std::vector<double> column_totals(const std::vector<TriangleCorners>& triangles, const model::Grid& grid) {
   std::vector<double> totals(grid.slice_size(), 0.0);
   const Bins bins(triangles, 1, grid.ny);
   parallel_for(grid.ny, [&](int j) {
@@ -39,8 +38,8 @@ std::vector<double> column_totals(const std::vector<Corners>& triangles, const m
   return totals;
 }
 
-void enter_slice(const std::vector<Corners>& triangles, std::span<const int> members, const model::Grid& grid, int k,
-                 SliceSums& sums) {
+void enter_slice(const std::vector<TriangleCorners>& triangles, std::span<const int> members, const model::Grid& grid,
+                 int k, SliceSums& sums) {
   sums.x.reset(grid.ny, grid.nx);
   sums.y.reset(grid.nx, grid.ny);
   sums.z_own.assign(grid.slice_size(), 0.0);
@@ -77,7 +76,7 @@ float median(Ends x, Ends y, Ends z) {
 }
 
 void decide_slice(const model::Grid& grid, const std::vector<double>& z_totals, SliceSums& sums, float* out) {
-  std::vector<double> y_totals(static_cast<std::size_t>(grid.nx), 0.0);
+  std::vector<double> y_totals(grid.nx, 0.0);
   for (int i = 0; i < grid.nx; ++i) {
     if (sums.y.touched(i)) y_totals[i] = sums.y.accumulate(i);
   }
@@ -134,7 +133,7 @@ long settle_undecided(const model::Grid& grid, float* out) {
 
 }  // namespace
 
-Vote vote(const std::vector<Corners>& triangles, const model::Grid& grid, const SliceSink& sink) {
+Vote vote(const std::vector<TriangleCorners>& triangles, const model::Grid& grid, const SliceSink& sink) {
   const std::vector<double> z_totals = column_totals(triangles, grid);
   const Bins bins(triangles, 2, grid.nz);
   std::vector<SliceSums> sums(slab);
@@ -155,7 +154,7 @@ Vote vote(const std::vector<Corners>& triangles, const model::Grid& grid, const 
       }
     });
     parallel_for(count, [&](int s) {
-      float* out = slices.data() + static_cast<std::size_t>(s) * grid.slice_size();
+      float* out = slices.data() + product(s, grid.slice_size());
       decide_slice(grid, z_totals, sums[s], out);
       const long open = settle_undecided(grid, out);
       votes[s] = {std::count_if(out, out + grid.slice_size(), [](float c) { return c > 0.5F; }), open};

@@ -11,8 +11,8 @@ namespace vam::solid {
 
 namespace {
 
-void slice_exact(const std::vector<Corners>& triangles, std::span<const int> members, const model::Grid& grid, int k,
-                 VoxelRows& rows, float* out) {
+void slice_exact(const std::vector<TriangleCorners>& triangles, std::span<const int> members, const model::Grid& grid,
+                 int k, VoxelRows& rows, float* out) {
   rows.reset(grid.ny, grid.nx);
   for (const int t : members) {
     const Polygon slice = layer(polygon(triangles[t]), 2, k, grid.nz);
@@ -38,7 +38,7 @@ void slice_exact(const std::vector<Corners>& triangles, std::span<const int> mem
 }  // namespace
 
 Vote voxelize(const model::TriangleSoup& mesh, const model::Grid& grid, Fill fill, const SliceSink& sink) {
-  const std::vector<Corners> triangles = in_voxels(mesh, grid);
+  const std::vector<TriangleCorners> triangles = in_voxels(mesh, grid);
   if (fill == Fill::vote) return vote(triangles, grid, sink);
   const Bins bins(triangles, 2, grid.nz);
   std::vector<VoxelRows> rows(slab);

@@ -21,7 +21,7 @@ constexpr std::uint64_t mib = std::uint64_t{1} << 20;
 
 // The bound is the process', and other cases follow.
 struct Bounded {
-  explicit Bounded(std::uint64_t bytes) { bound_memory(bytes); }
+  explicit Bounded(std::uint64_t bytes) { bound_memory(bytes, "--memory"); }
   ~Bounded() { bound_memory(std::uint64_t{1} << 60); }
   Bounded(const Bounded&) = delete;
   Bounded& operator=(const Bounded&) = delete;

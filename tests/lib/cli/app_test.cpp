@@ -282,8 +282,8 @@ TEST_CASE("what a form cannot do without is shown as such and refused where miss
   };
   CHECK(said({"scan", "a.exr", "--flips", "log"}, stderr).empty());
   CHECK(said({"check"}, stderr).empty());
-  CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; --help explains it\n");
-  CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; --help explains it\n");
+  CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; see --help\n");
+  CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; see --help\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
 }
 

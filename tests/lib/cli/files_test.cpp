@@ -47,7 +47,7 @@ TEST_CASE("inputs: one standard input, none of them an output, their contents pa
   unlink(file.c_str());
 }
 
-TEST_CASE("an output's name does not say another format") {
+TEST_CASE("the extension of an output must match its format") {
   for (const auto& [path, status] :
        std::vector<std::pair<std::string, int>>{{"a.png", 0}, {"-", 0}, {"/dev/null", 0}, {"a.jpg", 64}, {"png", 64}}) {
     Tool tool;

@@ -38,10 +38,10 @@ TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are error
     angles->update();
     REQUIRE(angles->at(51.1).has_value());
     CHECK(angles->at(51.1)->angle_deg == doctest::Approx(27.5));
-    clock.sleep_until(50.2);
-    angles->update();
     clock.sleep_until(50.4);
-    CHECK(message_of([&] { angles->update(); }).find("none for 0.3 s after line 101") != std::string::npos);
+    angles->update();
+    clock.sleep_until(50.6);
+    CHECK(message_of([&] { angles->update(); }).find("none for 0.5 s after line 101") != std::string::npos);
     close(line[1]);
     CHECK(message_of([&] { angles->update(); }).find("ended") != std::string::npos);
     close(line[0]);

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -13,6 +15,7 @@
 #include "device/camera/capture.hpp"
 #include "device/camera/private/frame_count.hpp"
 #include "device/camera/private/grey_pixels.hpp"
+#include "device/camera/private/read_clock.hpp"
 #include "device/open/camera.hpp"
 #include "fake_v4l2.hpp"
 #include "fault_of.hpp"
@@ -92,6 +95,76 @@ TEST_CASE("Time stamps: the shortest delay is used for all, and follows a drifti
   CHECK(clock.host_s(6, 106.002) == doctest::Approx(106.002));
   CHECK(clock.host_s(7, 107.090) == doctest::Approx(107.002));
   CHECK(clock.host_s(18, 118.050) == doctest::Approx(118.050));  // all before are older than 10 s
+}
+
+TEST_CASE("A camera's clock: what all readings allow, until the clocks have drifted apart") {
+  ReadClock clock;
+  CHECK_FALSE(clock.ready());
+  clock.add({5, 105, 105.010});  // its middle is 3 ms late
+  clock.add({5.5, 105.5015, 105.5025});
+  const auto host_s = [&](double device_s) { return clock.host_s(device_s, 100.01 + device_s, 0.02).value(); };
+  CHECK(host_s(6) == doctest::Approx(106.002).epsilon(1e-9));
+  CHECK(clock.doubt_s() == doctest::Approx(0.0005));
+  clock.add({8, 108.0025, 108.0095});  // its middle is 4 ms late, but it is not earlier than 2.5 ms
+  CHECK(host_s(6) == doctest::Approx(106.0025 + 0.5 * 2.5 * 5e-5).epsilon(1e-8));
+  clock.add({14, 114.0020, 114.0034});  // the clocks drift by 50 ppm: 0.4 ms since the good one
+  CHECK(host_s(14) == doctest::Approx(114.0 + 0.5 * (0.0025 - 6 * 5e-5 + 0.0025 + 8.5 * 5e-5)).epsilon(1e-8));
+  clock.add({15, 115.010, 115.011});  // something else happened: the narrowest
+  CHECK(host_s(15) == doctest::Approx(115.0105).epsilon(1e-9));
+}
+
+TEST_CASE("A camera's clock: readings of a busy machine, held up on either side, know it far better than each does") {
+  std::mt19937_64 random(5);
+  std::exponential_distribution<double> held_up_s(1 / 0.001);
+  std::vector<double> ratios;
+  double worst_s = 0;
+  for (int run = 0; run < 200; ++run) {
+    ReadClock clock;
+    for (int n = 0; n < 60; ++n) {
+      const double latched_s = 0.015 * n;
+      clock.add({latched_s, 100 + latched_s - held_up_s(random), 100 + latched_s + held_up_s(random)});
+    }
+    const double off_s = std::abs(clock.host_s(5, 105.01, 0.02).value() - 105);
+    CHECK(off_s <= clock.doubt_s());
+    worst_s = std::max(worst_s, off_s);
+    ratios.push_back(off_s / clock.sigma_s());
+  }
+  CHECK(worst_s < 0.0002);
+  std::sort(ratios.begin(), ratios.end());
+  CHECK(ratios[100] > 0.3);  // and the sigma is no larger than need be
+}
+
+TEST_CASE("A camera's clock: a stamp after its frame, or long before it, is of another clock") {
+  ReadClock clock;
+  clock.add({5, 105, 105});
+  CHECK(clock.host_s(6, 106.01, 2).has_value());
+  CHECK(clock.host_s(6, 117.9, 2).has_value());
+  CHECK_FALSE(clock.host_s(6, 118.1, 2));
+  CHECK_FALSE(clock.host_s(6, 105.9, 2));
+}
+
+TEST_CASE("The moment of a time stamp: as requested, as the maker documents it, else the end") {
+  CHECK(stamp_moment("auto", "Basler") == StampMoment::start);
+  CHECK(stamp_moment("auto", "Teledyne DALSA") == StampMoment::start);
+  CHECK(stamp_moment("auto", "FLIR") == StampMoment::end);
+  CHECK(stamp_moment("auto", "Somebody") == StampMoment::end);
+  CHECK(stamp_moment("middle", "Basler") == StampMoment::middle);
+  CHECK(to_middle_s(StampMoment::start, 0.02) == 0.01);
+  CHECK(to_middle_s(StampMoment::middle, 0.02) == 0);
+  CHECK(to_middle_s(StampMoment::end, 0.02) == -0.01);
+}
+
+TEST_CASE("V4L2: stamps are of the moment that the printer file says, else of that of the driver") {
+  for (const auto& [stamp, middle_s] : {std::pair("auto", 10.49), std::pair("end", 10.49), std::pair("start", 10.51)}) {
+    VirtualClock clock;
+    V4l2Script script;
+    CameraSettings settings;
+    settings.exposure_us = 20000;
+    settings.stamp = stamp;
+    const auto camera = v4l2(script, clock, settings);
+    camera->start();
+    CHECK(camera->next()->time_s == doctest::Approx(middle_s));
+  }
 }
 
 TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full stays full") {
@@ -248,7 +321,7 @@ TEST_CASE("A simulated camera: virtual pace does not wait, lost and cut frames, 
   CameraSettings settings;
   settings.fps = 10;
   settings.binning = 8;
-  const auto camera = open_camera("sim:?pace=virtual&lose=1&cut=2&vanish=4", settings, {}, clock);
+  const auto camera = open_camera("sim:?pace=virtual&drop=1&incomplete=2&unplug=4", settings, {}, clock);
   CHECK(camera->mode().columns == 90);
   camera->start();
   CHECK(camera->next()->number == 0);
@@ -280,7 +353,7 @@ TEST_CASE("A camera's address and settings are checked before anything is opened
   CHECK(fault("usb:1") == Fault::usage);
   CHECK(fault("sim:x") == Fault::usage);
   CHECK(fault("sim:?colums=3") == Fault::usage);
-  CHECK(fault("sim:?lose=a") == Fault::usage);
+  CHECK(fault("sim:?drop=a") == Fault::usage);
   CHECK(fault("sim:?part=cube") == Fault::usage);
   CHECK(fault("sim:?part=sphere:height=3") == Fault::usage);
   CHECK(fault("sim:?bits=12") == Fault::usage);

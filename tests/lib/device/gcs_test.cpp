@@ -61,7 +61,7 @@ TEST_CASE("The unit of an axis is degrees, however it is written; a stage withou
   CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
   lab.stage->enable();
   CHECK(error_of([&] { lab.stage->start_move(10); }, Fault::data)
-            .find("not referenced: give --home, or run `vam-stage home` if the controller keeps it") !=
+            .find("not referenced: give --home, or run `vam-stage home` if the controller keeps the reference") !=
         std::string::npos);
 }
 

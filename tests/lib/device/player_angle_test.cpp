@@ -32,6 +32,7 @@ struct Run {
 Run recorded(const SimGcsSettings& sim, const SpinPlan& plan) {
   Run run;
   VirtualStage lab(sim);
+  home(*lab.stage, lab.clock, 60);
   spin(*lab.stage, lab.clock, plan,
        [&](const AngleSample& sample) { run.samples.emplace_back(lab.clock.now_s(), sample); });
   for (const auto& line : lab.log) {

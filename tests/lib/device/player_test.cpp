@@ -52,6 +52,24 @@ TEST_CASE("Light only from angle 0 to the last turn's end, and black after") {
   CHECK(tally.missed == 0);
 }
 
+TEST_CASE("Frames of two turns: those of the second in every other turn") {
+  VirtualClock clock;
+  const auto display = open_display("null:", {4, 4, 60}, clock, nullptr);
+  PlayPlan plan;
+  plan.frames_per_turn = 36;
+  plan.frames = 72;
+  plan.turns = 4;
+  for (int i = 0; i < plan.frames; ++i) display->add(GreyImage(4, 4, 8));
+  Steady angles(clock.now_s() + 14);
+  int lit = 0;
+  play(*display, nullptr, angles, clock, plan, [&](const FlipRecord& record) {
+    if (record.frame < 0) return;
+    ++lit;
+    CHECK(record.frame == std::lround(record.angle_deg / 10) % 72);
+  });
+  CHECK(lit == 4 * 12 * 60);
+}
+
 namespace {
 
 // A turn of 720 blanks after a run-up of 780, every miss-th flip one blank late; the LEDs from one

@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
+#include <vector>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
@@ -69,6 +71,7 @@ TEST_CASE("A run: ramp, a whole run-up turn at speed, the turns, a stop; zero is
 // [devices guarantee 2]
 TEST_CASE("A moving stage is sampled every 200 ms at least, whatever the rate of the output") {
   VirtualStage lab;
+  home(*lab.stage, lab.clock, 60);
   SpinPlan plan;
   plan.speed_deg_s = 60;
   plan.period_s = 1;
@@ -114,10 +117,56 @@ TEST_CASE("More turns than the travel allows are refused before anything moves")
   sim.min_deg = -1000;
   sim.max_deg = 1000;
   VirtualStage lab(sim);
+  home(*lab.stage, lab.clock, 60);
   SpinPlan plan;
   plan.turns = 3;
   CHECK(fault_of([&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); }) == Fault::data);
   CHECK(lab.commands("MOV") == 0);
+}
+
+TEST_CASE("GCS: a stage without reference does not spin, and is not made one that has it") {
+  VirtualStage lab;
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
+          std::string::npos);
+    CHECK(fault_of([&] { (void)plan_spin(*lab.stage, plan, false); }) == Fault::data);
+  }
+  CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
+  CHECK(lab.commands("POS 1") == 0);
+  CHECK(lab.commands("MOV") == 0);
+  CHECK(lab.stage->sample().angle_deg == 0);  // at 17 deg in truth, which it cannot know
+  (void)plan_spin(*lab.stage, plan, true);
+  home(*lab.stage, lab.clock, 60);
+  print();
+  print();  // its zero was set meanwhile
+}
+
+TEST_CASE("A stage that is still braking is waited for") {
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  const std::vector<std::function<void(VirtualStage&)>> commands{
+      [&](VirtualStage& lab) { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); },
+      [](VirtualStage& lab) { home(*lab.stage, lab.clock, 60); },
+      [](VirtualStage& lab) { move(*lab.stage, lab.clock, 20, false, 60, 60); }};
+  for (const auto& command : commands) {
+    VirtualStage lab;
+    home(*lab.stage, lab.clock, 60);
+    lab.stage->set_speed(60);
+    lab.stage->start_move(3000);
+    lab.clock.sleep_until(lab.clock.now_s() + 2);
+    lab.stage->stop(Stop::smooth);  // which takes 0.3 s; a user before has ended so
+    CHECK(lab.stage->moving());
+    command(lab);
+    CHECK_FALSE(lab.truly_moves());
+  }
+  VirtualStage lab;  // one that turns on and on is reported
+  home(*lab.stage, lab.clock, 60);
+  lab.stage->set_speed(60);
+  lab.stage->start_move(3000);
+  CHECK(fault_of([&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); }) == Fault::busy);
 }
 
 TEST_CASE("A stage 1 % off its speed may print, one 3 % off may not") {
@@ -127,6 +176,7 @@ TEST_CASE("A stage 1 % off its speed may print, one 3 % off may not") {
     sim.motor.speed_error = error;
     sim.jitter_s = 0.005;
     VirtualStage lab(sim);
+    home(*lab.stage, lab.clock, 60);
     SpinPlan plan;
     plan.speed_deg_s = 25;
     double last_deg = -1e9;
@@ -146,6 +196,7 @@ TEST_CASE("A blocked stage is detected within a few degrees") {
   SimGcsSettings sim;
   sim.faults.push_back({"block", "POS?", 900});
   VirtualStage lab(sim);
+  home(*lab.stage, lab.clock, 60);
   SpinPlan plan;
   plan.speed_deg_s = 60;
   plan.turns = 5;

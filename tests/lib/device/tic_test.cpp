@@ -56,7 +56,7 @@ TEST_CASE("A Tic of uncertain position turns nothing before it is homed; a smoot
   SpinPlan plan;
   plan.speed_deg_s = 60;
   const auto print = [&] { spin(*lab.stage, lab.clock, plan, [](const AngleSample&) {}); };
-  CHECK(error_of(print, Fault::data).find("not referenced: its zero may be anywhere; give --home") !=
+  CHECK(error_of(print, Fault::data).find("not referenced: the position of its zero is unknown; give --home") !=
         std::string::npos);
   CHECK(fault_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }) == Fault::data);
   CHECK(lab.log.empty());

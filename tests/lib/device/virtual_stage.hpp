@@ -12,6 +12,7 @@ namespace vam::device {
 class SharedDevice final : public sim::SimDevice {
  public:
   explicit SharedDevice(std::shared_ptr<sim::SimDevice> device) : device_(std::move(device)) {}
+  void opened(double now_s) override { device_->opened(now_s); }
   void receive(std::string_view bytes, double now_s) override { device_->receive(bytes, now_s); }
   void advance(double now_s) override { device_->advance(now_s); }
   std::optional<double> next_due_s() const override { return device_->next_due_s(); }

@@ -63,6 +63,20 @@ TEST_CASE("the lag of a record counts, under its former name, too") {
   }
 }
 
+TEST_CASE("a lag counts from the moment that the time stamps named then, and from no other") {
+  const scratch::Folder folder;
+  const auto calibration = here(folder);
+  const Json of_start{{"camera", {{"serial", "1"}, {"stamp", "start"}}}};
+  write_record(calibration, "lag", {{"devices", of_start}, {"values", {{"camera_lag", {{"value", 3.5}}}}}}, now_s);
+  for (const char* stamp : {"auto", "start", "end"}) {
+    model::Printer printer;
+    printer.camera.stamp = stamp;
+    const std::string refusal = message_of([&] { apply_records(printer, calibration, now_s); });
+    CHECK(has(refusal, "at the start of exposures, camera.stamp is end; run") == (std::string(stamp) == "end"));
+    CHECK((printer.camera.lag_ms == 3.5) == refusal.empty());
+  }
+}
+
 TEST_CASE("stale, foreign, future and damaged records are refused with one clear line") {
   const scratch::Folder folder;
   const auto calibration = here(folder);

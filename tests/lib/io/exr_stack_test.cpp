@@ -120,6 +120,7 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
     facts[i].z_mm = 1.5;
     facts[i].angle_deg = 60.0 * i + 0.01 * i * i;
     facts[i].time_s = 0.1 * i;
+    facts[i].time_sigma_s = i % 3 * 1e-4;  // not known of every frame
     facts[i].has_angle = facts[i].has_time = true;
   }
   const auto write = [&](const std::string& path, bool known) {
@@ -147,6 +148,7 @@ TEST_CASE("measured angles and times: known before, or only with the image; in a
         CHECK(about.has_time);
         CHECK(about.angle_deg == wanted.angle_deg);
         CHECK(about.time_s == wanted.time_s);
+        CHECK(about.time_sigma_s == wanted.time_sigma_s);
         CHECK(about.z_mm == 1.5);
         CHECK(reader.about()[i].angle_deg == wanted.angle_deg);
         CHECK(image.values == pattern(4, 3, i).values);

@@ -48,7 +48,7 @@ TEST_CASE("an image does not last into the next run of one log") {
   CHECK(shown[2].seconds == 2);
 }
 
-TEST_CASE("a log that its writer's death cut is read, another file is refused") {
+TEST_CASE("a log with a truncated last line is read, another file is refused") {
   const scratch::Folder folder;
   const std::string lines = flip(11, 0, 2) + flip(13, 1, 92);
   const auto shown = read_shown(folder.write("cut", lines + "{\"utc\":\"20"));

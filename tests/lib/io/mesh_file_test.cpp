@@ -223,7 +223,7 @@ TEST_CASE("meshes that crashed or starved a library: one line and status 65, at 
   CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(20));
 }
 
-TEST_CASE("a PLY property of no element is named, and does not crash the child") {
+TEST_CASE("a PLY property without an element is reported") {
   const scratch::Folder folder;
   scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n");
   std::string line;

@@ -197,7 +197,7 @@ double adjoint_error(const VialOperator& light) {
 
 // Rays of the operator have no width: a column's shadow begins and ends as a whole, in 20 x 20 voxels around an insert
 // of 6 x 2. That costs up to 0.017 RMS and 0.006 in the mean, at the shadow's edges.
-TEST_CASE("an insert's shadow is that of rays walked one by one, where rays climb and in every pose") {
+TEST_CASE("an insert's shadow agrees with voxel-by-voxel ray traversal, for skew rays and in every pose") {
   const Bench still = bench(90, -1.8, 0.05, 1, 0);
   const Bench short_lens = bench(60, 6, 0.08, 1, 0);
   for (Bench b : {still, short_lens, posed(still, model::Moves::part, 0.6, 0.8),

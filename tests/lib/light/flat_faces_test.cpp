@@ -54,15 +54,15 @@ TEST_CASE("a face is smeared by what a ray climbs across it") {
   FlatFace face{6.0, true, 10, 50};
   const double climb = optics::skew_ray(optics::projector_view(printer), 0, 6).climb;
   CHECK(climb == doctest::Approx(6 / (119.808 * 1.53)).epsilon(1e-2));  // z_p / (D n), to first order [physics §11]
-  CHECK(smear_voxels(printer, face, 0.1) == doctest::Approx(climb * 100 / model::vertical_magnification(printer)));
+  CHECK(blur_voxels(printer, face, 0.1) == doctest::Approx(climb * 100 / model::vertical_magnification(printer)));
   face.z_mm = -6;
-  CHECK(smear_voxels(printer, face, 0.1) > 0);
+  CHECK(blur_voxels(printer, face, 0.1) > 0);
   face.z_mm = 0;
-  CHECK(smear_voxels(printer, face, 0.1) == doctest::Approx(0));
+  CHECK(blur_voxels(printer, face, 0.1) == doctest::Approx(0));
   model::Printer level;
   level.projector.telecentric = true;
   face.z_mm = 6;
-  CHECK(smear_voxels(level, face, 0.1) == 0);
+  CHECK(blur_voxels(level, face, 0.1) == 0);
 }
 
 TEST_CASE("the best height has the widest face level with the lens") {

@@ -107,7 +107,7 @@ vam::oracle::WalkedDose walk(const model::Printer& bench, const std::vector<floa
 // next to the insert, d of some voxels, that is up to a twentieth of a turn, in the mean over 80 x 80 voxels a
 // thousandth or two.
 
-TEST_CASE("around an insert, convex or concave, parallel light is that of rays walked one by one") {
+TEST_CASE("around an insert, convex or concave, parallel light agrees with voxel-by-voxel ray traversal") {
   for (const Form& form : {convex, concave}) {
     const std::vector<float> insert = ::oracle::draw(size, form);
     const model::Printer bench = printer(0.05);
@@ -123,7 +123,7 @@ TEST_CASE("around an insert, convex or concave, parallel light is that of rays w
   }
 }
 
-TEST_CASE("around an insert, convex or concave, chief rays through the vial leave the dose of rays walked one by one") {
+TEST_CASE("around an insert, convex or concave, the dose of chief rays agrees with voxel-by-voxel ray traversal") {
   for (const Form& form : {convex, concave}) {
     const std::vector<float> insert = ::oracle::draw(size, form);
     const model::Printer bench = printer(0.05);

@@ -10,7 +10,7 @@
 #include "light/lit_grid.hpp"
 #include "light/vial_setup.hpp"
 #include "model/magnification.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -8,11 +8,11 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "light/display.hpp"
+#include "light/display_range.hpp"
 #include "light/dose_grid.hpp"
 #include "light/lit_grid.hpp"
 #include "model/magnification.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
@@ -147,6 +148,48 @@ double adjoint_error_of_volume(const VialOperator& light, std::size_t count) {
 }
 
 }  // namespace
+
+TEST_CASE("A leaves out what is dark: half of the voxels and the other half sum up to all of them") {
+  for (const bool climbs : {false, true}) {
+    const VialOperator light(climbs ? climbing(40, 90, 36) : vial_setup(40, 36));
+    std::vector<Slab> objects, halves[2] = {slabs(6, 40, 40), slabs(6, 40, 40)};
+    for (unsigned s = 0; s < 6; ++s) objects.push_back(parts::noise(light.object(), s));
+    for (std::size_t s = 0; s < 6; ++s) {
+      for (std::size_t i = 0; i < objects[s].values.size(); ++i) {
+        halves[i / lanes * 7 % 5 < 2 || s == 4 ? 1 : 0][s].values[i] = objects[s].values[i];
+      }
+    }
+    const light::Shape rows = light.sinogram();
+    std::vector<Slab> all = slabs(6, rows.width, rows.height), one = all, other = all;
+    light.forward(objects, all);
+    light.forward(halves[0], one);
+    light.forward(halves[1], other);
+    double most = 0;
+    for (std::size_t s = 0; s < 6; ++s) {
+      for (std::size_t i = 0; i < all[s].values.size(); ++i) {
+        const float sum = one[s].values[i] + other[s].values[i];
+        most = std::max(most, static_cast<double>(std::abs(sum - all[s].values[i])));
+      }
+    }
+    CHECK(most < 2e-5);  // of sums of some 30: rounding
+  }
+}
+
+TEST_CASE("A of a part of the grid is that of the whole whose other slices are dark") {
+  const VialOperator light(climbing(40, 90, 36));
+  std::vector<Slab> objects = slabs(6, 40, 40);
+  for (std::size_t s = 4; s < 6; ++s) objects[s] = parts::noise(light.object(), 7 + static_cast<unsigned>(s));
+  const light::Shape shape = light.sinogram();
+  std::vector<Slab> whole = slabs(6, shape.width, shape.height);
+  light.forward(objects, whole);
+  const SlabRange lit = light.lit_by({4, 6});
+  std::vector<Slab> part = slabs(lit.end - lit.first, shape.width, shape.height);
+  light.forward_within({4, {objects.data() + 4, 2}}, {lit.first, part});
+  for (std::size_t s = 0; s < 6; ++s) {
+    const bool inside = s >= lit.first && s < lit.end;
+    CHECK(whole[s].values == (inside ? part[s - lit.first].values : slabs(1, shape.width, shape.height)[0].values));
+  }
+}
 
 TEST_CASE("with skew rays A and A* are adjoint, with slices that do not fill the slabs and around an insert") {
   CHECK(adjoint_error_of_volume(VialOperator(climbing(40, 43, 60)), 3) < 1e-5);

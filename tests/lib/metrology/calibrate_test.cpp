@@ -13,6 +13,7 @@
 #include "metrology/calibrate/latency.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
 #include "metrology/calibrate/response.hpp"
+#include "metrology/calibrate/stage_course.hpp"
 #include "metrology/calibrate/wobble.hpp"
 #include "oracle/calibration_scans.hpp"
 
@@ -62,7 +63,7 @@ TEST_CASE("Response: 200 ramps, 95 % of all levels inside 2 sigma, never falling
   CHECK(levels.worst() < 0.02);
 }
 
-TEST_CASE("Response: few levels, single readings, darkness and falling intensity are errors") {
+TEST_CASE("Response: few levels, single readings, darkness, falling intensity and saturation are errors") {
   vam::oracle::Random random(12);
   const auto refused = [](const ResponseScan& scan) { return message_of([&] { (void)measure_response(scan); }); };
   auto few = ramp(1, 0, 5, 0.01, random);
@@ -76,6 +77,11 @@ TEST_CASE("Response: few levels, single readings, darkness and falling intensity
   auto drift = ramp(1, 0, 5, 0.001, random);
   for (double& reading : drift.light[10]) reading *= 1.3;
   CHECK(refused(drift).find("falls by") != std::string::npos);
+  auto clipped = ramp(2.2, 0, 5, 0.004, random);
+  for (auto& readings : clipped.light) {
+    for (double& reading : readings) reading = std::min(reading, 1500.0);  // half of full
+  }
+  CHECK(refused(clipped).find("have the same reading") != std::string::npos);
   auto unsorted = ramp(1, 0, 5, 0.01, random);
   std::swap(unsorted.grey[3], unsorted.grey[4]);
   CHECK(refused(unsorted).find("must rise") != std::string::npos);
@@ -238,7 +244,7 @@ TEST_CASE("Latency: 200 blinking screens, 95 % inside 2 sigma") {
     dark.begin_s.push_back(0.1 * n);
     dark.light.push_back(unit(random));
   }
-  CHECK(message_of([&] { (void)measure_latency(dark); }).find("does not see") != std::string::npos);
+  CHECK(message_of([&] { (void)measure_latency(dark); }).find("is not visible") != std::string::npos);
   for (std::size_t n = 0; n < 20; ++n) dark.light[n] = dark.begin_s[n] >= 0.95 ? 90 : 10;  // in step with the flips
   CHECK(message_of([&] { (void)measure_latency(dark); }).find("across a flip") != std::string::npos);
 }
@@ -325,7 +331,54 @@ TEST_CASE("Lag: the camera's delay, whatever it is, within 0.5 ms, 200 scans") {
   CHECK(lag.worst() < 0.5);
   std::vector<double> time_s;
   const CameraAxis axis = find_camera_axis(late_turn(60, 1, 0, 0, random, time_s));
-  CHECK(error_of([&] { (void)camera_lag_ms(axis, 60, axis, -60); }, Fault::data).find("turns by -60 deg/s") !=
+  CHECK(error_of([&] { (void)camera_lag_ms(axis, 60, axis, -60); }, Fault::data).find("rotates at -60 deg/s") !=
         std::string::npos);
   CHECK(fault_of([&] { (void)turning_speed_deg_s({0, 0}, {1, 2}); }) == Fault::data);
+}
+
+namespace {
+
+// A stage of 60 deg/s whose speed ripples by 3 % each 30 degrees, and is 0.3 % higher in the end than at the start.
+double rippled_deg(double t_s) {
+  const double line_deg = 60 * t_s * (1 + 0.003 * t_s / 12);
+  return line_deg + 0.14 * std::cos(12 * line_deg * std::numbers::pi / 180);
+}
+
+// Its answers, each up to 20 ms on its way there and up to 20 ms back.
+std::vector<StagePoint> late_points(vam::oracle::Random& random) {
+  std::vector<StagePoint> points;
+  for (double t_s = -0.1; t_s < 12.1;) {
+    const double there_s = 0.02 * part(random), back_s = 0.02 * part(random);
+    points.push_back(
+        {t_s + 0.5 * (there_s + back_s), rippled_deg(t_s + there_s), 60 * (there_s + back_s) / std::sqrt(12.0)});
+    t_s += std::max(0.01, there_s + back_s);
+  }
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "The course of a stage that answers up to 20 ms late: its angles within 0.5 ms of turning, by its own sigma") {
+  vam::oracle::Random random(31);
+  test::Coverage phase("lag by a late stage, ms");
+  std::vector<double> time_s;
+  for (int i = 0; i < 72; ++i) time_s.push_back(0.02 + 12.0 / 72 * i);
+  for (int run = 0; run < 100; ++run) {
+    double off_deg = 0, variance = 0;
+    for (int turn = 0; turn < 2; ++turn) {  // one either way
+      const StageCourse course(late_points(random));
+      std::vector<double> angle_deg;
+      for (const double t_s : time_s) angle_deg.push_back(course.angle_deg(t_s));
+      const auto weight = phase_weights(angle_deg, 360 * part(random));
+      for (std::size_t i = 0; i < time_s.size(); ++i) {
+        off_deg += 0.5 * weight[i] * (angle_deg[i] - rippled_deg(time_s[i]));
+      }
+      variance += 0.25 * std::pow(course.sigma_deg(time_s, weight), 2);
+    }
+    phase.add({1e3 / 60 * off_deg, 1e3 / 60 * std::sqrt(variance), 144}, 0);
+  }
+  phase.check();
+  CHECK(phase.worst() < 0.5);
+  CHECK(fault_of([] { StageCourse({{0, 0, 0.1}, {1, 60, 0.1}}); }) == Fault::data);
 }

@@ -86,13 +86,13 @@ Figures measure(const model::TriangleSoup& print, const std::vector<oracle::Body
 Figures reconstructed(const oracle::ViewBench& bench, const std::vector<CameraView>& views,
                       const std::vector<oracle::Body>& bodies, double level = 0.5, int statistical = 0) {
   const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
-                             {.statistical = statistical, .axis_row = bench.axis_row});
+                             {.mlem_iterations = statistical, .axis_row = bench.axis_row});
   Dirt dirt;
   model::Volume volume = rig.reconstruct(views, &dirt);
   const BodyCount count = keep_bodies(volume, level, {});
-  MESSAGE("contradicts ", dirt.contradicts, " background ", dirt.background, ", specks ", dirt.speck_percent,
-          " %, bubbles ", dirt.bubble_percent, " %, ", count.dropped, " bodies dropped, the largest of ",
-          count.largest_dropped_mm3, " mm3");
+  MESSAGE("bubbles_exceed_limit ", dirt.bubbles_exceed_limit, " background ", dirt.background, ", specks ",
+          dirt.speck_percent, " %, bubbles ", dirt.bubble_percent, " %, ", count.dropped,
+          " bodies dropped, the largest of ", count.largest_dropped_mm3, " mm3");
   return measure(solid::isosurface(volume, level), bodies);
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("scattered light that the resin absorbs is restored when its absorptio
   CHECK(f.rms <= 10 * micrometres);
   // MLEM, too, knows of it: it leaves the density as it is, not a map of the way out.
   const OstReconstructor refined(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
-                                 {.statistical = 20, .axis_row = bench.axis_row});
+                                 {.mlem_iterations = 20, .axis_row = bench.axis_row});
   const model::Volume sharp = refined.reconstruct(views_of(bench, oracle::bench_views(bench, bodies, {}, 180)));
   const auto density = [&](double x_mm, double y_mm) {
     const model::Grid& grid = sharp.grid;

@@ -15,6 +15,13 @@ TEST_CASE("tolerances are read with their units") {
   CHECK(parse_tolerances("psf=0.1mm") == Tolerances{0, 0, 0, 0, 0, 0.1});
 }
 
+TEST_CASE("tolerances are written as they are read, and what has none is named") {
+  const Tolerances some{0.5, 0, 0.25, 0.2, 0, 0.05};
+  CHECK(tolerances_text(some) == "axis=0.5px,angle=0.25deg,radius=0.2%,psf=0.05mm");
+  CHECK(parse_tolerances(tolerances_text(some)) == some);
+  CHECK(exact_quantities(some) == std::vector<std::string>{"index", "lamp"});
+}
+
 TEST_CASE("wrong tolerances are reported") {
   CHECK_THROWS_WITH_AS(static_cast<void>(parse_tolerances("colour=3")), doctest::Contains("there are axis, index"),
                        Error);
@@ -48,7 +55,7 @@ TEST_CASE("corners and their opposites hold every two quantities in all four way
   for (std::size_t a = 0; a < tolerance_table.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       double product = 0;
-      for (const Deviation& corner : corners) {
+      for (const PrinterDeviation& corner : corners) {
         CHECK(std::abs(corner[a]) == 1);
         product += corner[a] * corner[b];
       }
@@ -59,9 +66,9 @@ TEST_CASE("corners and their opposites hold every two quantities in all four way
 
 TEST_CASE("drawn printers are even within their tolerances and always the same") {
   constexpr int count = 4000;
-  Deviation mean{}, square{};
+  PrinterDeviation mean{}, square{};
   for (int n = 0; n < count; ++n) {
-    const Deviation by = drawn_deviation(13, n);
+    const PrinterDeviation by = drawn_deviation(13, n);
     CHECK(by == drawn_deviation(13, n));
     for (std::size_t i = 0; i < by.size(); ++i) {
       CHECK(std::abs(by[i]) <= 1);

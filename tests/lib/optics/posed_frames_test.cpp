@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
-#include "optics/frames.hpp"
+#include "optics/projector_frames.hpp"
 
 using namespace vam::optics;
 using vam::model::StackInfo;

@@ -121,14 +121,14 @@ TEST_CASE("a limit too low for the goal is raised until the goal is met, and no 
   };
   constexpr double start = 1.1;
   constexpr double factor = 1.3;
-  CHECK(made(start, {}, 60).reason == "iterations");
+  CHECK(made(start, {}, 60).stop == StopReason::iterations);
   const VolumeOutcome raised = made(start, {.factor = factor, .first = 12, .next = 6}, 200);
-  CHECK(raised.reason == "goal");
+  CHECK(raised.stop == StopReason::goal);
   CHECK(raised.metrics.ver == 0);
   CHECK(raised.max_intensity > 1.01 * start * raised.even_intensity);
   CHECK(raised.peak_intensity <= 1.00001 * raised.max_intensity);
   CHECK(raised.peak_intensity > raised.max_intensity / factor);  // the last raise was needed
   const VolumeOutcome cut = made(start, {.factor = factor, .first = 12, .next = 6}, 13);
   CHECK(cut.iterations == 13);
-  CHECK(cut.reason == "iterations");
+  CHECK(cut.stop == StopReason::iterations);
 }

@@ -45,7 +45,7 @@ Broken run_in_pieces(const std::vector<std::vector<float>>& slices, const Volume
     VolumeTask piece = task;
     piece.interruption = {[&] { return left-- == 0; }, &to, broken.times > 0 ? &from : nullptr, "job"};
     broken.result = run(slices, piece);
-    if (broken.result.outcome.reason != "interrupted") return broken;
+    if (broken.result.outcome.stop != StopReason::interrupted) return broken;
     broken.state = next;
     ++broken.times;
     REQUIRE(broken.times < 100);
@@ -98,7 +98,7 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   for (std::size_t k = 0; k < 70; ++k) same = same && broken.result.images[k].values == whole.images[k].values;
   CHECK(same);
   task.make = [](double) { return make_method("osmo", {}); };
-  CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("--no-blur"), vam::Error);
+  CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("neglect the blur"), vam::Error);
 }
 
 TEST_CASE("the same while the limit on intensity is raised") {
@@ -133,7 +133,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   Archive to(Archive::Way::out, "state",
              [&](void* bytes, std::size_t n) { state.append(static_cast<const char*>(bytes), n); });
   task.interruption = {[] { return true; }, &to, nullptr, "job"};
-  REQUIRE(run(slices, task).outcome.reason == "interrupted");
+  REQUIRE(run(slices, task).outcome.stop == StopReason::interrupted);
   const auto resume = [&](const std::string& bytes, const std::string& job) {
     std::size_t read = 0;
     Archive from(Archive::Way::in, "x.state", [&](void* to_, std::size_t n) {
@@ -145,7 +145,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
     again.interruption = {{}, nullptr, &from, job};
     return run(slices, again);
   };
-  CHECK(resume(state, "job").outcome.reason != "interrupted");
+  CHECK(resume(state, "job").outcome.stop != StopReason::interrupted);
   CHECK_THROWS_WITH_AS(resume(state, "other"), doctest::Contains("x.state: is a checkpoint of another job"),
                        vam::Error);
   std::string bad = state;

@@ -225,7 +225,7 @@ TEST_CASE("the methods that read --robust are those that face other printers") {
 TEST_CASE("contradictory thresholds and unknown methods are refused") {
   Demands demands;
   demands.window = {0.9, 0.7};
-  CHECK_THROWS_WITH_AS(check(demands), doctest::Contains("0.9 is not below --dose-high 0.7"), vam::Error);
+  CHECK_THROWS_WITH_AS(check(demands), doctest::Contains("0.9, is not below the least part dose, 0.7"), vam::Error);
   const std::string known = "there are " + vam::join(method_names(), ", ");
   CHECK_THROWS_WITH_AS(make_method("magic", {}), doctest::Contains(known.c_str()), vam::Error);
 }

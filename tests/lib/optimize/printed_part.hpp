@@ -10,7 +10,7 @@
 #include "light/simulation.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
-#include "optics/writable.hpp"
+#include "optics/writable_radius.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "optimize/run/volume.hpp"

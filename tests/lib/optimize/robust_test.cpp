@@ -34,9 +34,9 @@ light::VialSetup setup_of(const model::DeviatingPrinter& off) {
 
 std::vector<Scenario> bank(const model::Tolerances& tolerances) {
   std::vector<Scenario> all;
-  for (const model::Deviation& corner : model::balanced_corners()) {
+  for (const model::PrinterDeviation& corner : model::balanced_corners()) {
     for (const double sign : {1.0, -1.0}) {
-      model::Deviation by = corner;
+      model::PrinterDeviation by = corner;
       for (double& one : by) one *= sign;
       const auto off = model::deviate({}, tolerances, by);
       all.push_back({light::make_operator(setup_of(off)), off.printer.resin.psf_mm / grid.voxel_mm, off.intensity});

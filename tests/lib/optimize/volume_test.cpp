@@ -157,12 +157,12 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
   task.limits.iterations = 500;
   task.limits.until = vam::model::parse_conditions("iou>=0.9", {"ver", "pw", "ipdr", "cv", "iou"});
   const auto goal = run(slices, task);
-  CHECK(goal.outcome.reason == "goal");
+  CHECK(goal.outcome.stop == StopReason::goal);
   CHECK(goal.outcome.trace.back().iou >= 0.9);
   CHECK(static_cast<int>(goal.outcome.trace.size()) == goal.outcome.iterations + 1);
   task.limits.until.clear();
   const auto stalled = run(slices, task);
-  CHECK(stalled.outcome.reason == "no progress");
+  CHECK(stalled.outcome.stop == StopReason::no_progress);
   CHECK(stalled.outcome.iterations < 500);
 }
 
@@ -179,7 +179,7 @@ TEST_CASE("initial projections are used") {
 }
 
 TEST_CASE("the schedule drops results that would be held too long") {
-  std::vector<Digest> slices;
+  std::vector<SliceDigest> slices;
   for (std::uint64_t i : {1U, 1U, 2U, 3U, 4U, 1U, 4U}) slices.push_back({i, i});
   const auto generous = make_schedule(slices, 10);
   CHECK(generous.job_of_slice == std::vector<int>{0, 0, 1, 2, 3, 0, 3});

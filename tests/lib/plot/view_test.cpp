@@ -196,8 +196,8 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
     CHECK(sum == doctest::Approx(100));
     CHECK(largest == doctest::Approx(100));
   }
-  CHECK(plot.markers[0].words == "lowest inside 0.9");
-  CHECK(plot.markers[1].words == "highest outside 0.2");
+  CHECK(plot.markers[0].words == "minimum inside 0.9");
+  CHECK(plot.markers[1].words == "maximum outside 0.2");
   keep(draw(plot), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),

@@ -173,7 +173,8 @@ TEST_CASE("slices in printing order are the columns' exact solutions, on any num
       set_threads(0);
       CHECK(runs[0] == runs[1]);
       for (int p = 0; p < width * height; ++p) {
-        const resin::Column column = resin::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
+        const resin::CorrectedColumn column =
+            resin::correct_column(column_of(values, slices, p), limits, {omega_max}, extra);
         for (int k = 0; k < slices + extra; ++k) {
           const double phi = runs[0][k * width * height + p] * limits.phi_max;
           // float storage of a value up to phi_max: half a unit in the last place
@@ -202,7 +203,7 @@ TEST_CASE("grey levels: rounding never undercures and does not add up") {
     for (int k = slices + extra; k-- > 0;) correction.previous(stack[k]);
     for (int p = 0; p < width * height; ++p) {
       const auto bits = column_of(values, slices, p);
-      const resin::Column column = resin::correct_column(bits, limits, {1}, extra);
+      const resin::CorrectedColumn column = resin::correct_column(bits, limits, {1}, extra);
       std::vector<double> phi;
       for (const auto& slice : stack) phi.push_back(levels[slice[p]] * limits.phi_max);
       const std::vector<double> omega = resin::dose_at_nodes(phi, limits);

@@ -17,7 +17,7 @@ TEST_CASE("a graded ladder") {
 
 TEST_CASE("the error is gone where the assumed full-cure dose is the real one, and grows away from it") {
   resin::Study study;
-  study.process.speed_mm_h = 750;  // [CURE19]: h_a = 2000 um, 750 mm/h, D_f = 5 D_gel = 748 mJ/cm3
+  study.process.speed_mm_h = 750;  // [CURE19]: h_a = 2000 um, 750 mm/h, D_f = 5 D_c = 748 mJ/cm3
   study.process.full_cure_dose_mj_cm3 = 748;
   study.gel_dose_mj_cm3 = 149.6;
   study.dose_factors = {1, 2, 3, 4, 5, 6, 7, 8};

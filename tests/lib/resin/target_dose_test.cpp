@@ -91,7 +91,7 @@ TEST_CASE("the paper's ladder, uncorrected: one fused feature with an undercured
 
 TEST_CASE("the paper's ladder, corrected with omega_max = 1") {
   const resin::CureLimits limits = resin::limits_of({});
-  const resin::Column column = resin::correct_column(ladder(), limits, {1}, 3);
+  const resin::CorrectedColumn column = resin::correct_column(ladder(), limits, {1}, 3);
   CHECK(column.feasible());
   CHECK(violation(ladder(), column.phi, limits, 1) == "");
   for (const std::size_t edge : {10, 20, 30, 40}) CHECK(std::fabs(column.omega[edge] - 1) < 1e-6);
@@ -107,7 +107,7 @@ TEST_CASE("a rail that reaches the last slice needs the paper's three extra slic
   const Part rail(50, 1);
   CHECK_FALSE(resin::correct_column(rail, limits, {1}, 2).feasible());
   CHECK(resin::correct_column(rail, limits, {1}, 2).worst_excess > 0.1);
-  const resin::Column column = resin::correct_column(rail, limits, {1}, 3);
+  const resin::CorrectedColumn column = resin::correct_column(rail, limits, {1}, 3);
   CHECK(column.feasible());
   CHECK(violation(rail, column.phi, limits, 1) == "");
 }
@@ -117,7 +117,7 @@ TEST_CASE("omega_max: the dose inside follows the limit, the edges stay") {
   Part part(200, 0);
   std::fill(part.begin() + 40, part.begin() + 160, std::uint8_t{1});
   for (const double omega_max : {1.0, 2.0, 3.0, std::numeric_limits<double>::infinity()}) {
-    const resin::Column column = resin::correct_column(part, limits, {omega_max}, 0);
+    const resin::CorrectedColumn column = resin::correct_column(part, limits, {omega_max}, 0);
     CHECK(violation(part, column.phi, limits, omega_max) == "");
     const double peak = *std::max_element(column.omega.begin(), column.omega.end());
     if (std::isfinite(omega_max)) CHECK(peak == doctest::Approx(omega_max));
@@ -129,11 +129,11 @@ TEST_CASE("strong base: features on the platform receive full intensity, as the 
   const resin::CureLimits limits = resin::limits_of({});
   Part part(50, 1);
   std::fill(part.begin() + 30, part.begin() + 40, std::uint8_t{0});
-  const resin::Column column = resin::correct_column(part, limits, {1, true}, 3);
+  const resin::CorrectedColumn column = resin::correct_column(part, limits, {1, true}, 3);
   CHECK(column.feasible());
   for (std::size_t n = 0; n < 30; ++n) CHECK(column.phi[n] == doctest::Approx(limits.phi_max));
   for (std::size_t n = 40; n < 50; ++n) CHECK(column.phi[n] == doctest::Approx(1));  // this one has resin behind it
-  const resin::Column plain = resin::correct_column(part, limits, {1}, 3);
+  const resin::CorrectedColumn plain = resin::correct_column(part, limits, {1}, 3);
   for (std::size_t n = 30; n <= 53; ++n) CHECK(column.omega[n] == plain.omega[n]);
 }
 
@@ -149,7 +149,7 @@ TEST_CASE("thousands of random columns: every constraint holds, or the column is
     const Part part = random_part(random, 20 + trial % 180, 30, 1);
     const double omega_max = trial % 5 == 0 ? std::numeric_limits<double>::infinity() : log_uniform(random, 1, 8);
     const int extra = trial % 7 == 0 ? 0 : needed_extra(limits);
-    const resin::Column column = resin::correct_column(part, limits, {omega_max}, extra);
+    const resin::CorrectedColumn column = resin::correct_column(part, limits, {omega_max}, extra);
     const std::string problem = violation(part, column.phi, limits, omega_max);
     for (const double phi : column.phi) REQUIRE((phi >= limits.phi_min && phi <= limits.phi_max));
     if (column.feasible()) {
@@ -222,7 +222,7 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
     const int slices = static_cast<int>(part.size()) + extra;
     const double omega_max = trial % 2 == 0 ? 3.0 : std::numeric_limits<double>::infinity();
     vam::oracle::LinearProgram lp = program_of(part, limits, omega_max, slices);
-    const resin::Column least = resin::correct_column(part, limits, {1}, extra);
+    const resin::CorrectedColumn least = resin::correct_column(part, limits, {1}, extra);
 
     // Total light: sum of phi.
     std::fill(lp.cost.begin(), lp.cost.end(), 1.0);
@@ -241,7 +241,7 @@ TEST_CASE("no feasible column has less dose: a linear program finds the same opt
     CHECK(total == doctest::Approx(optimum).epsilon(1e-7));  // the simplex stops at reduced costs of 1e-12
 
     // Greatest dose inside for this omega_max, least outside: every node is at its own extreme at once.
-    const resin::Column full = resin::correct_column(part, limits, {omega_max}, extra);
+    const resin::CorrectedColumn full = resin::correct_column(part, limits, {omega_max}, extra);
     REQUIRE(full.feasible());
     const auto nodes = resin::nodes_of(part, exposure);
     const int probe = trial % static_cast<int>(nodes.size());
@@ -269,7 +269,7 @@ TEST_CASE("a layer-by-layer print has sharp bottom edges and needs no extra laye
   CHECK(limits.gain * limits.phi_max < 1);  // not here: 110 mW/cm2 for 0.18 s
   process.speed_mm_h = 100;
   const resin::CureLimits slow = resin::limits_of(process);
-  const resin::Column column = resin::correct_column(Part(20, 1), slow, {1}, 0);
+  const resin::CorrectedColumn column = resin::correct_column(Part(20, 1), slow, {1}, 0);
   CHECK(column.feasible());
   CHECK(column.omega[19] == doctest::Approx(1));
   CHECK(column.phi[0] == doctest::Approx(slow.hold()));

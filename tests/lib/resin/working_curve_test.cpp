@@ -13,7 +13,7 @@ using resin::CuredSample;
 
 namespace {
 
-// h_a = 2000 um and D_gel = 748 / 5 mJ/cm3 [CURE19]: E_c = D_gel h_a / ln(10) = 12.99 mJ/cm2.
+// h_a = 2000 um and D_c = 748 / 5 mJ/cm3 [CURE19]: E_c = D_c h_a / ln(10) = 12.99 mJ/cm2.
 constexpr double absorbance_um = 2000;
 const double critical = 149.6 * 0.2 / std::log(10.0);
 

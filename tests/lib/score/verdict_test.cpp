@@ -25,9 +25,10 @@ Verdict verdict() {
 }  // namespace
 
 TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that are known") {
-  CHECK(words(verdict()) ==
-        "will print: process window +0.0653 of the largest dose, VER 0, of 1000 voxels; with the 110 that the surface "
-        "cuts -0.312, VER 0.0041");
+  CHECK(
+      words(verdict()) ==
+      "will print: process window +0.0653 of the largest dose, VER 0, of 1000 voxels; including 110 voxels cut by the "
+      "surface -0.312, VER 0.0041");
   Verdict hollow = verdict();
   hollow.with_cut = hollow.whole;
   hollow.whole.pw = hollow.with_cut.pw = -0.02;

@@ -127,7 +127,7 @@ TEST_CASE("Noise is seeded by frame and has its spread; vignetting darkens the c
   CHECK(std::sqrt(squares / n - sum * sum / n / n) == doctest::Approx(0.01).epsilon(0.03));  // 5 of them
 }
 
-TEST_CASE("The world follows the logs as they grow: true angle, shown image, seconds of light") {
+TEST_CASE("The simulated bench follows stage and flip logs as they grow: true angle, shown image, seconds of light") {
   const std::string folder = std::filesystem::temp_directory_path() / ("vam-world-" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   const std::string angles = folder + "/angles";
@@ -174,7 +174,7 @@ TEST_CASE("The world follows the logs as they grow: true angle, shown image, sec
   std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("The world shows the test pattern that the projector's log names") {
+TEST_CASE("The simulated bench shows the test pattern that the projector's log names") {
   const std::string shown = std::filesystem::temp_directory_path() / ("vam-world-shown-" + std::to_string(getpid()));
   SimSources sources;
   sources.shown = shown;

@@ -76,7 +76,8 @@ TEST_CASE("to fit the writable cylinder") {
   placement.voxel_mm = 0.5;  // the centres of voxels that the surface cuts are up to half a diagonal beyond it
   CHECK(placed(vam::oracle::box({0, 0, 0}, {6, 8, 1}), placement).radius_mm == doctest::Approx(8 - 0.5 / std::sqrt(2)));
   placement.voxel_mm = 12;
-  CHECK(data_error([&] { (void)place(shape, placement, room, "test"); }).find("smaller --voxel") != std::string::npos);
+  CHECK(data_error([&] { (void)place(shape, placement, room, "test"); }).find("use smaller voxels") !=
+        std::string::npos);
 }
 
 TEST_CASE("grids: centred, even, faces at whole voxels, the part inside") {
@@ -131,14 +132,22 @@ TEST_CASE("the refusal names the value that fits, rounded down, and it does fit"
   tall.radius_mm = 1;
   CHECK(fitting_factor(tall, room, 0) == doctest::Approx(40.0 / 70));
   CHECK(fitting_factor(tall, {8, -2, 38}, 0.5) == doctest::Approx(39.5 / 70));  // lifted by whole voxels
-  const auto has = [&](const std::string& words, const SizeOption& size) {
+  const auto sized = [](const char* size, double value, double stretch_z) {
+    PlacementAdvice advice;
+    advice.size = size;
+    advice.value = value;
+    advice.stretch_z = stretch_z;
+    advice.or_fit = " or --fit";
+    return advice;
+  };
+  const auto has = [&](const std::string& words, const PlacementAdvice& size) {
     return data_error([&] { require_writable(part, room, 0.5, "part", size); }).find(words) != std::string::npos;
   };
   CHECK(has("part: 20 x 40 x 70 mm, reaches 22.36 mm", {}));
-  CHECK(has("; --scale 0.341 or --fit-writable fits it", {}));  // 7.646 / 22.36 = 0.34196
-  CHECK(has("; --scale 8.68 or", {"--scale", 25.4}));
-  CHECK(has("; --fit 23.9 or", {"--fit", 70, 1}));
-  CHECK(has("20 x 40 x 50 mm", {"--scale", 1, 1.4}));
+  CHECK(has("; scale 0.341 fits it", {}));  // 7.646 / 22.36 = 0.34196
+  CHECK(has("; --scale 8.68 or --fit fits it", sized("--scale", 25.4, 1)));
+  CHECK(has("; --fit 23.9 or --fit fits it", sized("--fit", 70, 1)));
+  CHECK(has("20 x 40 x 50 mm", sized("scale", 1, 1.4)));
 }
 
 TEST_CASE("which axis of the file points up, and mirrors") {

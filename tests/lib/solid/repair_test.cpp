@@ -123,17 +123,17 @@ TEST_CASE("cavities and islands keep their orientation, in inverted files too") 
   CHECK(repaired(frame).cavities == 0);
 }
 
-TEST_CASE("open, crowded and unorientable edges are counted") {
+TEST_CASE("boundary, non-manifold and unorientable edges are counted") {
   TriangleSoup lidless = cube;
   lidless.triangles.pop_back();
   const Repair open = repaired(lidless);
-  CHECK(open.open_edges == 3);
+  CHECK(open.boundary_edges == 3);
   CHECK_FALSE(open.closed());
-  CHECK(open.summary() == "3 open edges remain");
+  CHECK(open.summary() == "3 boundary edges remain");
 
   // Two cubes that share one edge only: closed, though four triangles meet there.
   const Repair edge = repaired_copy(vam::oracle::join(cube, cube, {2, 2, 0}));
-  CHECK(edge.crowded_edges == 1);
+  CHECK(edge.non_manifold_edges == 1);
   CHECK(edge.closed());
 
   // A Moebius strip of five quadrilaterals.

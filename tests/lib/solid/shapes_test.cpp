@@ -200,7 +200,7 @@ TEST_CASE("smooth blocks give each voxel what it gets by itself") {
     for (std::size_t index = 0; index < values.size(); ++index) {
       const auto v = static_cast<int>(index);
       const Point centre{grid.x_mm(v % n), grid.y_mm(v / n % n), grid.z_mm(v / n / n)};
-      Corners corners{};
+      CubeValues corners{};
       for (unsigned c = 0; c < 8; ++c) corners[c] = field.value(centre + voxel_mm * corner_sign(c));
       const double difference = values[index] - cell_fraction(field, centre, voxel_mm, corners);
       worst = std::max(worst, std::abs(difference));

@@ -22,7 +22,7 @@ TEST_CASE("nearest points are those of CGAL's AABB tree, from any start") {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto any = [&](double size) { return Vector3{size * unit(random), size * unit(random), size * unit(random)}; };
-  std::vector<Corners> soup;  // long, short, needles, crossing each other
+  std::vector<TriangleCorners> soup;  // long, short, needles, crossing each other
   for (int i = 0; i < 2000; ++i) {
     const Vector3 a = any(5);
     const Vector3 b = a + any(i % 3 == 0 ? 2 : 0.1);
@@ -30,7 +30,7 @@ TEST_CASE("nearest points are those of CGAL's AABB tree, from any start") {
   }
   Triangles judges;
   const auto to_cgal = [](const Vector3& p) { return Kernel::Point_3(p[0], p[1], p[2]); };
-  for (const Corners& t : soup) judges.emplace_back(to_cgal(t[0]), to_cgal(t[1]), to_cgal(t[2]));
+  for (const TriangleCorners& t : soup) judges.emplace_back(to_cgal(t[0]), to_cgal(t[1]), to_cgal(t[2]));
   const CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>> judge(judges.cbegin(), judges.cend());
   const TriangleTree tree(soup);
   for (int i = 0; i < 2000; ++i) {

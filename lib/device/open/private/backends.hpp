@@ -20,8 +20,8 @@ template <class Backend, std::size_t count>
 /// Throws Fault::usage when there is no device of this kind: a simulator is used only if it is named.
 inline void require_named(const std::string& device, const std::string& kind, const std::string& example) {
   if (!device.empty()) return;
-  throw Error{Fault::usage, kind + ": none is named; give --device or " + kind +
-                                ".device of the printer file, such as " + example + "; sim: is a simulated one"};
+  throw Error{Fault::usage, kind + ": no device is set; give --device, or " + kind +
+                                ".device in the printer file, e.g. " + example + "; sim: is a simulated one"};
 }
 
 /// The address was parsed with schemes_of(backends), so one of them has its scheme.

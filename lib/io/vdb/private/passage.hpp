@@ -48,15 +48,15 @@ struct LeafRecord {
 };
 
 /// What is sent of the grids of floats.
-struct Wanted {
+struct WantedGrids {
   std::optional<std::string> name;  // the first of that name alone
   bool heads_alone = false;         // in a file; on a pipe they are read to their ends
 };
 
 /// The child's work: sends every archive of the file. Throws what for_archives() throws.
-void send_archives(InputFile& file, const Wanted& wanted, Sender& out);
+void send_archives(InputFile& file, const WantedGrids& wanted, Sender& out);
 /// The same; `kept` takes what a child must not destroy.
-void pass_archives(InputFile& file, const Wanted& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept);
+void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept);
 
 void send_head(GridHead head, Sender& out);
 /// After its Record.

@@ -30,12 +30,12 @@ class RowOfHeight {
   [[nodiscard]] double row(int column, double height_mm) const;
 
  private:
-  struct Column {
+  struct ColumnHeights {
     double linear;
     double cubic;  // height = z (linear + cubic z^2), z that of the row in the plane of the axis
   };
   Eye eye_;
-  std::vector<Column> columns_;
+  std::vector<ColumnHeights> columns_;
 };
 
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
@@ -50,14 +50,14 @@ class LevelRows {
   [[nodiscard]] Image of(const Image& image, const AxisPose& axis) const;
 
  private:
-  struct Taps {
+  struct HeightTaps {
     float row;
     int first;  // of four rows, all in the image
     std::array<float, 4> weights;
   };
   int columns_;
   int heights_;
-  std::vector<Taps> taps_;  // [height][column]
+  std::vector<HeightTaps> taps_;  // [height][column]
 };
 
 }  // namespace vam::metrology

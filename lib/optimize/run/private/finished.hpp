@@ -26,6 +26,8 @@ class Finished {
   /// Of all that has been written.
   [[nodiscard]] double efficiency() const { return efficiency_.value(); }
   [[nodiscard]] double peak() const { return efficiency_.max; }
+  /// Of each slice that has been written.
+  [[nodiscard]] const std::vector<float>& peaks() const { return peaks_; }
 
  private:
   const Schedule& schedule_;
@@ -34,6 +36,7 @@ class Finished {
   int jobs_ = 0;
   int slices_ = 0;  // written
   model::LightEfficiency efficiency_;
+  std::vector<float> peaks_;
 };
 
 }  // namespace vam::optimize

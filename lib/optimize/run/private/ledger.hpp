@@ -1,6 +1,7 @@
 // What a run adds up over its passes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "model/dose_metrics.hpp"
@@ -24,8 +25,8 @@ class Ledger {
   /// What a slice leaves outside the part's box.
   void add_outside(const model::Outside& slice) { outside_.merge(slice); }
   void exchange(Archive& archive);
-  /// Everything but efficiency and jobs.
-  [[nodiscard]] VolumeOutcome outcome(bool grey) const;
+  /// Everything but what the projections say. job_of_slice: as in Schedule.
+  [[nodiscard]] VolumeOutcome outcome(bool grey, std::span<const int> job_of_slice) const;
 
  private:
   std::vector<SliceFigures> rows_, ends_;  // per iteration: of passes that got there, of passes that ended there
@@ -34,7 +35,8 @@ class Ledger {
   model::DoseStatistics total_, cut_;
   model::Outside outside_;
   SliceFigures figures_;
-  std::string reason_;
+  std::vector<double> min_part_, max_void_;  // of each job; -1: none
+  StopReason stop_ = StopReason::iterations;
   int iterations_ = 0;
   std::int64_t dark_part_voxels_ = 0;
 };

@@ -16,4 +16,8 @@ enum class Together { slice, pass };
 void bring_to_threshold(const Problem& problem, const light::Operator& light, Together together, double max_intensity,
                         const Scenarios* scenarios, Iterate& state);
 
+/// Doses of the nominal light, state.dose, and of every scenario's.
+[[nodiscard]] model::DoseStatistics statistics_of_all(const Scenarios& scenarios, const Problem& problem,
+                                                      const Iterate& state);
+
 }  // namespace vam::optimize

@@ -1,8 +1,8 @@
-// A chief ray through the bath's window and the vial, in the plane across the axis, for simulated cameras: Snell at
-// the window, then Bouguer's n b [physics §2].
+// A chief ray through the bath's window and the vial, in the plane across the axis, for simulated cameras and beams:
+// unit vectors, and Snell's law in vector form at each surface. It shares nothing with lib/optics, which tests
+// judge by this bench.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -36,32 +36,56 @@ struct SimShells {
   return all;
 }
 
-/// Transmittance of unpolarised intensity from index n1 to n2, with the cosines of the angles there (Fresnel).
-[[nodiscard]] inline double sim_passed(double n1, double cos1, double n2, double cos2) {
-  const double across = (n1 * cos1 - n2 * cos2) / (n1 * cos1 + n2 * cos2);
-  const double along = (n2 * cos1 - n1 * cos2) / (n2 * cos1 + n1 * cos2);
-  return 1 - 0.5 * (across * across + along * along);
-}
+struct SimVector {
+  double x;
+  double y;  // along the light
+};
+
+/// Light on its way: a point, a unit direction, and what has passed so far.
+struct SimLight {
+  SimVector at;
+  SimVector along;
+  double transmittance = 1;
+
+  void go(double far) { at = {at.x + far * along.x, at.y + far * along.y}; }
+  /// Into index n2 from n1 through a surface here whose unit normal points against the light: the direction by Snell's
+  /// law, the transmittance by Fresnel's equations, unpolarised. False: total reflection.
+  [[nodiscard]] bool enter(double n1, double n2, SimVector normal) {
+    const double cosine1 = -(along.x * normal.x + along.y * normal.y);
+    const double eta = n1 / n2;
+    const double square = 1 - eta * eta * (1 - cosine1 * cosine1);
+    if (square <= 0) return false;
+    const double cosine2 = std::sqrt(square);
+    const double back = eta * cosine1 - cosine2;
+    along = {eta * along.x + back * normal.x, eta * along.y + back * normal.y};
+    const double amplitude_s = 2 * n1 * cosine1 / (n1 * cosine1 + n2 * cosine2);
+    const double amplitude_p = 2 * n1 * cosine1 / (n2 * cosine1 + n1 * cosine2);
+    const double flux = n2 * cosine2 / (n1 * cosine1);
+    transmittance *= 0.5 * flux * (amplitude_s * amplitude_s + amplitude_p * amplitude_p);
+    return true;
+  }
+};
 
 /// The ray that would cross the plane of the axis at x_mm if all were air; distance_mm to the lens, none when
 /// telecentric.
 [[nodiscard]] inline SimRay sim_ray(double x_mm, std::optional<double> distance_mm, const SimShells& through) {
-  const double in_air = distance_mm ? std::atan(x_mm / *distance_mm) : 0;
-  const double lean = std::asin(std::sin(in_air) / through.outside);
-  const double crossing_mm = x_mm + through.window_mm * (std::tan(lean) - std::tan(in_air));
-  const double invariant = through.outside * crossing_mm * std::cos(lean);  // n b
-  SimRay ray{true, x_mm, -lean, sim_passed(1, std::cos(in_air), through.outside, std::cos(lean))};
+  const double length = distance_mm ? std::hypot(x_mm, *distance_mm) : 1;
+  SimLight light{{x_mm, 0}, distance_mm ? SimVector{x_mm / length, *distance_mm / length} : SimVector{0, 1}};
+  const SimRay beside{false, x_mm, 0, 0};
+  light.go(-through.window_mm / light.along.y);
+  if (!light.enter(1, through.outside, {0, -1})) return beside;
   double index = through.outside;
   for (const SimShell& shell : through.shells) {
-    const double before = invariant / (index * shell.radius_mm);
-    const double after = invariant / (shell.index * shell.radius_mm);
-    if (std::abs(before) >= 1 || std::abs(after) >= 1) return {false, x_mm, 0, 0};
-    ray.turn_rad += std::asin(before) - std::asin(after);
-    ray.transmittance *= sim_passed(index, std::sqrt(1 - before * before), shell.index, std::sqrt(1 - after * after));
+    const double nearest = light.at.x * light.along.x + light.at.y * light.along.y;
+    const double beyond = light.at.x * light.at.x + light.at.y * light.at.y - shell.radius_mm * shell.radius_mm;
+    const double square = nearest * nearest - beyond;
+    if (square <= 0) return beside;
+    light.go(-nearest - std::sqrt(square));
+    if (!light.enter(index, shell.index, {light.at.x / shell.radius_mm, light.at.y / shell.radius_mm})) return beside;
     index = shell.index;
   }
-  ray.offset_mm = invariant / index;
-  return ray;
+  return {true, light.at.x * light.along.y - light.at.y * light.along.x, std::atan2(-light.along.x, light.along.y),
+          light.transmittance};
 }
 
 }  // namespace vam::sim

@@ -8,7 +8,7 @@
 
 namespace vam::solid {
 
-using Corners = std::array<Vector3, 3>;
+using TriangleCorners = std::array<Vector3, 3>;
 
 /// A node holds triangles [begin, end); an inner one has children at index + 1 and at `right`, so children follow their
 /// parent and the root is node 0.
@@ -28,21 +28,21 @@ struct Nearest {
 };
 
 struct TriangleTree {
-  std::vector<Corners> triangles;  // in the order of the leaves
+  std::vector<TriangleCorners> triangles;  // in the order of the leaves
   std::vector<TriangleNode> nodes;
 
   TriangleTree() = default;
   /// Splits at the median of the longest side of the centroids' box.
-  explicit TriangleTree(std::vector<Corners> soup);
+  explicit TriangleTree(std::vector<TriangleCorners> soup);
 
   /// Triangle 'start' is tested first: a neighbour's answer saves half of the way. There must be a triangle.
   [[nodiscard]] Nearest nearest(const Vector3& point, int start = 0) const;
 };
 
 /// The corners of all triangles of a mesh that have an area.
-[[nodiscard]] std::vector<Corners> corners_of(const model::TriangleSoup& mesh);
+[[nodiscard]] std::vector<TriangleCorners> corners_of(const model::TriangleSoup& mesh);
 
 /// The nearest point of a triangle that has an area [ERI05 section 5.1.5].
-[[nodiscard]] Vector3 nearest_on(const Corners& triangle, const Vector3& point);
+[[nodiscard]] Vector3 nearest_on(const TriangleCorners& triangle, const Vector3& point);
 
 }  // namespace vam::solid

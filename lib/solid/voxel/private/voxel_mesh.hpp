@@ -12,18 +12,18 @@
 
 namespace vam::solid {
 
-using Corners = std::array<Vector3, 3>;
+using TriangleCorners = std::array<Vector3, 3>;
 
 /// Triangles in voxel units: voxel (i, j, k) spans i ... i + 1 and so on. What lies below or above the grid is cut off.
 /// Throws Fault::bug when one leaves the grid in x or y.
-[[nodiscard]] std::vector<Corners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid);
+[[nodiscard]] std::vector<TriangleCorners> in_voxels(const model::TriangleSoup& mesh, const model::Grid& grid);
 
-[[nodiscard]] Polygon polygon(const Corners& corners);
+[[nodiscard]] Polygon polygon(const TriangleCorners& corners);
 
 /// For every layer along one axis the triangles that meet it, in ascending order.
 class Bins {
  public:
-  Bins(const std::vector<Corners>& triangles, std::size_t axis, int layers);
+  Bins(const std::vector<TriangleCorners>& triangles, std::size_t axis, int layers);
   [[nodiscard]] std::span<const int> operator[](int layer) const;
 
  private:

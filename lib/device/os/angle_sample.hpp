@@ -1,0 +1,21 @@
+// An angle of the stage at a time, as a line of text: what vam-stage writes, and what the player, the cameras and
+// vam-calibrate read. It needs no device.
+#pragma once
+
+#include <string>
+
+namespace vam::device {
+
+/// An angle at a time with its standard deviation: one line of vam-stage's output.
+struct AngleSample {
+  double t_s = 0;  // CLOCK_MONOTONIC
+  double angle_deg = 0;
+  double sigma_deg = 0;
+};
+
+/// {"t_monotonic_s":12.3456789,"angle_deg":45.12345,"sigma_deg":0.00123}
+[[nodiscard]] std::string to_line(const AngleSample& sample);
+/// Throws Fault::data for anything else: "stage angles: line 7: ...".
+[[nodiscard]] AngleSample parse_angle_line(const std::string& line, long number);
+
+}  // namespace vam::device

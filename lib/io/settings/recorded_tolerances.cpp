@@ -1,0 +1,55 @@
+#include "io/settings/recorded_tolerances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/json.hpp"
+#include "io/settings/calibration_record.hpp"
+
+namespace vam::io {
+
+namespace {
+
+using model::Deviating;
+
+constexpr double sigmas = 2;
+constexpr double sigma_of_fwhm = 2.354820045;  // of a Gaussian
+
+double sigma(const CalibrationRecord& record, const std::string& name) {
+  try {
+    const double value = record.sigma(name);
+    if (std::isfinite(value) && value >= 0) return value;
+  } catch (const Json::exception&) {
+  }
+  throw Error{Fault::data, record.path + ": has no standard deviation of " + name + "; run vam-calibrate"};
+}
+
+}  // namespace
+
+model::Tolerances recorded_tolerances(const model::Printer& printer) {
+  const model::Calibration& calibration = printer.calibration;
+  if (calibration.folder.empty()) {
+    throw Error{Fault::usage,
+                "calibration: no calibration.folder in the printer settings; set one, or give "
+                "the tolerances"};
+  }
+  model::Tolerances found{};
+  const auto set = [&](Deviating what, double one_sigma) {
+    found[static_cast<std::size_t>(what)] = sigmas * one_sigma;
+  };
+  if (const auto edges = current_record(calibration, "edges")) {
+    set(Deviating::axis, sigma(*edges, "axis_column"));
+    set(Deviating::radius, 100 * sigma(*edges, "radius") / printer.vial.radius_mm);
+  }
+  if (const auto latency = current_record(calibration, "latency")) {
+    set(Deviating::angle, 1e-3 * sigma(*latency, "latency") * printer.stage.speed_deg_s);
+  }
+  if (const auto beam = current_record(calibration, "beam"))
+    set(Deviating::psf, sigma(*beam, "axis_fwhm") / sigma_of_fwhm);
+  if (std::any_of(found.begin(), found.end(), [](double one) { return one > 0; })) return found;
+  throw Error{Fault::data, calibration.folder + ": has no record of edges, latency or beam; run vam-calibrate"};
+}
+
+}  // namespace vam::io

@@ -1,0 +1,33 @@
+// Sums with the Gaussian of beam and resin along x, y and z of a volume [physics §4].
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace vam::light {
+
+class GaussianBlur {
+ public:
+  /// sigma in voxels.
+  explicit GaussianBlur(double sigma_px);
+
+  /// Neighbours on either side that count.
+  [[nodiscard]] int half_width() const { return static_cast<int>(weights_.size()) - 1; }
+  /// Of the n-th neighbour, 0 the middle.
+  [[nodiscard]] float weight(int n) const { return weights_[static_cast<std::size_t>(n)]; }
+
+  /// `count` sums over values `stride` floats apart, about from[0] and those that follow it; half_width() strides are
+  /// known on both sides.
+  void sum(const float* from, std::ptrdiff_t stride, float* to, int count) const;
+  /// Planes of height rows of width elements of `depth` floats each, in place along x and y; dark outside.
+  void across(std::span<float* const> planes, int width, int height, int depth) const;
+
+ private:
+  void row(float* values, int width, int depth) const;
+  void columns(float* plane, std::ptrdiff_t pitch, int height, int count) const;
+
+  std::vector<float> weights_;  // middle, first neighbours, ...
+};
+
+}  // namespace vam::light

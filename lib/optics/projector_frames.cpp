@@ -1,0 +1,246 @@
+#include "optics/projector_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/text.hpp"
+#include "optics/private/sample_taps.hpp"
+
+namespace vam::optics {
+
+namespace {
+
+std::string range(double low, double high) { return format_number(low) + " to " + format_number(high); }
+
+void require_projector_stack(const std::string& subject, const model::StackInfo& info, const FramePlace& place) {
+  const double turn_deg = std::abs(info.angle_step_deg) * info.height;
+  if (info.poses.empty() && std::abs(turn_deg - 360) > 1e-3) {
+    throw Error{Fault::data, subject + ": its " + std::to_string(info.height) + " angles span " +
+                                 format_number(turn_deg) + " degrees, not one turn of 360"};
+  }
+  if (info.width != place.columns) {
+    throw Error{Fault::data, subject + ": has " + std::to_string(info.width) + " columns, but the projector has " +
+                                 std::to_string(place.columns) + "; give vam-resample the same printer"};
+  }
+  if (std::abs(info.pixel_mm - place.pixel_mm) > 1e-6 * place.pixel_mm) {
+    throw Error{Fault::data, subject + ": its pixels are " + format_number(info.pixel_mm) +
+                                 " mm, but the projector's are " + format_number(place.pixel_mm) +
+                                 " mm; give vam-resample the same printer"};
+  }
+  if (info.count > 1 && !(info.row_mm > 0)) {
+    throw Error{Fault::data,
+                subject + ": its slice pitch (vam:row_mm) is " + format_number(info.row_mm) + " mm, not above 0"};
+  }
+}
+
+}  // namespace
+
+FrameSchedule frame_schedule(double fps, double speed_deg_s, double turns) {
+  const double frames_per_turn = 360 * fps / speed_deg_s;
+  const double count = std::round(turns * frames_per_turn);
+  if (frames_per_turn < 2 || !(count >= 1) || count > 1e7) {
+    throw Error{Fault::usage, format_number(fps) + " frames per second at " + format_number(speed_deg_s) +
+                                  " deg/s give " + format_number(frames_per_turn) + " frames a turn and " +
+                                  format_number(count, 9) + " in all; change fps, speed or turns"};
+  }
+  return {static_cast<int>(count), fps, speed_deg_s / fps};
+}
+
+FramePlace frame_place(const model::Projector& projector, double column_offset, double row_offset) {
+  return {projector.columns, projector.rows, projector.pixel_mm, projector.axis_row + row_offset, column_offset};
+}
+
+FrameComposer::FrameComposer(std::string subject, const model::StackInfo& info, const FramePlace& place)
+    : subject_(std::move(subject)),
+      info_(info),
+      place_(place),
+      column_peak_(static_cast<std::size_t>(std::max(place.columns, 0)) * 3, 0.0F),
+      repeats_(model::repeat(info.poses)) {
+  require_projector_stack(subject_, info, place);
+}
+
+namespace {
+
+// Columns of a sinogram that are not 0 at every angle.
+struct Lit {
+  int low = std::numeric_limits<int>::max();
+  int high = -1;
+  float least = 0;
+  float most = 0;
+};
+
+Lit lit_columns(const Image& sinogram) {
+  Lit lit;
+  for (int a = 0; a < sinogram.height; ++a) {
+    const float* row = sinogram.row(a);
+    for (int c = 0; c < sinogram.width; ++c) {
+      if (row[c] == 0) continue;
+      lit.low = std::min(lit.low, c);
+      lit.high = std::max(lit.high, c);
+      lit.least = std::min(lit.least, row[c]);
+      lit.most = std::max(lit.most, row[c]);
+    }
+  }
+  return lit;
+}
+
+}  // namespace
+
+void FrameComposer::add(const Image& sinogram, double z_mm) {
+  const Lit lit = lit_columns(sinogram);
+  if (lit.least < 0) {
+    throw Error{Fault::data, subject_ + ": has a value of " + format_number(lit.least) +
+                                 " at z = " + format_number(z_mm) +
+                                 " mm; light cannot be negative: clip or offset it in vam-sinogram"};
+  }
+  Slice& slice = slices_.emplace_back();
+  slice.z_mm = z_mm;
+  if (lit.high < 0) return;
+  slice.peak = lit.most;
+  peak_ = std::max(peak_, lit.most);
+  // Device column x shows sinogram columns x - offset; x runs over all that get light, on the device or beside it.
+  const Taps taps = sample_taps(-place_.column_offset, 1);
+  const int count = count_of(taps.weights);
+  const int low = std::max(lit.low - taps.first - count + 1, -place_.columns);
+  const int high = std::min(lit.high - taps.first, 2 * place_.columns - 1);
+  slice.first = std::clamp(low, 0, place_.columns);
+  slice.width = std::max(std::min(high + 1, place_.columns) - slice.first, 0);
+  slice.values.reserve(slice.width * static_cast<std::size_t>(sinogram.height));
+  float* peak = column_peak_.data() + place_.columns;
+  for (int a = 0; a < sinogram.height; ++a) {
+    const float* row = sinogram.row(a);
+    for (int x = low; x <= high; ++x) {
+      float value = 0;
+      for (int t = 0; t < count; ++t) {
+        const int c = x + taps.first + t;
+        if (c >= 0 && c < sinogram.width) value += taps.weights[t] * row[c];
+      }
+      peak[x] = std::max(peak[x], value);
+      if (x >= 0 && x < place_.columns) slice.values.push_back(value);
+    }
+  }
+}
+
+void FrameComposer::check_columns(float dark) const {
+  int low = 2 * place_.columns;
+  int high = -place_.columns - 1;
+  const float* peak = column_peak_.data() + place_.columns;
+  for (int x = -place_.columns; x < 2 * place_.columns; ++x) {
+    if (peak[x] <= dark) continue;
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  if (low >= 0 && high < place_.columns) return;
+  throw Error{Fault::data, subject_ + ": light on columns " + range(low, high) + ", but the projector has columns " +
+                               range(0, place_.columns - 1) + "; reduce the column offset"};
+}
+
+void FrameComposer::check_rows(float dark) const {
+  double top = std::numeric_limits<double>::infinity();
+  double bottom = -top;
+  for (const Slice& slice : slices_) {
+    if (slice.peak <= dark) continue;
+    top = std::min(top, row_of(slice.z_mm));
+    bottom = std::max(bottom, row_of(slice.z_mm));
+  }
+  const double half = 0.5 * slice_mm() / place_.pixel_mm;  // of a slice, in rows
+  constexpr double forgiven = 0.01;                        // of a row
+  if (top - half >= -0.5 - forgiven && bottom + half <= place_.rows - 0.5 + forgiven) return;
+  throw Error{Fault::data, subject_ + ": light on rows " + range(top, bottom) + ", but the projector has rows " +
+                               range(0, place_.rows - 1) + "; change the row offset, or move or shorten the part"};
+}
+
+void FrameComposer::check() const {
+  if (!(peak_ > 0)) throw Error{Fault::data, subject_ + ": is all dark; there is nothing to project"};
+  const float dark = peak_ / 131072;
+  check_columns(dark);
+  check_rows(dark);
+}
+
+void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {
+  if (slice.width == 0) return;
+  const int wrapped = (angle % info_.height + info_.height) % info_.height;
+  const int a = repeats_ ? wrapped : std::clamp(angle, 0, info_.height - 1);
+  const float* from = slice.values.data() + product(a, slice.width);
+  float* to = row + slice.first;
+  for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
+}
+
+Image FrameComposer::frame(double angle_deg, double span_deg, Image former) const {
+  Image image = std::move(former);
+  image.width = place_.columns;
+  image.height = place_.rows;
+  image.values.assign(product(place_.columns, place_.rows), 0.0F);
+  const Taps angles = sample_taps((angle_deg - info_.angle_start_deg) / info_.angle_step_deg,
+                                  span_deg / std::abs(info_.angle_step_deg));
+  const int count = count_of(slices_);
+  for (int r = 0; r < place_.rows; ++r) {
+    const double z_mm = (place_.axis_row - r) * place_.pixel_mm;
+    const double position = (z_mm - slices_.front().z_mm) / slice_mm();
+    if (position < -0.5 || position > count - 0.5)
+      continue;  // half a slice beyond the middle of the last one it is dark
+    const Taps taps = sample_taps(position, place_.pixel_mm / slice_mm());
+    for (std::size_t s = 0; s < taps.weights.size(); ++s) {
+      const Slice& slice = slices_[std::clamp(taps.first + static_cast<int>(s), 0, count - 1)];
+      for (std::size_t a = 0; a < angles.weights.size(); ++a) {
+        add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], image.row(r));
+      }
+    }
+  }
+  return image;
+}
+
+double turns_of(const model::StackInfo& info) {
+  return info.poses.empty() ? 1 : info.height * std::abs(info.angle_step_deg) / 360;
+}
+
+double turns_to_show(const model::StackInfo& info, std::optional<double> requested, double usual) {
+  if (info.poses.empty()) return requested.value_or(usual);
+  const double own = turns_of(info);
+  const double turns = requested.value_or(own);
+  if (model::repeat(info.poses) || std::abs(turns / own - 1) < 1e-6) return turns;
+  throw Error{Fault::usage, "turns: " + format_number(turns) + " requested, but the poses of the stack do not return " +
+                                "to the first one: it is shown once, which takes " + format_number(own)};
+}
+
+void orient(Image& image, const std::string& orientation) {
+  const auto width = static_cast<std::ptrdiff_t>(image.width);
+  if (orientation == "rotate-180") std::reverse(image.values.begin(), image.values.end());
+  if (orientation == "flip-columns") {
+    for (auto row = image.values.begin(); row != image.values.end(); row += width) std::reverse(row, row + width);
+  }
+  if (orientation == "flip-rows") {
+    for (int y = 0; y < image.height / 2; ++y) {
+      std::swap_ranges(image.row(y), image.row(y) + width, image.row(image.height - 1 - y));
+    }
+  }
+}
+
+model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace& place, const FrameSchedule& schedule,
+                             const std::string& orientation) {
+  model::StackInfo info = sinogram;
+  info.kind = model::Kind::frames;
+  info.space = model::Space::projector;
+  info.width = place.columns;
+  info.height = place.rows;
+  info.count = schedule.count;
+  info.pixel_mm = place.pixel_mm;
+  const bool upside_down = orientation == "flip-rows" || orientation == "rotate-180";
+  info.row_mm = upside_down ? place.pixel_mm : -place.pixel_mm;
+  info.z_start_mm = (upside_down ? place.axis_row - (place.rows - 1) : place.axis_row) * place.pixel_mm;
+  info.angle_start_deg = 0;
+  info.angle_step_deg = schedule.step_deg;
+  info.poses.clear();
+  for (int n = 0; n < schedule.count && !sinogram.poses.empty(); ++n) {
+    const double frame = (schedule.angle_deg(n) - sinogram.angle_start_deg) / sinogram.angle_step_deg;
+    model::Pose& pose = info.poses.emplace_back(model::pose_between(sinogram.poses, frame));
+    pose.angle_deg = schedule.angle_deg(n);
+  }
+  return info;
+}
+
+}  // namespace vam::optics

@@ -1,0 +1,52 @@
+#include "optimize/run/prolongation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vam::optimize {
+
+Prolongation::Prolongation(std::vector<Image> coarse, const StackSamples& from, const StackSamples& to)
+    : coarse_(std::move(coarse)),
+      columns_(between(from.columns, to.columns, false)),
+      angles_(between(from.angles, to.angles, true)),
+      slices_(between(from.slices, to.slices, false)) {}
+
+std::vector<Prolongation::Between> Prolongation::between(const Samples& from, const Samples& to, bool periodic) {
+  std::vector<Between> all;
+  all.reserve(static_cast<std::size_t>(to.count));
+  for (int n = 0; n < to.count; ++n) {
+    const double at = (to.first + n * to.step - from.first) / from.step;
+    const double below = std::floor(at);
+    const auto sample = [&](double i) {
+      if (!periodic) return static_cast<int>(std::clamp(i, 0.0, from.count - 1.0));
+      return static_cast<int>(i - from.count * std::floor(i / from.count));
+    };
+    all.push_back({sample(below), sample(below + 1), static_cast<float>(at - below)});
+  }
+  return all;
+}
+
+Image Prolongation::operator()(int k) const {
+  const Between& slice = slices_[static_cast<std::size_t>(k)];
+  const Image& below = coarse_[static_cast<std::size_t>(slice.first)];
+  const Image& above = coarse_[static_cast<std::size_t>(slice.second)];
+  Image image(static_cast<int>(columns_.size()), static_cast<int>(angles_.size()));
+  std::vector<float> row(static_cast<std::size_t>(below.width));
+  float* to = image.values.data();
+  for (const Between& angle : angles_) {
+    const auto mixed = [](float a, float b, float weight) { return a + weight * (b - a); };
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const float first = mixed(below.row(angle.first)[c], above.row(angle.first)[c], slice.weight);
+      const float second = mixed(below.row(angle.second)[c], above.row(angle.second)[c], slice.weight);
+      row[c] = mixed(first, second, angle.weight);
+    }
+    for (const Between& column : columns_) {
+      *to++ = mixed(row[static_cast<std::size_t>(column.first)], row[static_cast<std::size_t>(column.second)],
+                    column.weight);
+    }
+  }
+  return image;
+}
+
+}  // namespace vam::optimize

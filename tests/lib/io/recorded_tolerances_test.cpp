@@ -1,0 +1,60 @@
+// Tolerances from calibration records.
+#include "io/settings/recorded_tolerances.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "base/json.hpp"
+#include "fault_of.hpp"
+#include "io/settings/calibration_record.hpp"
+#include "scratch.hpp"
+
+using namespace vam;
+using namespace vam::io;
+
+namespace {
+
+constexpr double now_s = 1795280280.25;
+
+Json measured(double value, double sigma) { return {{"value", value}, {"sigma", sigma}}; }
+
+void write(const model::Printer& printer, const char* scan, const Json& values) {
+  write_record(printer.calibration, scan, {{"status", "pass"}, {"values", values}}, now_s);
+}
+
+double of(const model::Tolerances& tolerances, model::Deviating what) {
+  return tolerances[static_cast<std::size_t>(what)];
+}
+
+}  // namespace
+
+TEST_CASE("tolerances are twice the recorded standard deviations, in their own units") {
+  const scratch::Folder folder;
+  model::Printer printer;
+  printer.calibration.folder = folder / "records";
+  printer.vial.radius_mm = 12;
+  printer.stage.speed_deg_s = 20;
+  write(printer, "edges", {{"axis_column", measured(510, 0.05)}, {"radius", measured(12, 0.006)}});
+  write(printer, "latency", {{"latency", measured(40, 1.5)}});
+  const model::Tolerances some = recorded_tolerances(printer);
+  CHECK(of(some, model::Deviating::axis) == doctest::Approx(0.1));
+  CHECK(of(some, model::Deviating::radius) == doctest::Approx(0.1));  // percent
+  CHECK(of(some, model::Deviating::angle) == doctest::Approx(0.06));
+  for (const auto what : {model::Deviating::index, model::Deviating::lamp, model::Deviating::psf})
+    CHECK(of(some, what) == 0);
+  write(printer, "beam", {{"axis_fwhm", measured(0.2, 0.01)}});
+  CHECK(of(recorded_tolerances(printer), model::Deviating::psf) ==
+        doctest::Approx(0.01 / std::sqrt(2 * std::log(2.0))));
+}
+
+TEST_CASE("without records there are no tolerances, and an incomplete record is named") {
+  const scratch::Folder folder;
+  model::Printer printer;
+  CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::usage);
+  printer.calibration.folder = folder / "records";
+  CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::data);
+  write(printer, "edges", {{"axis_column", measured(510, 0.05)}, {"radius", {{"value", 12}}}});
+  CHECK(fault_of([&] { (void)recorded_tolerances(printer); }) == Fault::data);
+}

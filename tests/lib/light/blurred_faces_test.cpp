@@ -1,0 +1,39 @@
+#include "light/blurred_faces.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+using namespace vam;
+using namespace vam::light;
+
+TEST_CASE("faces are hard where rays smear them and voxels nearby are wrong") {
+  const model::Printer printer;
+  const model::Grid grid = model::centred_grid(40, 40, 100, 0.1, -4.95);  // z = -5 ... 5
+  const std::vector<FlatFace> faces{{0, false, 10, 80}, {4, true, 1, 1}, {4.5, true, 12, 113}};
+  std::vector<std::int64_t> wrong(100, 0);
+  CHECK(blurred_faces(printer, grid, wrong, faces).empty());
+  wrong[48] = 7;  // beside the face that is level with the lens: rays do not smear that one
+  CHECK(blurred_faces(printer, grid, wrong, faces).empty());
+  wrong[96] = 5;
+  wrong[92] = 3;
+  const auto hard = blurred_faces(printer, grid, wrong, faces);
+  REQUIRE(hard.size() == 1);  // the narrow one is smeared by less than a voxel
+  CHECK(hard[0].face.z_mm == 4.5);
+  CHECK(hard[0].blur_voxels == doctest::Approx(blur_voxels(printer, faces[2], 0.1)));
+  CHECK(hard[0].wrong_voxels == 8);  // smeared over three voxels up and down: slices 92 ... 97
+}
+
+TEST_CASE("the remedy brings the worst face to the lens, or tilts it by what rays climb") {
+  const model::Printer printer;
+  const std::vector<FlatFace> faces{{9, true, 12, 113}};
+  const std::vector<BlurredFace> hard{{faces[0], blur_voxels(printer, faces[0], 0.1), 5}};
+  const FaceRemedy free = face_remedy(printer, faces, hard, 0.1, -20, 20);
+  CHECK(free.lift_mm == doctest::Approx(-9));
+  CHECK(free.blur_voxels < 0.1);
+  const FaceRemedy bound = face_remedy(printer, faces, hard, 0.1, -3, 20);
+  CHECK(bound.lift_mm == doctest::Approx(-3));
+  CHECK(bound.blur_voxels == doctest::Approx(hard[0].blur_voxels * 2 / 3).epsilon(0.02));
+  CHECK(free.tilt_deg == std::ceil(std::atan(hard[0].blur_voxels * 0.1 / 12) * 180 / M_PI));
+}

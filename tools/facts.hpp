@@ -1,0 +1,33 @@
+// Facts of volumes and stacks: what their metadata state [formats: Attributes of volumes and prints].
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "base/text.hpp"
+#include "model/mesh.hpp"
+
+namespace vam::tool {
+
+using Facts = std::map<std::string, std::string>;
+
+/// Empty if it is not stated, or not a number.
+inline std::optional<double> stated_number(const Facts& facts, const std::string& name) {
+  const auto found = facts.find(name);
+  return found == facts.end() ? std::nullopt : parse_number(found->second);
+}
+
+/// The factor by which vam-slice stretched the part along z; 1 if it is not stated.
+inline double stretch_z(const Facts& facts) { return stated_number(facts, "vam:stretch_z").value_or(1.0); }
+
+/// Heights of the part instead of those of the stretched volume.
+inline void unstretch(model::TriangleSoup& mesh, const Facts& facts) {
+  const double factor = stretch_z(facts);
+  for (auto& point : mesh.points) point[2] /= factor;
+}
+
+/// The dose at which the projections print, in the unit of the dose.
+inline std::optional<double> threshold_dose(const Facts& facts) { return stated_number(facts, "vam:threshold_dose"); }
+
+}  // namespace vam::tool

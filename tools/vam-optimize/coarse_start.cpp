@@ -1,0 +1,117 @@
+#include "vam-optimize/coarse_start.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "device/os/interrupt.hpp"
+#include "io/vdb/coarser.hpp"
+#include "model/coarser.hpp"
+#include "optimize/run/volume.hpp"
+#include "vam-optimize/task.hpp"
+
+namespace vam::optimize_tool {
+
+namespace {
+
+constexpr int least_voxels = 24;      // a side of the coarser part
+constexpr double most_wrong = 0.02;   // voxel error rate of a print that is of use
+constexpr int first_iterations = 60;  // at the coarsest level
+constexpr int raises = 3;
+constexpr int next_iterations = 10;  // at those above, and for each raise of the limit where the part does not print
+constexpr double least_half_width = 0.05, widest = 0.08;  // in doses; a wider one costs the surface its place
+
+Inputs coarser(const Inputs& in) {
+  Inputs coarse;
+  const auto add = [](const std::vector<io::SparseVolume>& from, std::vector<io::SparseVolume>& to) {
+    for (const io::SparseVolume& volume : from) to.push_back(io::coarser(volume));
+  };
+  add(in.target, coarse.target);
+  add(in.insert, coarse.insert);
+  add(in.weight, coarse.weight);
+  add(in.tolerance, coarse.tolerance);
+  return coarse;
+}
+
+/// Without whatever is made of the result alone.
+Options coarser(const Options& options) {
+  Options coarse = options;
+  coarse.angles = (options.angles + 1) / 2;
+  if (options.bins) coarse.bins = (*options.bins + 1) / 2;
+  coarse.trace.clear();
+  coarse.certify.clear();
+  if (coarse.shortest) coarse.raising = {};
+  return coarse;
+}
+
+optimize::StackSamples samples(const Scene& scene, const Options& options) {
+  const model::Projector& projector = scene.printer.projector;
+  optimize::Samples columns{scene.turn.columns, -0.5 * (scene.turn.columns - 1) * scene.grid.voxel_mm,
+                            scene.grid.voxel_mm};
+  if (options.in_vial()) {
+    columns = {projector.columns, -projector.axis_column * projector.pixel_mm, projector.pixel_mm};
+  }
+  const optimize::Samples angles{scene.frames(), 0, 360.0 / scene.frames()};
+  return {columns, angles, {scene.grid.nz, scene.grid.z_mm(0), scene.grid.voxel_mm}};
+}
+
+bool worthwhile(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
+
+/// The level's own work.
+struct Solved {
+  optimize::VolumeOutcome outcome;
+  std::vector<Image> images;
+};
+
+Solved solve(const Inputs& in, const Scene& scene, Options options, const std::optional<CoarseStart>& before) {
+  optimize::VolumeTask task = make_task(scene, in, options);
+  task.limits.patience = 0;
+  task.limits.at_least = task.limits.iterations = before ? next_iterations : first_iterations;
+  if (before) start_from(*before, task, options);
+  if (task.raising.factor > 0) {
+    task.raising.first = task.limits.at_least + 1;  // the last iterate is not looked at
+    task.raising.next = next_iterations;
+    task.limits.iterations = task.raising.first + raises * next_iterations;
+  }
+  Solved solved;
+  task.write = [&](int, const Image& image) { solved.images.push_back(image); };
+  task.interruption.pause = device::interrupted;
+  solved.outcome = optimize::optimise(task, *make_light(scene, options));
+  return solved;
+}
+
+/// What is refused at a coarser level is left to the finer one.
+std::optional<CoarseStart> solved(const Inputs& in, const Scene& finer, const Options& options,
+                                  const Options& finer_options) {
+  const Scene scene = make_scene(in.target.front(), model::coarser(finer.printer), options);
+  const std::optional<CoarseStart> before = coarse_start(in, scene, options);
+  if (device::interrupted()) return std::nullopt;
+  auto [outcome, images] = solve(in, scene, options, before);
+  const model::DoseMetrics& m = outcome.metrics;
+  if (outcome.stop == optimize::StopReason::interrupted || m.part == 0 || m.ver > most_wrong) return std::nullopt;
+  note("vam-optimize: voxels of " + mm_text(scene.grid.voxel_mm) + ": process window " + format_number(m.pw, 2) +
+       ", VER " + format_number(m.ver, 2) + " after " + std::to_string(outcome.iterations) + " iterations");
+  return CoarseStart{{std::move(images), samples(scene, options), samples(finer, finer_options)},
+                     m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, widest) : 0};
+}
+
+}  // namespace
+
+std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options) {
+  if (!options.coarse_start || !worthwhile(in.grid())) return std::nullopt;
+  try {
+    return solved(coarser(in), scene, coarser(options), options);
+  } catch (const Error& error) {
+    if (error.fault != Fault::data && error.fault != Fault::usage) throw;
+    return std::nullopt;
+  }
+}
+
+void start_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options) {
+  task.initial = start.images;
+  options.how.half_width = start.half_width;
+}
+
+}  // namespace vam::optimize_tool

@@ -1,0 +1,28 @@
+// Projections to start from: those of the same part on the same bench at half of the resolution, which start from
+// those at a quarter, and so on. An iteration takes an eighth of the time there, and what is left to the full
+// resolution is fine: nested iteration, as in multigrid methods [BHM00].
+#pragma once
+
+#include <optional>
+
+#include "optimize/run/prolongation.hpp"
+#include "vam-optimize/inputs.hpp"
+#include "vam-optimize/light.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+struct CoarseStart {
+  optimize::Prolongation images;  // of the finer problem's slices
+  double half_width = 0;          // of the window that it reached about the threshold, in doses; 0: it did not print
+};
+
+/// For the projections of `scene`, from `in`; a line for each level on a terminal. None where the coarser part is too
+/// small to be of use, or has no light that prints it, nearly; and after an interruption, for which
+/// device::interrupted() is to be asked.
+[[nodiscard]] std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options);
+
+/// The task starts from it.
+void start_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options);
+
+}  // namespace vam::optimize_tool
