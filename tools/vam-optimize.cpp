@@ -12,8 +12,7 @@
 #include "optimize/run/printable.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
-#include "vam-optimize/checkpoint.hpp"
-#include "vam-optimize/coarse_start.hpp"
+#include "vam-optimize/beginning.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
@@ -40,14 +39,6 @@ void require_memory_for(const Scene& scene, const light::Operator& light, bool t
       whole ? "use larger voxels (vam-slice --voxel)" : "use larger voxels (vam-slice --voxel) or fewer --angles");
 }
 
-/// --init; the task refers to all three.
-void start_from(std::optional<optimize_tool::Initial>& initial, optimize::VolumeTask& task,
-                const model::StackInfo& info, const Options& options) {
-  if (options.init.empty()) return;
-  initial.emplace(options.init, info);
-  task.initial = [&](int k) { return k < info.count ? (*initial)(k) : Image(info.width, info.height); };
-}
-
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
   settle(app, options);
@@ -61,17 +52,7 @@ void run(const cli::App& app, Options& options) {
   warn_of(scene, in.target.front(), options);
   const model::StackInfo info = stack_info(scene, in.target.front(), app, options);
   optimize::VolumeTask task = make_task(scene, in, options);
-  std::optional<optimize_tool::Initial> initial;
-  start_from(initial, task, info, options);
-  std::optional<optimize_tool::Checkpoint> checkpoint;
-  if (!options.checkpoint.empty()) {
-    checkpoint.emplace(options.checkpoint);
-    task.interruption = checkpoint->interruption(job_of(app, printer, options));
-  }
-  std::optional<optimize_tool::CoarseStart> start;
-  if (task.interruption.from == nullptr) start = coarse_start(in, scene, options);
-  if (device::interrupted()) return;
-  if (start) start_from(*start, task, options);
+  optimize_tool::Beginning beginning(app, printer, info, options);
   optimize_tool::Sink sink(options, printer, info);
   task.write = [&](int k, const Image& image) {
     if (k < info.count) sink.add(image);  // there may be more slices than rows
@@ -81,9 +62,11 @@ void run(const cli::App& app, Options& options) {
   const auto light = make_light(scene, options);
   require_memory_for(scene, *light, options.printer_tolerances.has_value(), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
+  beginning.begin(task, in, scene, options);
+  if (device::interrupted()) return;
   const auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {
-    checkpoint->keep();
+    beginning.keep();
     return;
   }
   if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
@@ -92,7 +75,7 @@ void run(const cli::App& app, Options& options) {
   if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
   publish(outcome, trials, scene, in.target.front(), info, options);
   sink.commit();
-  if (checkpoint) checkpoint->remove();
+  beginning.remove();
 }
 
 }  // namespace

@@ -26,7 +26,6 @@ struct TileKernels {
   }
 };
 
-/// Elements of a times b: sizes are multiplied as sizes.
 constexpr int overrun = 32;  // floats that the kernels may read and write beyond: two vectors
 
 void fill_last_block(Tile& tile) {

@@ -11,7 +11,7 @@ namespace vam::calibrate_tool {
 BeadTurn read_turn(const ScanOptions& options, const model::Printer& printer) {
   BeadTurn turn;
   turn.scan.middle.resize(options.heights);
-  each_frame(options, printer, Frames::turned, [&](const ScanFrame& frame) {
+  each_frame(options, printer, FrameKind::turned, [&](const ScanFrame& frame) {
     const auto middles = metrology::bright_middles(frame.image, options.heights);
     for (std::size_t b = 0; b < middles.size(); ++b) turn.scan.middle[b].push_back(middles[b]);
     turn.scan.angle_deg.push_back(frame.angle_deg);

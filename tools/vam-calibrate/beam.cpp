@@ -44,7 +44,7 @@ metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Pr
   }
   const Dark dark(options.dark);
   metrology::BeamWidths widths;
-  each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) {
+  each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
     const double plane_mm = *options.first_mm + *options.step_mm * frame.shown;
     Image lit = frame.image;
     dark.take_off(lit);
@@ -61,7 +61,7 @@ metrology::BeamWidths from_the_side(const ScanOptions& options, const model::Pri
   }
   metrology::FrameMean frames;
   metrology::SideView view;
-  each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) {
+  each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
     frames.add(frame.image);
     view.pixel_mm = options.pixel_mm > 0 ? options.pixel_mm : frame.pixel_mm;
   });

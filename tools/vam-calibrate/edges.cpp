@@ -55,7 +55,7 @@ struct Sweeps {
 
 Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
   Sweeps sweeps;
-  each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) {
+  each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
     const auto means = metrology::band_means(frame.image, options.heights);
     const long angle = std::isfinite(frame.angle_deg) ? (std::lround(frame.angle_deg) % 360 + 360) % 360 : -1;
     auto& [count, sum] = sweeps.by_angle[angle][frame.shown];

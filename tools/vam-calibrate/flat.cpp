@@ -22,7 +22,7 @@ metrology::FrameMean frames_of(const std::string& path) {
 
 Finding scan_flat(const ScanOptions& options, const model::Printer& printer) {
   metrology::FrameMean frames;
-  each_frame(options, printer, Frames::steady, [&](const ScanFrame& frame) { frames.add(frame.image); });
+  each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) { frames.add(frame.image); });
   metrology::FrameMean darkness;
   Image dark;
   double dark_sigma = 0;  // of one image it is not known

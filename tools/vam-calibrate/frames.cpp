@@ -61,14 +61,14 @@ std::vector<Showing> read_flips(const std::string& path) {
   return flips;
 }
 
-void each_frame(const ScanOptions& options, const model::Printer& printer, Frames wanted,
+void each_frame(const ScanOptions& options, const model::Printer& printer, FrameKind wanted,
                 const std::function<void(const ScanFrame&)>& take) {
   const std::vector<Showing> flips = options.flips.empty() ? std::vector<Showing>{} : read_flips(options.flips);
   const double half_s = 0.5e-6 * printer.camera.exposure_us;
   const double latency_s = 1e-3 * printer.projector.latency_ms;
   // Where angles are not needed, frames without are at none.
   const double step_deg =
-      wanted == Frames::turned ? options.step_deg.value_or(0) : std::numeric_limits<double>::quiet_NaN();
+      wanted == FrameKind::turned ? options.step_deg.value_or(0) : std::numeric_limits<double>::quiet_NaN();
   io::ViewSource source(options.from, step_deg);
   const double pixel_mm = source.pixel_mm() > 0 ? source.pixel_mm() : printer.camera.pixel_mm * printer.camera.binning;
   io::CameraFrame frame;
@@ -81,7 +81,7 @@ void each_frame(const ScanOptions& options, const model::Printer& printer, Frame
       }
       scan.shown = shown_between(flips, frame.time_s - latency_s - half_s - margin_s,
                                  frame.time_s - latency_s + half_s + margin_s);
-      if (scan.shown < 0 && wanted != Frames::changing) continue;
+      if (scan.shown < 0 && wanted != FrameKind::changing) continue;
     }
     take(scan);
   }

@@ -35,7 +35,7 @@ Finding scan_latency(const ScanOptions& options, const model::Printer& printer) 
   scan.exposure_s = 1e-6 * printer.camera.exposure_us;
   double clock_sigma_s = 0;
   int number = 0;
-  each_frame(options, printer, Frames::changing, [&](const ScanFrame& frame) {
+  each_frame(options, printer, FrameKind::changing, [&](const ScanFrame& frame) {
     if (number++ < settling_frames) return;
     if (frame.time_s < flips.front().t_s || frame.time_s > flips.back().t_s) return;
     clock_sigma_s = std::max(clock_sigma_s, frame.time_sigma_s);

@@ -57,7 +57,7 @@ Finding scan_response(const ScanOptions& options, const model::Printer& printer)
   double dark = 0;
   if (!options.dark.empty()) dark = mean_level(io::read_field(options.dark));
   std::map<int, std::vector<double>> readings;
-  each_frame(options, printer, Frames::steady,
+  each_frame(options, printer, FrameKind::steady,
              [&](const ScanFrame& frame) { readings[frame.shown].push_back(mean_level(frame.image) - dark); });
   metrology::ResponseScan scan;
   const int full = (1 << printer.projector.bits) - 1;

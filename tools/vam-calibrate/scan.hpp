@@ -63,12 +63,12 @@ struct ScanFrame {
 };
 
 /// What a scan needs of its frames: any angle, one each, or also those during which the pattern changed.
-enum class Frames { steady, turned, changing };
+enum class FrameKind { steady, turned, changing };
 
 /// Calls `take` for every frame, in order; with flips only for those during which one pattern frame was on, unless
 /// changing ones are wanted.
 /// Throws Error: no_input, data (also a frame that is over-exposed), usage (flips, but frames without times).
-void each_frame(const ScanOptions& options, const model::Printer& printer, Frames wanted,
+void each_frame(const ScanOptions& options, const model::Printer& printer, FrameKind wanted,
                 const std::function<void(const ScanFrame&)>& take);
 
 /// A pattern frame and when it came on.

@@ -40,7 +40,7 @@ Json entry_of(const std::string& name, const resin::Process& process, double lim
 
 }  // namespace
 
-Json compare(const CorrectOptions& options, const Print& print, const resin::PartColumns& part) {
+Json compare(const CorrectOptions& options, const PrintSettings& print, const resin::PartColumns& part) {
   const io::CsvTable table = io::read_csv(options.catalogue, {"name", "absorbance_height_um", "full_cure_dose_mj_cm3"},
                                           {{"critical_dose_mj_cm3", "full_cure_dose_mj_cm3"}});
   std::string text = cells(

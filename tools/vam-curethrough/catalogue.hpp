@@ -6,6 +6,6 @@
 namespace vam::curethrough {
 
 /// Prints the table on standard output and returns it for the report.
-[[nodiscard]] Json compare(const CorrectOptions& options, const Print& print, const resin::PartColumns& part);
+[[nodiscard]] Json compare(const CorrectOptions& options, const PrintSettings& print, const resin::PartColumns& part);
 
 }  // namespace vam::curethrough

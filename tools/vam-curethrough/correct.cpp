@@ -25,7 +25,7 @@ namespace vam::curethrough {
 namespace {
 
 struct Job {
-  Print print;
+  PrintSettings print;
   PartFile part;
   resin::PartSurvey survey;
   resin::GapReport gaps;
@@ -142,7 +142,7 @@ void warn_of_gaps(const std::string& name, const Job& job) {
 
 Job prepare(const cli::App& root, const CorrectOptions& options, bool writes) {
   PartFile source(options.part, exposure_of(options.print));
-  const Print print = resolve(options.print, source.slice_um());
+  const PrintSettings print = resolve(options.print, source.slice_um());
   Job job{print, std::move(source), {}, {}, {}, 0};
   const PartFile& part = job.part;
   job.survey = resin::survey(part.columns());

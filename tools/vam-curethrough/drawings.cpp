@@ -64,7 +64,7 @@ void draw_image(plot::Canvas& canvas, const plot::PlotFrame& frame, const RgbIma
 }
 
 // Grey and dose along the column over a shade where the part is, slice number down.
-void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure& plane, const Print& print) {
+void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure& plane, const PrintSettings& print) {
   const int slices = plane.light.height;
   const double peak = *std::max_element(plane.omega.begin(), plane.omega.end());
   frame.x = {"dose / full-cure dose", 0, std::max(1.5, std::ceil(2.2 * peak) / 2)};
@@ -115,7 +115,7 @@ LineBand band_of(const std::vector<resin::CuredSample>& samples, const resin::Wo
 
 }  // namespace
 
-void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& print) {
+void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSettings& print) {
   const int height = std::clamp(plane.light.height * 4, 280, 900);
   const double aspect = static_cast<double>(plane.light.width) / plane.light.height;  // voxels are cubes
   const int width = std::clamp(static_cast<int>(std::lround(height * aspect)), 200, 700);

@@ -26,7 +26,7 @@ struct PlaneFigure {
 [[nodiscard]] std::string table_of(const resin::CureTotals& totals, const resin::Process& process);
 
 /// As [CURE19 fig 2b-d and 4a-c]: the slices, the cure map, grey and dose along the column.
-void draw_plane(const std::string& path, const PlaneFigure& plane, const Print& print);
+void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSettings& print);
 void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
                         const resin::WorkingCurve& curve);
 void draw_response(const std::string& path, const model::ResponseTable& table);

@@ -45,7 +45,7 @@ SliceSource plain_slices(const std::shared_ptr<PartFile>& part, float dark) {
 struct Inputs {
   std::shared_ptr<PartFile> part;  // the design, null without one
   SliceSource slices;
-  Print print;
+  PrintSettings print;
 };
 
 // The stack's facts about its print apply where the command line gives none.

@@ -41,8 +41,8 @@ resin::ExposureMode exposure_of(const PrintOptions& options) {
   return options.exposure == "layered" ? resin::ExposureMode::layered : resin::ExposureMode::continuous;
 }
 
-Print resolve(const PrintOptions& options, double slice_um) {
-  Print print{tool::load_printer(options.printer), {}, {}, resin::Response()};
+PrintSettings resolve(const PrintOptions& options, double slice_um) {
+  PrintSettings print{tool::load_printer(options.printer), {}, {}, resin::Response()};
   model::Projector& projector = print.printer.projector;
   if (options.min_intensity_mw_cm2) projector.min_intensity_mw_cm2 = *options.min_intensity_mw_cm2;
   if (options.max_intensity_mw_cm2) projector.max_intensity_mw_cm2 = *options.max_intensity_mw_cm2;

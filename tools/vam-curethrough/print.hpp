@@ -27,13 +27,13 @@ struct PrintOptions {
 void add_print(cli::App& app, PrintOptions& options);
 
 /// The printer file with the options on top. An option wins over the file, the file over resin::Process's defaults.
-struct Print {
+struct PrintSettings {
   model::Printer printer;
   resin::Process process;
   resin::CureLimits limits;
   resin::Response response;
 };
-[[nodiscard]] Print resolve(const PrintOptions& options, double slice_um);
+[[nodiscard]] PrintSettings resolve(const PrintOptions& options, double slice_um);
 [[nodiscard]] resin::ExposureMode exposure_of(const PrintOptions& options);
 
 [[nodiscard]] Json to_json(const resin::Process& process);

@@ -69,7 +69,7 @@ Solved solve(const Inputs& in, const Scene& scene, Options options, const std::o
   optimize::VolumeTask task = make_task(scene, in, options);
   task.limits.patience = 0;
   task.limits.at_least = task.limits.iterations = before ? next_iterations : first_iterations;
-  if (before) start_from(*before, task, options);
+  if (before) continue_from(*before, task, options);
   if (task.raising.factor > 0) {
     task.raising.first = task.limits.at_least + 1;  // the last iterate is not looked at
     task.raising.next = next_iterations;
@@ -109,7 +109,7 @@ std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, co
   }
 }
 
-void start_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options) {
+void continue_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options) {
   task.initial = start.images;
   options.how.half_width = start.half_width;
 }

@@ -74,7 +74,7 @@ std::string colour_bar(double high, const std::string& unit) {
 
 /// The vial and the dose in it, up to `high`, from above; with the light, where it is on.
 std::string drawing_of(const RunFolder& run, const LightView& light, bool lit, double high) {
-  const Progress& progress = run.progress();
+  const PrintProgress& progress = run.progress();
   const model::Printer& printer = run.printer();
   const double resin = light.resin_mm();
   const double vial = printer.vial.radius_mm;

@@ -94,7 +94,7 @@ std::string time_text(const std::string& utc) {
   return age_h < 48 ? fixed(age_h, 1) + " h old" : fixed(age_h / 24, 1) + " days old";
 }
 
-std::string records_table(const Progress& progress) {
+std::string records_table(const PrintProgress& progress) {
   if (progress.records.empty())
     return "<p class=\"none\">none in force: the settings are those of the printer file.</p>";
   std::string rows = "<table><tr><th>record</th><th>age</th><th>valid until</th><th>status</th></tr>\n";
@@ -106,7 +106,7 @@ std::string records_table(const Progress& progress) {
 }
 
 std::string figures_table(const RunFolder& run) {
-  const Progress& p = run.progress();
+  const PrintProgress& p = run.progress();
   const auto row = [](const std::string& name, const std::string& value) {
     return "<tr><th>" + name + "</th><td>" + page_text(value) + "</td></tr>\n";
   };
@@ -145,7 +145,7 @@ std::optional<CameraImage> newest_image(const RunFolder& run) {
 }
 
 std::string page(const std::string& name, const RunFolder& run, const LightView* light, double period_s) {
-  const Progress& progress = run.progress();
+  const PrintProgress& progress = run.progress();
   const bool live = !progress.outcome.has_value();
   const bool lit = live && progress.blanks > 0 && progress.angle_deg >= progress.from_deg &&
                    progress.angle_deg < 360 * progress.turns;

@@ -141,7 +141,7 @@ void RunFolder::read_records() {
   }
 }
 
-std::string state_of(const Progress& progress) {
+std::string state_of(const PrintProgress& progress) {
   if (progress.outcome) return "ended: " + printable(*progress.outcome);
   if (progress.silent_s > (progress.blanks > 0 ? silence_s : loading_s)) {
     return "no log entry for " + std::to_string(std::lround(progress.silent_s)) + " s; end not logged";
@@ -150,7 +150,7 @@ std::string state_of(const Progress& progress) {
   return progress.angle_deg < progress.from_deg ? "run-up, dark" : "printing";
 }
 
-std::string status_line(const Progress& p, double speed_deg_s) {
+std::string status_line(const PrintProgress& p, double speed_deg_s) {
   char text[256];
   const double end_deg = 360 * p.turns;
   const double at_deg = std::clamp(p.angle_deg, 0.0, std::max(0.0, end_deg));

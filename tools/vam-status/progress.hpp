@@ -18,7 +18,7 @@ struct RecordAge {
 };
 
 /// What the run folder says at one moment. Angles are stage angles in degrees; light comes on at from_deg.
-struct Progress {
+struct PrintProgress {
   double turns = 0;  // of the whole print
   double from_deg = 0;
   double angle_deg = 0;       // of the last stage sample
@@ -41,7 +41,7 @@ class RunFolder {
 
   /// Reads what has been added.
   void read();
-  [[nodiscard]] const Progress& progress() const { return progress_; }
+  [[nodiscard]] const PrintProgress& progress() const { return progress_; }
   /// Of the run's frozen settings.
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
   [[nodiscard]] std::vector<io::ShownImage> shown() const;
@@ -56,12 +56,12 @@ class RunFolder {
   std::string path_;
   model::Printer printer_;
   std::optional<io::FlipLog> flips_;
-  Progress progress_;
+  PrintProgress progress_;
 };
 
 /// "printing  turn 3.41 of 20  angle 147.6 deg  dose delivered 17 % ..."
-[[nodiscard]] std::string status_line(const Progress& progress, double speed_deg_s);
+[[nodiscard]] std::string status_line(const PrintProgress& progress, double speed_deg_s);
 /// "preparing", "run-up, dark", "printing", "ended: done", ...
-[[nodiscard]] std::string state_of(const Progress& progress);
+[[nodiscard]] std::string state_of(const PrintProgress& progress);
 
 }  // namespace vam::status_tool

@@ -81,7 +81,7 @@ class AravisCamera final : public Camera {
  public:
   AravisCamera(const Address& address, const CameraSettings& settings, Clock& clock)
       : name_(address.text), settings_(settings), clock_(clock) {
-    Problem problem;
+    AravisProblem problem;
     camera_.reset(arv_camera_new(address.place.empty() ? nullptr : address.place.c_str(), problem));
     if (!camera_) throw Error{Fault::absent, name_ + ": no such camera (" + problem.text() + ")"};
     g_signal_connect(arv_camera_get_device(camera_.get()), "control-lost", G_CALLBACK(note_lost), &lost_);
@@ -107,12 +107,12 @@ class AravisCamera final : public Camera {
       abandon(G_OBJECT(camera_.release()));
       return;
     }
-    Problem problem;
+    AravisProblem problem;
     if (streaming_) arv_camera_stop_acquisition(camera_.get(), problem);
   }
 
   Json identify() override {
-    Problem problem;
+    AravisProblem problem;
     const auto text = [&](const char* value) { return value == nullptr ? Json() : Json(value); };
     Json about{{"maker", text(arv_camera_get_vendor_name(camera_.get(), problem))},
                {"model", text(arv_camera_get_model_name(camera_.get(), problem))},
@@ -132,7 +132,7 @@ class AravisCamera final : public Camera {
   CameraMode mode() const override { return mode_; }
 
   void start() override {
-    Problem problem;
+    AravisProblem problem;
     arv_camera_start_acquisition(camera_.get(), problem);
     check(problem, "start of the acquisition");
     streaming_ = true;
@@ -140,7 +140,7 @@ class AravisCamera final : public Camera {
   }
 
   void trigger() override {
-    Problem problem;
+    AravisProblem problem;
     arv_camera_software_trigger(camera_.get(), problem);
     check(problem, "software trigger");
   }
@@ -154,7 +154,7 @@ class AravisCamera final : public Camera {
       if (ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream_.get(), 50000)) return take(buffer);
       if (lost_) throw Error{Fault::absent, name_ + ": the camera is disconnected; check cable and power"};
       if (clock_.now_s() < limit_s) continue;
-      Problem problem;  // silent, or gone? It tells its width or it does not.
+      AravisProblem problem;  // silent, or gone? It tells its width or it does not.
       arv_camera_get_integer(camera_.get(), "Width", problem);
       if (problem.there()) {
         lost_ = true;
@@ -168,14 +168,14 @@ class AravisCamera final : public Camera {
  private:
   static void note_lost(ArvDevice*, std::atomic<bool>* lost) { *lost = true; }
 
-  void check(const Problem& problem, const std::string& what) {
+  void check(const AravisProblem& problem, const std::string& what) {
     if (!problem.there()) return;
     if (problem.timed_out()) lost_ = true;
     throw Error{problem.timed_out() ? Fault::absent : Fault::protocol, name_ + ": " + what + ": " + problem.text()};
   }
 
   [[nodiscard]] bool has(const char* feature) const {
-    Problem problem;
+    AravisProblem problem;
     return arv_camera_is_feature_available(camera_.get(), feature, problem) != 0;
   }
 
@@ -186,7 +186,7 @@ class AravisCamera final : public Camera {
   }
 
   void choose_format() {
-    Problem problem;
+    AravisProblem problem;
     guint count = 0;
     const char** names = arv_camera_dup_available_pixel_formats_as_strings(camera_.get(), &count, problem);
     check(problem, "pixel formats");
@@ -211,7 +211,7 @@ class AravisCamera final : public Camera {
 
   // Before anybody looks at the region: binning changes its limits.
   void set_binning() {
-    Problem problem;
+    AravisProblem problem;
     const bool able = arv_camera_is_binning_available(camera_.get(), problem) != 0;
     int across = 1;
     int down = 1;
@@ -230,7 +230,7 @@ class AravisCamera final : public Camera {
   }
 
   void use_whole_sensor() {
-    Problem problem;
+    AravisProblem problem;
     int least = 0;
     int width = 0;
     int height = 0;
@@ -243,7 +243,7 @@ class AravisCamera final : public Camera {
 
   void set_exposure() {
     if (!settings_.exposure_us) return;
-    Problem problem;
+    AravisProblem problem;
     arv_camera_set_exposure_time(camera_.get(), *settings_.exposure_us, problem);
     check(problem, "exposure");
   }
@@ -251,7 +251,7 @@ class AravisCamera final : public Camera {
   // Point Grey and FLIR do not apply the rate until it is enabled, under names that differ from model to model.
   void set_rate() {
     if (!settings_.fps) return;
-    Problem problem;
+    AravisProblem problem;
     if (has("AcquisitionFrameRateAuto"))
       arv_camera_set_string(camera_.get(), "AcquisitionFrameRateAuto", "Off", problem);
     for (const char* name : {"AcquisitionFrameRateEnable", "AcquisitionFrameRateEnabled"}) {
@@ -262,7 +262,7 @@ class AravisCamera final : public Camera {
   }
 
   void set_trigger() {
-    Problem problem;
+    AravisProblem problem;
     if (settings_.trigger == "free") {
       arv_camera_clear_triggers(camera_.get(), problem);
       return;
@@ -280,7 +280,7 @@ class AravisCamera final : public Camera {
   }
 
   void read_mode() {
-    Problem problem;
+    AravisProblem problem;
     int x = 0;
     int y = 0;
     arv_camera_get_region(camera_.get(), &x, &y, &mode_.columns, &mode_.rows, problem);
@@ -297,7 +297,7 @@ class AravisCamera final : public Camera {
   }
 
   void read_clock() {
-    Problem problem;
+    AravisProblem problem;
     const char* maker = arv_camera_get_vendor_name(camera_.get(), problem);
     moment_ = stamp_moment(settings_.stamp, maker == nullptr ? "" : maker);
     camera_clock_.emplace(camera_.get(), name_, clock_);
@@ -314,7 +314,7 @@ class AravisCamera final : public Camera {
   }
 
   void open_stream(int buffers) {
-    Problem problem;
+    AravisProblem problem;
     stream_.reset(arv_camera_create_stream(camera_.get(), nullptr, nullptr, problem));
     if (!stream_) throw Error{Fault::absent, name_ + ": no stream (" + problem.text() + ")"};
     const std::size_t payload = arv_camera_get_payload(camera_.get(), problem);

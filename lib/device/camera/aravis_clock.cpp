@@ -24,7 +24,7 @@ AravisClock::AravisClock(_ArvCamera* camera, const std::string& name, Clock& clo
   };
   for (const auto& [command, value, in_ticks] : {Latch{"TimestampLatch", "TimestampLatchValue", false},
                                                  Latch{"GevTimestampControlLatch", "GevTimestampValue", true}}) {
-    Problem problem;
+    AravisProblem problem;
     const bool has = arv_camera_is_feature_available(camera, command, problem) != 0 &&
                      arv_camera_is_feature_available(camera, value, problem) != 0;
     if (!has || problem.there()) continue;
@@ -69,7 +69,7 @@ void AravisClock::read(int times) {
 
 // A value that is as it was has not been latched yet: the moment lies between the last such answer and the first other.
 std::optional<ClockReading> AravisClock::reading(double limit_s) {
-  Problem problem;
+  AravisProblem problem;
   double from_s = clock_.now_s();
   arv_camera_execute_command(camera_, latch_, problem);
   while (!problem.there() && from_s < limit_s) {

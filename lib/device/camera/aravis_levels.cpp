@@ -19,14 +19,14 @@ class Levels {
   Levels(ArvCamera* camera, const std::string& name) : camera_(camera), name_(name) {}
 
   [[nodiscard]] bool has(const char* feature) const {
-    Problem problem;
+    AravisProblem problem;
     return arv_camera_is_feature_available(camera_, feature, problem) != 0;
   }
 
   // False where the camera has no such automatic.
   [[nodiscard]] bool switch_off(const char* feature) const {
     if (!has(feature)) return false;
-    Problem problem;
+    AravisProblem problem;
     arv_camera_set_string(camera_, feature, "Off", problem);
     const char* now = arv_camera_get_string(camera_, feature, problem);
     if (problem.there() || now == nullptr || std::string(now) != "Off") {
@@ -47,7 +47,7 @@ class Levels {
       if (!wanted) return std::nullopt;
       throw Error{Fault::usage, name_ + ": has no setting for " + what + "; omit it"};
     }
-    Problem problem;
+    AravisProblem problem;
     const bool whole = ARV_IS_GC_INTEGER(arv_device_get_feature(arv_camera_get_device(camera_), *feature)) != 0;
     const auto read = [&] {
       return whole ? static_cast<double>(arv_camera_get_integer(camera_, *feature, problem))
@@ -67,7 +67,7 @@ class Levels {
 
   void enable_gamma(bool on) const {
     for (const char* feature : {"GammaEnable", "GammaEnabled"}) {
-      Problem problem;
+      AravisProblem problem;
       if (has(feature)) arv_camera_set_boolean(camera_, feature, on ? TRUE : FALSE, problem);
     }
   }

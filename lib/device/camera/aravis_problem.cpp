@@ -4,19 +4,19 @@
 
 namespace vam::device {
 
-Problem::~Problem() { g_clear_error(&error_); }
+AravisProblem::~AravisProblem() { g_clear_error(&error_); }
 
-Problem::operator GError**() {
+AravisProblem::operator GError**() {
   g_clear_error(&error_);
   return &error_;
 }
 
-bool Problem::timed_out() const {
+bool AravisProblem::timed_out() const {
   return there() && error_->domain == ARV_DEVICE_ERROR &&
          (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
           error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
 }
 
-std::string Problem::text() const { return there() ? error_->message : "no reason given"; }
+std::string AravisProblem::text() const { return there() ? error_->message : "no reason given"; }
 
 }  // namespace vam::device

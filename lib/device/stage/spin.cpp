@@ -74,6 +74,15 @@ void require_on_line(const AngleFit& fit, const AngleSample& now) {
   }
 }
 
+Course start_moving(Stage& stage, const SpinPlan& plan, const StageCaps& caps) {
+  stage.enable();
+  const Course course = plot(plan, caps, plan.direction * stage.sample().angle_deg);
+  stage.set_angle(plan.direction * course.start_deg);
+  stage.set_speed(plan.speed_deg_s);
+  stage.start_move(plan.direction * course.end_deg);
+  return course;
+}
+
 void require_moving(const Course& course, const AngleSample& now, double passed_s) {
   if (passed_s <= course.cruise_s) return;
   throw Error{Fault::protocol, "stage: moved only " + format_number(now.angle_deg - course.start_deg, 4) + " deg in " +
@@ -102,11 +111,7 @@ void spin(Stage& stage, Clock& clock, const SpinPlan& plan, const std::function<
   require_referenced(stage);
   wait_until_standing(stage, clock, plan.period_s, braking_s);
   StopOnExit stopper(stage);
-  stage.enable();
-  const Course course = plot(plan, caps, plan.direction * stage.sample().angle_deg);
-  stage.set_angle(plan.direction * course.start_deg);
-  stage.set_speed(plan.speed_deg_s);
-  stage.start_move(plan.direction * course.end_deg);
+  const Course course = start_moving(stage, plan, caps);
   const double longest_s = 2 * (course.end_deg - course.start_deg) / plan.speed_deg_s + 10;
   const double start_s = clock.now_s();
   const double looks = std::ceil(plan.period_s / heartbeat_s);  // for every sample that is reported

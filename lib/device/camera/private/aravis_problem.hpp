@@ -8,12 +8,12 @@ struct _GError;  // NOLINT: glib's own name, whose header stays in the sources
 namespace vam::device {
 
 /// Collects Aravis' messages; one problem at a time.
-class Problem {
+class AravisProblem {
  public:
-  Problem() = default;
-  ~Problem();
-  Problem(const Problem&) = delete;
-  Problem& operator=(const Problem&) = delete;
+  AravisProblem() = default;
+  ~AravisProblem();
+  AravisProblem(const AravisProblem&) = delete;
+  AravisProblem& operator=(const AravisProblem&) = delete;
   operator _GError**();  // NOLINT: the calls of Aravis take it as their last argument
   [[nodiscard]] bool there() const { return error_ != nullptr; }
   /// The camera does not answer any more.
