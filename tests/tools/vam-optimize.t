@@ -21,8 +21,11 @@ quiet "auto is apg until the part prints with a margin" vam-optimize --angles 18
 is "auto reaches its goal" "$(value auto.json stopped_by)" goal
 holds "no voxel is wrong" "$(value auto.json ver) == 0"
 vam-optimize --method apg --angles 180 --iterations 24 --patience 0 --report apg.json part.vdb -o apg.exr
+# The limit is a multiple of the even intensity, which coarser voxels have 0.6 % higher.
 holds "from coarse to fine, a third of the iterations give a wider window at the same intensity" \
-  "$(value auto.json iterations) <= 8 && $(value auto.json pw) > $(value apg.json pw) && $(value auto.json max_intensity) <= $(value apg.json max_intensity)"
+  "$(value auto.json iterations) <= 8 && $(value auto.json pw) > $(value apg.json pw) && $(value auto.json max_intensity) <= 1.01 * $(value apg.json max_intensity)"
+holds "its report has the deviation of the surface" \
+  "$(value auto.json surface.mean_mm) ^ 2 < 0.01 ^ 2 && $(value auto.json surface.rms_mm) < 0.025"
 
 resin='--set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05'
 quiet "unlimited" vam-optimize --angles 180 $resin --free-surface --max-intensity 0 --report spikes.json part.vdb -o spikes.exr

@@ -67,7 +67,7 @@ struct Solved {
 
 Solved solve(const Inputs& in, const Scene& scene, Options options, const std::optional<CoarseStart>& before) {
   optimize::VolumeTask task = make_task(scene, in, options);
-  task.limits.patience = 0;
+  task.limits.patience = task.limits.early = 0;
   task.limits.at_least = task.limits.iterations = before ? next_iterations : first_iterations;
   if (before) continue_from(*before, task, options);
   if (task.raising.factor > 0) {
@@ -94,7 +94,9 @@ std::optional<CoarseStart> solved(const Inputs& in, const Scene& finer, const Op
   note("vam-optimize: voxels of " + mm_text(scene.grid.voxel_mm) + ": process window " + format_number(m.pw, 2) +
        ", VER " + format_number(m.ver, 2) + " after " + std::to_string(outcome.iterations) + " iterations");
   return CoarseStart{{std::move(images), samples(scene, options), samples(finer, finer_options)},
-                     m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, widest) : 0};
+                     m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, widest) : 0,
+                     outcome.even,
+                     outcome.eigenvalue};
 }
 
 }  // namespace
@@ -111,7 +113,9 @@ std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, co
 
 void continue_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options) {
   task.initial = start.images;
+  task.even = start.even;
   options.how.half_width = start.half_width;
+  options.how.eigenvalue = start.eigenvalue;
 }
 
 }  // namespace vam::optimize_tool

@@ -15,6 +15,8 @@ namespace vam::optimize_tool {
 struct CoarseStart {
   optimize::Prolongation images;  // of the finer problem's slices
   double half_width = 0;          // of the window that it reached about the threshold, in doses; 0: it did not print
+  optimize::EvenDose even;        // these two do not depend on the voxels
+  double eigenvalue = 0;
 };
 
 /// For the projections of `scene`, from `in`; a line for each level on a terminal. None where the coarser part is too

@@ -87,6 +87,10 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
   Json report = optimize::report(outcome);
   report["method"] = options.method;
   report["threshold_dose"] = options.demands.window.threshold();
+  if (outcome.surface) {
+    const double voxel_mm = scene.grid.voxel_mm;
+    report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
+  }
   const auto plan = exposure(outcome, printer, info, options);
   if (plan) add_to(report, *plan);
   if (!options.demands.grey) {

@@ -26,6 +26,7 @@ void settle_auto(const cli::App& app, Options& options) {
   options.coarse_start =
       still && options.init.empty() && !options.demands.grey && options.robust.empty() && options.tradeoff.empty();
   if (!options.until.empty() || !options.robust.empty() || (app.given("--iterations") && !options.shortest)) return;
+  if (options.coarse_start) options.limits.early = optimize::early_refinements;
   options.limits.at_least = options.coarse_start ? optimize::automatic_refinements : optimize::automatic_iterations;
   options.until = options.demands.grey ? "ver=0" : optimize::automatic_until;
 }

@@ -2,6 +2,7 @@
 // and restarts [OC15], from the better of two quick answers.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "optimize/methods/method.hpp"
@@ -44,10 +45,8 @@ class Apg final : public Method {
   /// y = g_k + beta (g_k - g_{k-1}); g_{k+1} = max(0, y - s P A r(A* y)), where P is the floored ramp, r the slope of
   /// the loss, and A* y comes free from the doses of g_k and g_{k-1}.
   void step(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
-    if (update_.empty()) {  // the first step, or the first after an interruption
-      update_ = iterate.g;
-      surface_ = SurfacePoints(problem);
-    }
+    if (update_.empty()) update_ = iterate.g;
+    if (!surface_) surface_.emplace(problem);  // the first step after an interruption
     const float peak = largest_light(options_, light);
     const PerSlice beta = advance();
     residual(problem, iterate, beta);
@@ -80,6 +79,11 @@ class Apg final : public Method {
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
+  [[nodiscard]] std::optional<SurfaceDeviation> surface_deviation(std::span<const Slab> dose) const override {
+    if (!surface_ || surface_->points().empty()) return std::nullopt;
+    return surface_->deviation(dose);
+  }
+  [[nodiscard]] double eigenvalue() const override { return options_.eigenvalue; }
 
  private:
   /// Slices that dose normalisation prints better than filtered back-projection start from it.
@@ -108,10 +112,11 @@ class Apg final : public Method {
     before_ = iterate;
     const DoseWindow& window = problem.demands.window;
     const double half_width = options_.half_width > 0 ? options_.half_width : 0.5 * (window.high - window.low);
-    length_ = filled(iterate.g.size(), static_cast<float>(1.0 / largest_eigenvalue(light, problem)));
+    if (options_.eigenvalue <= 0) options_.eigenvalue = largest_eigenvalue(light, problem);
+    length_ = filled(iterate.g.size(), static_cast<float>(1.0 / options_.eigenvalue));
     momentum_ = filled(iterate.g.size(), momentum);
     half_width_ = filled(iterate.g.size(), static_cast<float>(half_width));
-    surface_ = SurfacePoints(problem);
+    surface_.emplace(problem);
     loss_ = losses(problem, light, iterate);
     widen(problem, light, iterate);
   }
@@ -138,14 +143,14 @@ class Apg final : public Method {
         before = now + beta[s][i % lanes] * (now - before);
       }
     });
-    const std::vector<float> misses = surface_.misses(before_.dose);
+    const std::vector<float> misses = surface_->misses(before_.dose);
     for_values(iterate.dose, [&](std::size_t s, std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
         float& ahead = before_.dose[s].values[i];
         ahead = slope(problem, window(problem, s, i % lanes), s, i, ahead);
       }
     });
-    surface_.add_slopes(misses, before_.dose);
+    surface_->add_slopes(misses, before_.dose);
   }
 
   /// A slice whose loss went up goes on with a shorter step, without momentum.
@@ -174,7 +179,7 @@ class Apg final : public Method {
   /// With the surface's.
   [[nodiscard]] PerSlice losses(const Problem& problem, const light::Operator& light, const Iterate& iterate) const {
     PerSlice sum = voxel_losses(problem, light, iterate);
-    const PerSlice surface = pooled(surface_.losses(surface_.misses(iterate.dose), sum.size()), light);
+    const PerSlice surface = pooled(surface_->losses(surface_->misses(iterate.dose), sum.size()), light);
     for (std::size_t s = 0; s < sum.size(); ++s) {
       for (std::size_t lane = 0; lane < lanes; ++lane) sum[s][lane] += surface[s][lane];
     }
@@ -211,7 +216,7 @@ class Apg final : public Method {
   Iterate before_;
   std::vector<Slab> update_;
   PerSlice momentum_, length_, loss_;
-  SurfacePoints surface_;
+  std::optional<SurfacePoints> surface_;
   PerSlice half_width_;  // of each slice's window about the threshold
   TwoMetric bounds_;
 };

@@ -4,6 +4,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +22,12 @@ struct Iterate {
   std::vector<Slab> dose;  // A* g
 };
 
+/// How far the print's surface lies from the target's, outwards positive, in voxels; every point no more than one.
+struct SurfaceDeviation {
+  double mean = 0;
+  double rms = 0;
+};
+
 /// Defaults are the ones the manual shows. A method reads those it needs.
 struct MethodOptions {
   double void_dose = 0.5;    // B of the void, 0...1
@@ -28,6 +36,7 @@ struct MethodOptions {
   double max_intensity = 0;  // upper bound on projected intensity; 0: none
   double power = 2;          // p of the norm, at least 1
   double half_width = 0;     // of the window about the threshold to begin with, in doses; 0: that of the demands
+  double eigenvalue = 0;     // the largest one of P A A*, which determines the step length; 0: computed
 };
 
 class Method {
@@ -39,7 +48,8 @@ class Method {
 
   /// First iterate, from nothing. The default is clipped filtered back-projection.
   virtual void start(const Problem& problem, const light::Operator& light, Iterate& iterate);
-  /// First iterate, from given projections iterate.g. The default computes their dose.
+  /// First iterate, from given projections iterate.g. The default clips them to the upper bound on intensity and
+  /// computes their dose.
   virtual void resume(const Problem& problem, const light::Operator& light, Iterate& iterate);
   /// One iteration.
   virtual void step(const Problem& problem, const light::Operator& light, Iterate& iterate) = 0;
@@ -52,6 +62,12 @@ class Method {
   virtual void exchange(Archive& archive) = 0;
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
   [[nodiscard]] virtual bool keeps_scale() const { return false; }
+  /// Of a method that asks for the surface; of others nothing.
+  [[nodiscard]] virtual std::optional<SurfaceDeviation> surface_deviation(std::span<const Slab> /*dose*/) const {
+    return std::nullopt;
+  }
+  /// MethodOptions::eigenvalue of a method that has computed it; of coarser voxels it is the same within 5 %.
+  [[nodiscard]] virtual double eigenvalue() const { return 0; }
 
  protected:
   MethodOptions options_;
@@ -87,6 +103,9 @@ std::unique_ptr<Method> make(const MethodOptions& options) {
 [[nodiscard]] std::vector<std::string> method_names();
 /// Those for which `holds` is true.
 [[nodiscard]] std::vector<std::string> method_names(const std::function<bool(const MethodEntry&)>& holds);
+
+/// iterate.dose = A* iterate.g.
+void find_dose(const light::Operator& light, Iterate& iterate);
 
 /// Scales each slice to the common threshold.
 void start_at_threshold(const Problem& problem, const light::Operator& light, Iterate& iterate);

@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "optimize/methods/method.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/methods/private/safeguard.hpp"
 
 namespace vam::optimize {
 
@@ -52,10 +53,15 @@ std::vector<std::string> method_names(const std::function<bool(const MethodEntry
 void Method::start(const Problem& problem, const light::Operator& light, Iterate& iterate) {
   filtered_projections(light, problem.target, iterate.g);
   clip_below(iterate.g, 0.0F);
-  Method::resume(problem, light, iterate);
+  find_dose(light, iterate);
 }
 
 void Method::resume(const Problem& /*problem*/, const light::Operator& light, Iterate& iterate) {
+  clip_above(iterate.g, largest_light(options_, light));
+  find_dose(light, iterate);
+}
+
+void find_dose(const light::Operator& light, Iterate& iterate) {
   if (iterate.dose.empty()) iterate.dose = slabs(iterate.g.size(), light.object().width, light.object().height);
   light.adjoint(iterate.g, iterate.dose);
 }

@@ -39,16 +39,20 @@ PerSlice largest_pooled(PerSlice values, const light::Operator& light) {
   return light.couples_slices() ? largest_of_all(std::move(values)) : values;
 }
 
-void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {
-  const PerSlice brightest = largest(iterate.g);
+bool clip_above(std::vector<Slab>& g, float peak) {
+  const PerSlice brightest = largest(g);
   const auto over = [&](const auto& lane) {
     return std::any_of(lane.begin(), lane.end(), [&](float v) { return v > peak; });
   };
-  if (std::none_of(brightest.begin(), brightest.end(), over)) return;
-  for_values(iterate.g, [&](std::size_t s, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) iterate.g[s].values[i] = std::min(iterate.g[s].values[i], peak);
+  if (std::none_of(brightest.begin(), brightest.end(), over)) return false;
+  for_values(g, [&](std::size_t s, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) g[s].values[i] = std::min(g[s].values[i], peak);
   });
-  light.adjoint(iterate.g, iterate.dose);
+  return true;
+}
+
+void enter_bounds(const light::Operator& light, float peak, Iterate& iterate) {
+  if (clip_above(iterate.g, peak)) light.adjoint(iterate.g, iterate.dose);
 }
 
 float largest_light(const MethodOptions& options, const light::Operator& light) {

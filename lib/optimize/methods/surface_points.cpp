@@ -80,25 +80,34 @@ class VoxelRow {
     const float here = volume_.coverage(at);
     for (int axis = 0; axis < axes_; ++axis) {
       const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
-      if (!crosses(here, volume_.coverage(next)) || !is_steepest(at, axis)) continue;
+      if (!crosses(here, volume_.coverage(next))) continue;
+      const auto [steepest, cosine] = normal(at, axis);
+      if (!steepest) continue;
       const SurfacePoint::Voxel from = volume_.voxel(at);
       const SurfacePoint::Voxel to = volume_.voxel(next);
       if (!is_lit(from) || !is_lit(to)) continue;
       const float weight = std::min(problem_.weight_at(from.slab, from.i), problem_.weight_at(to.slab, to.i));
-      if (weight > 0) points.push_back({from, to, volume_.share(at, axis), weight});
+      if (weight > 0) points.push_back({from, to, volume_.share(at, axis), weight, cosine});
     }
   }
 
  private:
-  [[nodiscard]] bool is_steepest(const TargetVolume::At& at, int axis) const {
+  struct Normal {
+    bool steepest;  // along no axis the coverage changes more
+    float cosine;   // of the outward normal with the axis
+  };
+  [[nodiscard]] Normal normal(const TargetVolume::At& at, int axis) const {
     const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
-    const auto slope = [&](int along) { return std::abs(volume_.slope(at, along) + volume_.slope(next, along)); };
+    const auto slope = [&](int along) { return volume_.slope(at, along) + volume_.slope(next, along); };
     const float here = slope(axis);
+    float square = here * here;
     for (int other = 0; other < axes_; ++other) {
-      const float there = other == axis ? 0.0F : slope(other);
-      if (there > here || (there == here && other < axis)) return false;
+      if (other == axis) continue;
+      const float there = slope(other);
+      if (std::abs(there) > std::abs(here) || (std::abs(there) == std::abs(here) && other < axis)) return {false, 0};
+      square += there * there;
     }
-    return true;
+    return {true, square > 0 ? -here / std::sqrt(square) : 1.0F};
   }
   [[nodiscard]] bool is_lit(SurfacePoint::Voxel v) const { return problem_.labels[v.slab][v.i] != Label::outside; }
 
@@ -145,6 +154,23 @@ PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs)
   PerSlice result = filled(slabs, 0.0F);
   for (std::size_t k = 0; k < sums.size(); ++k) result[k / lanes][k % lanes] = static_cast<float>(sums[k]);
   return result;
+}
+
+SurfaceDeviation SurfacePoints::deviation(std::span<const Slab> dose) const {
+  const std::vector<float> missed = misses(dose);
+  double area = 0, sum = 0, squares = 0;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const SurfacePoint& p = points_[i];
+    const float step = dose[p.to.slab].values[p.to.i] - dose[p.from.slab].values[p.from.i];
+    const float falls = p.cosine < 0 ? step : -step;  // outwards, per voxel along the axis
+    const float along = std::abs(missed[i]) < falls ? missed[i] / falls : std::copysign(1.0F, missed[i]);
+    const auto cosine = static_cast<double>(std::abs(p.cosine));
+    const double away = cosine * static_cast<double>(along);
+    area += 1 / cosine;
+    sum += away / cosine;
+    squares += away * away / cosine;
+  }
+  return {sum / area, std::sqrt(squares / area)};
 }
 
 void SurfacePoints::add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share) const {

@@ -1,4 +1,4 @@
-#include "optimize/run/private/even_dose.hpp"
+#include "optimize/run/even_dose.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -20,7 +20,7 @@ void begin(Archive& to, RecordTag record) {
 }  // namespace
 
 void exchange(Archive& archive, const RunMark& mark) {
-  constexpr int magic = 0x564D4F31;
+  constexpr int magic = 0x564D4F32;
   int given_magic = magic;
   archive(given_magic);
   if (given_magic != magic) throw Error{Fault::data, archive.name() + ": is not a checkpoint of vam-optimize"};

@@ -15,6 +15,7 @@ struct Limits {
   int iterations = 0;
   std::vector<model::Condition> until;  // stop when all hold; names as in SliceFigures::names()
   int at_least = 0;                     // iterations before they count
+  int early = 0;                        // so many do where the print's surface is true by then; 0: none
   int patience = 10;                    // stop when nothing improved in so many iterations; 0 = never
   double least_gain = 1e-4;             // an improvement of the mean of IoU + PW smaller than this is none
 };

@@ -8,7 +8,6 @@
 #include "base/text.hpp"
 #include "light/blurred_operator.hpp"
 #include "optimize/methods/metrics.hpp"
-#include "optimize/run/private/even_dose.hpp"
 #include "optimize/run/private/finished.hpp"
 #include "optimize/run/private/ledger.hpp"
 #include "optimize/run/private/misses.hpp"
@@ -55,7 +54,6 @@ class VolumeRun {
     for (const SliceDigest& slice : digests) {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
-    settle_limit();
     schedule_ = scheduled(task, digests, light.image(), halo_ == 0 && !whole_);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (const int job : schedule_.job_of_slice) ++times_[job];
@@ -64,7 +62,7 @@ class VolumeRun {
   VolumeOutcome operator()() {
     Work work;
     if (task_.interruption.to != nullptr) exchange(*task_.interruption.to, mark_);
-    if (task_.interruption.from != nullptr) resume(*task_.interruption.from, work);
+    task_.interruption.from != nullptr ? resume(*task_.interruption.from, work) : settle_limit();
     while (finished_.jobs() < jobs()) {
       if (!run_pass(next_pass(), work)) return interrupted();
       work = {};
@@ -80,7 +78,10 @@ class VolumeRun {
     outcome.efficiency = finished_.efficiency();
     outcome.peak_intensity = finished_.peak();
     outcome.max_intensity = max_intensity_;
-    outcome.even_intensity = even_intensity_;
+    outcome.even = even_;
+    if (even_.mean > 0) outcome.even_intensity = task_.demands.window.threshold() / even_.mean;
+    outcome.eigenvalue = eigenvalue_;
+    outcome.surface = surface_;
     return outcome;
   }
 
@@ -104,14 +105,13 @@ class VolumeRun {
   void settle_limit() {
     const IntensityLimit& limit = task_.limit;
     if (limit.most <= 0 && limit.of_even <= 0) return;
-    const EvenDose even = even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
-    if (!(even.mean > 0)) return;  // dark: nothing to limit
+    even_ = task_.even.mean > 0 ? task_.even : even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
+    if (!(even_.mean > 0)) return;  // dark: nothing to limit
     const double threshold = task_.demands.window.threshold();
-    even_intensity_ = threshold / even.mean;
-    max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * even_intensity_;
-    const double least = threshold / even.largest;
+    max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * threshold / even_.mean;
+    const double least = threshold / even_.largest;
     if (task_.raising.factor > 0) max_intensity_ = std::max(max_intensity_, least);
-    const double reached = max_intensity_ * even.largest;
+    const double reached = max_intensity_ * even_.largest;
     if (task_.demands.grey || max_intensity_ >= least) return;
     throw Error{Fault::usage, "a maximum intensity of " + format_number(max_intensity_, 3) +
                                   " gives a dose of at most " + format_number(reached, 3) +
@@ -149,9 +149,10 @@ class VolumeRun {
       return false;
     }
     ledger_.end(outcome);
+    eigenvalue_ = work.method->eigenvalue();
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
     if (task_.certify) certificate_ = certify(input.problem, light.blurred(), work.state.g);
-    finish(input.problem, work.state, pass, light.sharp(), faced);
+    finish(input.problem, work, pass, light.sharp(), faced);
     return true;
   }
 
@@ -184,11 +185,13 @@ class VolumeRun {
   }
 
   /// Takes the finished slices out of the pass.
-  void finish(const Problem& problem, Iterate& state, const Pass& pass, const light::Operator& light,
+  void finish(const Problem& problem, Work& work, const Pass& pass, const light::Operator& light,
               const Scenarios* scenarios) {
+    Iterate& state = work.state;
     if (halo_ == 0) {  // slices that share dose with other passes are to scale already
       bring_to_threshold(problem, light, whole_ ? Together::pass : Together::slice, max_intensity_, scenarios, state);
     }
+    if (whole_) surface_ = work.method->surface_deviation(state.dose);
     const auto doses = statistics(state.dose, problem);
     const auto cut = cut_statistics(state.dose, problem);
     const auto figures = metrics(state.dose, problem);
@@ -230,6 +233,8 @@ class VolumeRun {
   void keep(Archive& to, Work& work) {
     begin_open(to);
     ledger_.exchange(to);
+    to(even_.mean);
+    to(even_.largest);
     to(max_intensity_);
     exchange(to, front_);
     work.search.exchange(to);
@@ -245,6 +250,8 @@ class VolumeRun {
       finished_.take(std::move(*images));
     }
     ledger_.exchange(from);
+    from(even_.mean);
+    from(even_.largest);
     from(max_intensity_);
     exchange(from, front_);
     work.search.exchange(from);
@@ -258,7 +265,9 @@ class VolumeRun {
   SliceReader reader_;
   bool whole_;  // slices share light, a scenario's light, a front or a proof: all of them are one pass
   int halo_;
-  double max_intensity_ = 0, even_intensity_ = 0;
+  double max_intensity_ = 0, eigenvalue_ = 0;
+  EvenDose even_;
+  std::optional<SurfaceDeviation> surface_;
   RunMark mark_;
   Schedule schedule_;
   std::vector<int> times_;  // slices that a job stands for

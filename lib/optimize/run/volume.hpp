@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "base/json_fwd.hpp"
 #include "model/outside.hpp"
 #include "optimize/run/certify.hpp"
+#include "optimize/run/even_dose.hpp"
 #include "optimize/run/front.hpp"
 #include "optimize/run/interruption.hpp"
 #include "optimize/run/shortest.hpp"
@@ -24,6 +26,7 @@ struct IntensityLimit {
   double most = 0;     // 0: none
   double of_even = 0;  // else this multiple of the even intensity
 };
+
 struct VolumeTask {
   VolumeSource source;
   Circle circle;
@@ -31,6 +34,7 @@ struct VolumeTask {
   Demands demands;
   Limits limits;
   IntensityLimit limit;
+  EvenDose even;       // as coarser voxels have it; 0: computed where the limit asks for it
   Raising raising;     // of the limit, while the goal is not met
   double blur_px = 0;  // Gaussian that smears the dose, in voxels: neighbouring slices are then optimised together
   bool watch = false;  // fill the trace
@@ -64,8 +68,11 @@ struct VolumeOutcome {
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
+  std::optional<SurfaceDeviation> surface;   // where slices share light
+  double eigenvalue = 0;                     // Method::eigenvalue() of the last pass
   double efficiency = 0;
   double max_intensity = 0;                // the limit, as raised; 0: none
+  EvenDose even;                           // where the limit asked for it, else 0
   double even_intensity = 0;               // 0: not asked for
   double peak_intensity = 0;               // of the result
   std::optional<Certificate> certificate;  // when asked for

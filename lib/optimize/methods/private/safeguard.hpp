@@ -16,8 +16,10 @@ PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerS
 /// The same with the largest.
 [[nodiscard]] PerSlice largest_pooled(PerSlice values, const light::Operator& light);
 
-/// Clips the light to [0, peak]; its dose follows. Losses are compared with that of the start, so it must be allowed
-/// itself.
+/// Clips the light to at most `peak`; returns whether any was above.
+bool clip_above(std::vector<Slab>& g, float peak);
+/// Clips the light to at most `peak`; its dose follows. Losses are compared with that of the start, so it must be
+/// allowed itself.
 void enter_bounds(const light::Operator& light, float peak, Iterate& iterate);
 
 /// Largest value that light may take: options.max_intensity as a sinogram value, or no limit when that is 0.

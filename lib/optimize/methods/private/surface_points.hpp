@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/per_slice.hpp"
+#include "optimize/methods/method.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {
@@ -19,6 +20,7 @@ struct SurfacePoint {
   Voxel from, to;
   float share;   // 0...1
   float weight;  // the lesser one of the two voxels
+  float cosine;  // between the outward normal and the way from `from` to `to`
 };
 
 /// The points of a problem, each along the axis that is nearest to the surface's normal there; between two slices only
@@ -34,6 +36,8 @@ class SurfacePoints {
   [[nodiscard]] PerSlice losses(std::span<const float> misses, std::size_t slabs) const;
   /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
   void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;
+  /// By the doses of the two voxels, linear between them; points count by the area that they stand for.
+  [[nodiscard]] SurfaceDeviation deviation(std::span<const Slab> dose) const;
   [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
 
  private:

@@ -6,7 +6,8 @@
 
 namespace vam::optimize {
 
-/// Dose inside the circle where every pixel has intensity 1 at every angle.
+/// Dose inside the circle where every pixel has intensity 1 at every angle. It does not depend on the size of the
+/// voxels.
 struct EvenDose {
   double mean = 0;
   double largest = 0;
