@@ -67,6 +67,22 @@ inline void give_rows(const float* from, float row, float zoom, int rows, float*
   }
 }
 
+/// The weights of a ray's columns, in registers where their number is known: stores might change them in memory.
+template <int taps>
+struct Weights {
+  const float* weight;
+  long pitch;
+  Vector held[taps > 0 ? taps : 1];
+
+  Weights(const RayTaps& ray, int e) : weight(ray.weight + e), pitch(ray.pitch) {
+    for (int k = 0; k < taps; ++k) held[k] = Vector{} + weight[k * pitch];
+  }
+  Vector operator[](int k) const {
+    if (taps > 0) return held[k];
+    return Vector{} + weight[k * pitch];
+  }
+};
+
 /// taps: 3 or 4, the usual numbers, or 0 for any.
 template <int width, bool climbs, bool shadowed, int taps>
 void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, int count, float* voxels) {
@@ -78,7 +94,7 @@ void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, in
   }
   for (int e = 0; e < count; ++e) {
     const float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
-    const float* weight = ray.weight + e;
+    const Weights<taps> weight(ray, e);
     float* to = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
     float* sums = climbs ? line : to;
     for (int v = 0; v < rows; v += vector_floats) {
@@ -90,9 +106,9 @@ void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, in
         const Vector here = load(light + at);
         if (shadowed) {
           const Vector ends_mm = load(columns.ends_mm + (light - columns.light) + at);
-          sum += weight[tap] * (ends_mm > columns.depth_mm[tap + e] ? here : Vector{});
+          sum += weight[k] * (ends_mm > columns.depth_mm[tap + e] ? here : Vector{});
         } else {
-          sum += weight[tap] * here;
+          sum += weight[k] * here;
         }
       }
       store(sums + v, sum);
@@ -108,7 +124,7 @@ void scatter(const float* voxels, const RayTaps& ray, const int* voxel, int coun
   const int ends = taps > 0 ? taps : ray.taps;
   for (int e = 0; e < count; ++e) {
     float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
-    const float* weight = ray.weight + e;
+    const Weights<taps> weight(ray, e);
     const float* from = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
     if (climbs) give_rows(from, ray.start[e] - ray.first_row, ray.zoom[e], rows, line);
     const float* given = climbs ? line : from;
@@ -118,7 +134,7 @@ void scatter(const float* voxels, const RayTaps& ray, const int* voxel, int coun
       for (int k = 0; k < ends; ++k) {
         const long at = static_cast<long>(k) * rows + v;
         const long tap = static_cast<long>(k) * ray.pitch;
-        Vector share = weight[tap] * value;
+        Vector share = weight[k] * value;
         if (shadowed) {
           const Vector ends_mm = load(columns.ends_mm + (light - columns.light) + at);
           share = ends_mm > columns.depth_mm[tap + e] ? share : Vector{};

@@ -113,6 +113,10 @@ void TileLight::load_voxels(const Window<const Slab>& objects) {
   each_voxel([&](int i, int j, std::size_t slab, std::size_t at, int used) {
     std::copy_n(objects[slab].at(i, j), used, voxels_.data() + at);
   });
+}
+
+void TileLight::load_bright_voxels(const Window<const Slab>& objects) {
+  load_voxels(objects);
   keep_bright();
 }
 

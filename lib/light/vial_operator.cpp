@@ -14,7 +14,8 @@ namespace vam::light {
 
 namespace {
 
-constexpr double faint = 0.1;  // of the best column's: grazing rays are not amplified beyond
+constexpr int forward_angles = 16, adjoint_angles = 60;  // of a piece of work
+constexpr double faint = 0.1;                            // of the best column's: grazing rays are not amplified beyond
 
 /// Columns are projector pixels here: A f is about w (pitch / voxel) P f along a row, P the line integrals in voxels
 /// and w = T e^{-mu depth}, and a ramp across columns is voxel / (J pitch) times one across voxels, which cancels the J
@@ -44,8 +45,7 @@ std::vector<Chunk> chunks(const SlabRange& slabs, int widest) {
 }
 
 /// Stage angles [first, end) that one piece of work covers.
-std::vector<std::pair<int, int>> angle_blocks(int angles) {
-  constexpr int block = 16;
+std::vector<std::pair<int, int>> angle_blocks(int angles, int block) {
   std::vector<std::pair<int, int>> blocks;
   for (int first = 0; first < angles; first += block) {
     blocks.emplace_back(first, std::min(first + block, angles));
@@ -107,7 +107,7 @@ double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.
 /// Angles are shared among the threads: each writes its own rows.
 void VialOperator::forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const {
   for (Slab& slab : sinograms.slabs) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
-  const auto blocks = angle_blocks(sinogram().height);
+  const auto blocks = angle_blocks(sinogram().height, forward_angles);
   each_chunk({objects.first, objects.end()},
              [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
                parallel_for(count_of(blocks), [&](int b) {
@@ -117,7 +117,7 @@ void VialOperator::forward_within(const Window<const Slab>& objects, const Windo
                    const Tile& tile = tiles_[t];
                    if (tile.voxels.empty()) continue;
                    light.enter(t, tile, chunk);
-                   light.load_voxels(objects);
+                   light.load_bright_voxels(objects);
                    for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
                  }
                });
@@ -144,21 +144,26 @@ SlabRange VialOperator::lit_by(const SlabRange& objects) const {
   return {static_cast<std::size_t>(rows.first / lanes), static_cast<std::size_t>((rows.end + lanes - 1) / lanes)};
 }
 
-/// Tiles are shared among the threads.
+/// Tiles are shared among the threads; all of them take the light of some angles, which stays in the cache, before any
+/// takes that of the next.
 void VialOperator::adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
-  const int angles = sinogram().height;
+  for (Slab& slab : objects.slabs) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
+  const auto blocks = angle_blocks(sinogram().height, adjoint_angles);
+  const Window<const Slab> sums{objects.first, objects.slabs};
   each_chunk({objects.first, objects.end()},
              [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
-               parallel_for(count_of(tiles), [&](int item) {
-                 TileLight light(rays_, shadow_);
-                 const int t = tiles[item];
-                 const Tile& tile = tiles_[t];
-                 light.enter(t, tile, chunk);
-                 light.clear_voxels();
-                 for (int angle = 0; angle < angles && !tile.voxels.empty(); ++angle)
-                   light.take(nodes, angle, sinograms);
-                 light.store_voxels(objects);
-               });
+               for (const auto& [first, end] : blocks) {
+                 parallel_for(count_of(tiles), [&](int item) {
+                   const int t = tiles[item];
+                   const Tile& tile = tiles_[t];
+                   if (tile.voxels.empty()) return;
+                   TileLight light(rays_, shadow_);
+                   light.enter(t, tile, chunk);
+                   light.load_voxels(sums);
+                   for (int angle = first; angle < end; ++angle) light.take(nodes, angle, sinograms);
+                   light.store_voxels(objects);
+                 });
+               }
              });
 }
 

@@ -42,8 +42,10 @@ class TileLight {
   void enter(int tile, const Tile& rays, const Chunk& chunk);
   /// What the voxels take and give from now on.
   void clear_voxels() { std::fill(voxels_.begin(), voxels_.end(), 0.0F); }
-  /// Those that have anything to give: the others and their rays are left out.
+  /// What they have taken so far.
   void load_voxels(const Window<const Slab>& objects);
+  /// Those that have anything to give: the others and their rays are left out.
+  void load_bright_voxels(const Window<const Slab>& objects);
   void store_voxels(const Window<Slab>& objects) const;
 
   /// Voxels += light of a stage angle.
