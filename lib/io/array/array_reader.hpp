@@ -1,0 +1,41 @@
+// Arrays of other programs, NumPy's .npy and .npz, as images one after the other.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "base/image.hpp"
+
+namespace vam::io {
+
+/// Images, rows and columns.
+struct ArraySize {
+  int images = 0;
+  int rows = 0;
+  int columns = 0;
+};
+
+struct ArrayOptions {
+  std::string name;                  // of the array in a .npz that holds several
+  std::array<int, 3> axes{0, 1, 2};  // which axis of the array counts the images, the rows and the columns
+};
+
+/// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where
+/// images, rows and columns are the array's own order, in constant memory; else all of it is held. "-" is stdin. Throws
+/// Error: no_input, io, data (neither .npy nor .npz, truncated, damaged, objects, another number of axes, too large,
+/// not finite), usage (no array of that name).
+class ArrayReader {
+ public:
+  ArrayReader(const std::string& path, const ArrayOptions& options);
+  ~ArrayReader();
+  [[nodiscard]] const ArraySize& size() const;
+  /// The next image; false after the last.
+  bool next(Image& image);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace vam::io

@@ -1,0 +1,74 @@
+#include "io/array/private/npz.hpp"
+
+#include <zip.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/printable.hpp"
+#include "base/text.hpp"
+
+namespace vam::io::npy {
+
+namespace {
+
+constexpr std::string_view ending = ".npy";
+constexpr zip_int64_t most_names = 1 << 16;
+
+[[noreturn]] void damaged(const std::string& file) {
+  throw Error{Fault::data, file + ": the .npz archive is truncated or damaged; save it again with numpy.savez()"};
+}
+
+// The names of its arrays, without the ending.
+std::vector<std::string> names_of(zip* archive) {
+  std::vector<std::string> names;
+  const zip_int64_t count = std::min<zip_int64_t>(zip_get_num_entries(archive, 0), most_names);
+  for (zip_int64_t i = 0; i < count; ++i) {
+    const char* name = zip_get_name(archive, static_cast<zip_uint64_t>(i), 0);
+    const std::string_view text = name == nullptr ? "" : name;
+    if (text.ends_with(ending)) names.emplace_back(text.substr(0, text.size() - ending.size()));
+  }
+  return names;
+}
+
+std::string chosen(const std::vector<std::string>& names, const std::string& name, const std::string& file) {
+  if (names.empty()) throw Error{Fault::data, file + ": is a zip archive without an array (.npy)"};
+  if (name.empty() && names.size() == 1) return names.front();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  const std::vector<std::string> some(names.begin(), names.begin() + std::min<std::ptrdiff_t>(std::ssize(names), 8));
+  const std::string has = "holds " + std::to_string(names.size()) + " arrays (" + printable(join(some, ", ")) + ")";
+  throw Error{Fault::usage,
+              file + ": " + has + (name.empty() ? "; name one by --array" : ", but none is called " + printable(name))};
+}
+
+}  // namespace
+
+void PackedArray::Close::operator()(zip* archive) const { zip_discard(archive); }
+void PackedArray::Close::operator()(zip_file* file) const { zip_fclose(file); }
+
+PackedArray::PackedArray(std::string_view bytes, const std::string& name, const std::string& file) : file_(file) {
+  zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, nullptr);
+  if (source == nullptr) damaged(file);
+  archive_.reset(zip_open_from_source(source, ZIP_RDONLY, nullptr));
+  if (archive_ == nullptr) {
+    zip_source_free(source);
+    damaged(file);
+  }
+  const std::string entry = chosen(names_of(archive_.get()), name, file) + std::string(ending);
+  array_.reset(zip_fopen(archive_.get(), entry.c_str(), 0));
+  if (array_ == nullptr) damaged(file);
+}
+
+std::size_t PackedArray::read(void* to, std::size_t size) {
+  std::size_t done = 0;
+  while (done < size) {
+    const zip_int64_t got = zip_fread(array_.get(), static_cast<char*>(to) + done, size - done);
+    if (got < 0) damaged(file_);
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  return done;
+}
+
+}  // namespace vam::io::npy

@@ -1,0 +1,34 @@
+// Private to the array files: the arrays of a .npz, which is a zip archive of .npy.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+struct zip;
+struct zip_file;
+
+namespace vam::io::npy {
+
+/// One array of an archive in memory, unpacked as it is read.
+class PackedArray {
+ public:
+  /// `name` without .npy; empty: the only one. The bytes must outlive it. Throws Error that begins with `file`: data
+  /// (no archive, damaged, no array), usage (several and no name; no array of that name), with the names that are
+  /// there.
+  PackedArray(std::string_view bytes, const std::string& name, const std::string& file);
+  /// Fewer than `size` only at the end. Throws Fault::data where the archive is damaged.
+  std::size_t read(void* to, std::size_t size);
+
+ private:
+  struct Close {
+    void operator()(zip* archive) const;
+    void operator()(zip_file* file) const;
+  };
+  std::string file_;
+  std::unique_ptr<zip, Close> archive_;
+  std::unique_ptr<zip_file, Close> array_;
+};
+
+}  // namespace vam::io::npy

@@ -1,0 +1,182 @@
+# vam-convert: arrays, images and videos of other programs in, arrays out; anybody's projections judged.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+npy() { python3 "$VAM_SOURCE/tests/tools/npy.py" "$@"; }
+shown() { npy show "$1" >shown; cat shown; }
+values() { seq 0 "$(($1 - 1))" | awk '{ printf " %d", $1 % 101 } END { print "" }'; }
+
+# Every type and order: the same numbers in [z][y][x].
+want="2 3 4 <f4$(values 24)"
+for kind in '|u1' '|i1' '<u2' '>u2' '<i2' '<u4' '>i4' '<i8' '>u8' '<f2' '>f2' '<f4' '>f4' '<f8' '>f8'; do
+  npy make a.npy "$kind" 2,3,4
+  vam-convert a.npy --voxel 0.5 --grid weight | vam-convert >b.npy
+  is "$kind in C order" "$(shown b.npy)" "$want"
+  npy make f.npy "$kind" 2,3,4 F
+  vam-convert --voxel 0.5 --grid weight <f.npy | vam-convert >b.npy
+  is "$kind in Fortran order" "$(shown b.npy)" "$want"
+done
+npy make t.npy '|b1' 1,2,4
+vam-convert t.npy --voxel 0.5 | vam-convert >b.npy
+is 'truth' "$(shown b.npy)" '1 2 4 <f4 0 1 0 1 0 1 0 1'
+npy make p.npy '<f4' 3,4
+vam-convert p.npy --voxel 0.5 --grid weight | vam-convert >b.npy
+is 'a plane is one slice' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
+npy make a.npy '<f4' 2,3,4
+vam-convert a.npy --axes xyz --voxel 0.5 --grid weight | vam-convert >b.npy
+is 'axes in another order' "$(shown b.npy | cut -d' ' -f1-8)" '4 3 2 <f4 0 12 4 16'
+vam-convert a.npy --voxel 0.5 --full-scale 100 | vam-convert >b.npy
+is 'values divided' "$(shown b.npy | cut -d' ' -f5,6,28)" '0 0.01 0.23'
+python3 -c 'import zipfile
+with zipfile.ZipFile("one.npz", "w", zipfile.ZIP_DEFLATED) as z: z.write("a.npy", "dose.npy")
+with zipfile.ZipFile("two.npz", "w") as z: z.write("a.npy", "dose.npy"); z.write("p.npy", "plan/e.npy"); z.write("p.npy", "text")
+with zipfile.ZipFile("none.npz", "w") as z: z.write("a.npy", "a.txt")'
+vam-convert one.npz --voxel 0.5 --grid weight | vam-convert >b.npy
+is 'the only array of a .npz' "$(shown b.npy)" "$want"
+vam-convert two.npz --array plan/e --voxel 0.5 --grid weight | vam-convert >b.npy
+is 'one of several' "$(shown b.npy)" "1 3 4 <f4$(values 12)"
+vam-convert --array dose --voxel 0.5 --grid weight <two.npz | vam-convert >b.npy
+is 'from a pipe' "$(shown b.npy)" "$want"
+
+# Where it lies.
+vam-convert a.npy --voxel 0.5 --grid weight -o a.vdb
+is 'the middle is on the axis' "$(vam-view a.vdb --export /dev/stdout | grep -a '^space origin')" 'space origin: (-0.75,-0.5,-0.25)'
+vam-convert a.npy --voxel 0.5 --grid weight --origin 1,2,3 -o a.vdb
+is 'or where it is put' "$(vam-view a.vdb --export /dev/stdout | grep -a '^space origin')" 'space origin: (1,2,3)'
+ok 'whole' vam-check a.vdb
+
+# What is refused.
+fails 64 'what is it\? Give --voxel MM' vam-convert a.npy -o x.vdb
+fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
+fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --projections virtual -o x.vdb
+fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif
+fails 64 '--voxel: is for data of other programs' vam-convert a.vdb --voxel 1 -o x.npy
+fails 64 "--axes: 'zyy' is not an order of the letters zyx" vam-convert a.npy --voxel 1 --axes zyy -o x.vdb
+fails 64 '--pixel: is for projections' vam-convert a.npy --voxel 1 --pixel 1 -o x.vdb
+fails 64 'two.npz: holds 2 arrays \(dose, plan/e\); name one by --array' vam-convert two.npz --voxel 1 -o x.vdb
+fails 64 'holds 2 arrays \(dose, plan/e\), but none is called dos$' vam-convert two.npz --array dos --voxel 1 -o x.vdb
+fails 65 'none.npz: is a zip archive without an array' vam-convert none.npz --voxel 1 -o x.vdb
+fails 66 'no.npy: cannot open' vam-convert no.npy --voxel 1 -o x.vdb
+refused() {  # refused DICTIONARY REGEX
+  npy head bad.npy "$1"
+  fails 65 "bad.npy: $2" vam-convert bad.npy --voxel 1 -o x.vdb
+}
+refused "{'descr': '|O', 'fortran_order': False, 'shape': (2, 3), }" 'holds Python objects \(a pickle\), which are never read'
+refused "{'descr': '<c8', 'fortran_order': False, 'shape': (2, 3), }" "has values of type '<c8'"
+refused "{'descr': '<U5', 'fortran_order': False, 'shape': (2, 3), }" "has values of type '<U5'"
+refused "{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (2, 3), }" 'holds records of several fields'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (24,), }" 'has 1 axes \(24\)'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (), }" 'has 0 axes;'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3, 4, 5), }" 'has 4 axes \(2 x 3 x 4 x 5\)'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 0, 4), }" 'is an empty array'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 99999999999999999999, 4), }" 'its sizes exceed all memory'
+refused "{'descr': '<f4', 'fortran_order': True, 'shape': (4294967296, 4294967296, 4294967296), }" 'has 4294967296 x 4294967296 x 4294967296 values; up to 65536 along'
+refused "{'descr': '<f4', 'fortran_order': True, 'shape': (65536, 65536, 65536), }" 'has 65536 x 65536 x 65536 values; up to 2\^40 are read'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 65536, 65536), }" 'has images of more than 2\^28'
+refused "{'descr': '<f8', 'fortran_order': True, 'shape': (8192, 8192, 8192), }" '(asks for more than|is cut off)'
+refused "{'descr': '<f4', 'fortran_order': False, 'shape': (40000, 2, 2), }" 'has 2 x 2 x 40000 voxels'
+refused "{'descr': '<f4', 'shape': (2, 3), }" 'its NumPy header is damaged'
+refused "{'descr': '<f4', 'fortran_order': Maybe, 'shape': (2, 3), }" 'its NumPy header is damaged'
+refused "import os" 'its NumPy header is damaged'
+cp a.npy more.npy; echo >>more.npy
+fails 65 'more.npy: has bytes behind its 24 values' vam-convert more.npy --voxel 1 -o x.vdb
+python3 -c 'import struct
+data = open("a.npy", "rb").read()
+open("nan.npy", "wb").write(data[:-8] + struct.pack("<2f", float("nan"), 1))'
+fails 65 'nan.npy: column 2, row 2 of image 1 is not a finite number' vam-convert nan.npy --voxel 1 -o x.vdb
+python3 -c 'import struct
+data = open("a.npy", "rb").read().replace(b"<f4", b"<f8")
+open("huge.npy", "wb").write(data[:128] + struct.pack("<24d", *[1e300] * 24))'
+fails 65 'huge.npy: column 0, row 0 of image 0 is not a finite number' vam-convert huge.npy --voxel 1 -o x.vdb
+printf 'solid' >mesh.stl
+fails 65 'mesh.stl: is not a NumPy array' vam-convert mesh.stl --voxel 1 -o x.vdb
+: >empty.npy
+fails 65 'empty.npy: is empty' vam-convert empty.npy --voxel 1 -o x.vdb
+
+# No beginning of a file is taken for the file, and none crashes.
+statuses() {  # statuses FILE: of all its beginnings
+  npy cuts "$1"
+  for cut in "$1".*; do vam-convert "$cut" --voxel 1 -o x.vdb 2>>cut.err; echo $?; done | sort | uniq -c | tr -s ' '
+  rm -f "$1".*
+}
+npy make cut.npy '<f4' 2,2,2
+is 'every cut of a .npy is status 65' "$(statuses cut.npy)" " $(wc -c <cut.npy) 65"
+is 'in one line each' "$(wc -l <cut.err)" "$(wc -c <cut.npy)"
+is 'and none is a crash' "$(grep -c 'ended by signal\|reader failed' cut.err)" 0
+python3 -c 'import zipfile
+with zipfile.ZipFile("cut.npz", "w", zipfile.ZIP_DEFLATED) as z: z.write("cut.npy", "a.npy")'
+is 'every cut of a .npz is status 65' "$(statuses cut.npz)" " $(wc -c <cut.npz) 65"
+is 'nothing is left behind' "$(ls x.* 2>/dev/null)" ''
+python3 -c 'import zipfile
+with zipfile.ZipFile("bomb.npz", "w", zipfile.ZIP_DEFLATED) as z:
+  z.writestr("a.npy", open("a.npy", "rb").read() + bytes(200000000))'
+fails 65 'bomb.npz: has bytes behind its 24 values' vam-convert bomb.npz --voxel 1 -o x.vdb
+
+# Projections: a stack goes out and comes back, and its dose is the same to the byte.
+vam-slice --shape disc-grid --voxel 0.5 -o part.vdb
+vam-sinogram part.vdb --filter ram-lak --negative clip -o sino.exr
+vam-convert sino.exr -o sino.npy
+vam-convert sino.npy --projections virtual --pixel 0.5 -o back.exr
+vam-dose sino.exr --like part.vdb | vam-convert >dose.npy
+vam-convert sino.npy --projections virtual --pixel 0.5 | vam-dose --like part.vdb | vam-convert >again.npy
+same 'the dose of an array is that of the stack' dose.npy again.npy
+vam-convert back.exr >again.npy
+same 'and the values are' sino.npy again.npy
+
+# Frames of the projector, to 8 bits: the dose within one level of 255.
+set="--set projector.columns=64 --set projector.rows=48 --set projector.pixel_mm=0.5"
+set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
+# shellcheck disable=SC2086
+{
+  vam-resample sino.exr $set -o projector.exr
+  vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o frames
+  vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
+  vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
+  ok 'frames of the projector' vam-convert frames --projections projector --like part.vdb $set -o back.exr
+  quiet 'a video is the same' vam-convert film.mkv --projections projector --like part.vdb $set -o film.exr
+  quiet 'and two turns of turned frames' vam-convert turned --projections projector --orientation rotate-180 --like part.vdb $set -o turned.exr
+  for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
+}
+same 'video and folder' film.npy back.npy
+cat >compare.py <<'PY'
+import struct, sys
+def floats(path):
+    data = open(path, "rb").read()
+    at = 10 + struct.unpack("<H", data[8:10])[0]
+    return struct.unpack("<%df" % ((len(data) - at) // 4), data[at:])
+a, b = floats(sys.argv[1]), floats(sys.argv[2])
+scale = sum(x * y for x, y in zip(a, b)) / sum(y * y for y in b)
+print(len(a) == len(b), max(abs(x - scale * y) for x, y in zip(a, b)) / max(a))
+PY
+python3 compare.py projector.npy back.npy >difference; read -r sizes worst <difference
+is 'doses of one size' "$sizes" True
+holds "within the 8 bits: $worst of the largest dose" "$worst < 0.004 && $worst > 0"
+python3 compare.py turned.npy back.npy >difference; read -r sizes worst <difference
+holds "turns are averaged: $worst" "$worst < 1e-5"
+
+# What is said of foreign frames moves them.
+middle() { vam-convert frames --projections virtual --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
+is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
+is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
+fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --projections projector --pixel 0.1 -o x.exr
+fails 64 '--angle-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --projections virtual --angle-step 7 -o x.exr
+fails 65 'has 360 projections, 720 make a turn' vam-convert frames --projections virtual --angle-step 0.5 -o x.exr
+fails 65 'has light on column .* check --axis-column' vam-convert frames --projections projector --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr
+fails 64 '--orientation: is for images' vam-convert sino.npy --projections virtual --orientation flip-rows -o x.exr
+fails 64 '--axes and --array are for arrays' vam-convert frames --projections virtual --axes zxa -o x.exr
+
+numpy=/usr/bin/python3
+if "$numpy" -c 'import numpy' 2>/dev/null; then
+  "$numpy" - <<'PY'
+import numpy
+a = numpy.arange(24).reshape(2, 3, 4) % 101
+numpy.save("c.npy", a.astype(">i2"))
+numpy.save("f.npy", numpy.asfortranarray(a.astype("f8")))
+numpy.savez_compressed("z.npz", dose=a)
+PY
+  for file in c.npy f.npy z.npz; do
+    vam-convert $file --voxel 0.5 --grid weight | vam-convert >b.npy
+    is "NumPy's own $file" "$("$numpy" -c 'import numpy; a = numpy.load("b.npy"); print(a.dtype, a.shape, (a.ravel() == numpy.arange(24)).all())')" \
+      'float32 (2, 3, 4) True'
+  done
+fi
+done_testing

@@ -1,0 +1,35 @@
+// vam-convert: data of other programs, and from these tools to others.
+#include "io/stream/file_type.hpp"
+#include "printer.hpp"
+#include "vam-convert/export.hpp"
+#include "vam-convert/options.hpp"
+#include "vam-convert/projections.hpp"
+#include "vam-convert/volume.hpp"
+
+namespace {
+
+using namespace vam;
+using convert_tool::Options;
+
+/// Native file -> array, array -> volume, array or images -> projections.
+void run(const cli::App& app, const Options& options) {
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, options.output)) return;
+  const auto type = io::known_file_type(options.input);
+  if (type == io::FileType::volume || type == io::FileType::stack) {
+    check_export(app, options);
+    return type == io::FileType::volume ? convert_tool::export_volume(options) : convert_tool::export_stack(options);
+  }
+  check_import(app, options);
+  if (options.voxel_mm) return convert_tool::make_volume(app, options, type);
+  convert_tool::make_projections(app, options, type, printer);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::App app(convert_tool::manual());
+  Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { run(app, options); });
+}

@@ -1,0 +1,65 @@
+#include "vam-convert/images.hpp"
+
+#include "base/error.hpp"
+#include "io/image/any_frames.hpp"
+
+namespace vam::convert_tool {
+
+namespace {
+
+void scale(Image& image, const std::optional<double>& full_scale) {
+  if (!full_scale) return;
+  const auto factor = static_cast<float>(1 / *full_scale);
+  for (float& value : image.values) value *= factor;
+}
+
+class Array : public Images {
+ public:
+  Array(const Options& options, const std::string& letters)
+      : reader_(options.input, {options.array, axes_of(options, letters)}), full_scale_(options.full_scale) {}
+  [[nodiscard]] io::ArraySize size() const override { return reader_.size(); }
+  [[nodiscard]] bool are_frames() const override { return false; }
+  bool next(Image& image) override {
+    if (!reader_.next(image)) return false;
+    scale(image, full_scale_);
+    return true;
+  }
+
+ private:
+  io::ArrayReader reader_;
+  std::optional<double> full_scale_;
+};
+
+class Frames : public Images {
+ public:
+  Frames(const Options& options, io::FileType type)
+      : source_(io::open_images(options.input, type)), full_scale_(options.full_scale) {}
+  [[nodiscard]] io::ArraySize size() const override {
+    return {source_->info().count, source_->info().height, source_->info().width};
+  }
+  [[nodiscard]] bool are_frames() const override { return true; }
+  [[nodiscard]] double angle_step_deg() const override { return source_->info().angle_step_deg; }
+  bool next(Image& image) override {
+    model::ImageInfo about;
+    if (!source_->next(image, about)) return false;
+    scale(image, full_scale_);
+    return true;
+  }
+
+ private:
+  std::unique_ptr<io::ImageSource> source_;
+  std::optional<double> full_scale_;
+};
+
+}  // namespace
+
+std::unique_ptr<Images> open_source(const Options& options, std::optional<io::FileType> type,
+                                    const std::string& letters) {
+  if (!type) return std::make_unique<Array>(options, letters);
+  if (!options.axes.empty() || !options.array.empty()) {
+    throw Error{Fault::usage, options.input + ": --axes and --array are for arrays (.npy, .npz), not for images"};
+  }
+  return std::make_unique<Frames>(options, *type);
+}
+
+}  // namespace vam::convert_tool

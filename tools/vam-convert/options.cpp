@@ -1,0 +1,122 @@
+#include "vam-convert/options.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace vam::convert_tool {
+
+namespace {
+
+void declare_volume(cli::App& app, Options& options) {
+  app.group("Volumes");
+  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "The array is a volume with cubic voxels of this edge.");
+  app.option("--grid", "NAME", options.grid, "Name of the grid, of a volume that is read or made.");
+  app.default_is("the only one; target");
+  app.option("--origin", "X,Y,Z", options.origin_mm, 3, "Centre of the first voxel in mm; the axis is at x = y = 0.");
+  app.default_is("that which puts the middle of the volume on the axis, at z = 0");
+}
+
+void declare_projections(cli::App& app, Options& options) {
+  app.group("Projections");
+  app.choice("--projections", options.projections, {"none", "virtual", "projector"},
+             "The array, images or video are projections: of an ideal parallel beam in the resin, or of the printer's "
+             "projector.");
+  app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
+  app.default_is("projector.pixel_mm");
+  app.option("--slice-pitch", "MM", options.slice_pitch_mm, cli::positive, "Pitch of the slices along z.");
+  app.default_is("that of the columns");
+  app.option("--like", "FILE", options.like,
+             "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer. vam-dose "
+             "--like FILE needs them.")
+      .reads();
+  app.default_is("the slices of the array, the rows of the images");
+  app.option(
+      "--angle-step", "DEG", options.angle_step_deg, {-180, 180},
+      "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections of "
+      "several turns are averaged.");
+  app.default_is("that of frames.csv beside the images, else one turn divided by the projections");
+  app.option("--axis-column", "PX", options.axis_column, cli::any, "Column of the projections on which the axis lies.");
+  app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
+  app.option("--axis-row", "PX", options.axis_row, cli::any,
+             "Row of the images, or slice of the array, on which z = 0 lies.");
+  app.default_is("projector.axis_row in images as high as the projector's, else the middle");
+  app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
+             "How the images were turned for the projector; undone first.");
+}
+
+void refuse_given(const cli::App& app, const std::vector<std::string>& flags, const std::string& why) {
+  for (const std::string& flag : flags) {
+    if (app.given(flag)) throw Error{Fault::usage, flag + ": " + why};
+  }
+}
+
+const std::vector<std::string> volume_flags{"--voxel", "--origin"};
+const std::vector<std::string> projection_flags{"--projections", "--pixel",       "--slice-pitch", "--like",
+                                                "--angle-step",  "--axis-column", "--axis-row",    "--orientation"};
+
+}  // namespace
+
+void declare(cli::App& app, Options& options) {
+  app.positional("FILE", options.input,
+                 "Array (.npy, .npz), folder of numbered images (PNG, TIFF), video (MKV, MP4), volume (VDB) or stack "
+                 "(EXR).")
+      .reads();
+  cli::add_output(app, options.output);
+  app.group("Arrays");
+  app.option("--array", "NAME", options.array, "Name of the array in a .npz file.").default_is("the only one");
+  app.option("--axes", "ORDER", options.axes,
+             "Axes of the array from the slowest to the fastest, as NumPy indexes them: x, y and z of a volume; z, a "
+             "(angle) and x (column) of projections.");
+  app.default_is("zyx, zax");
+  app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
+             "Value that becomes 1, full coverage or full intensity.");
+  app.default_is("1; full grey of images");
+  app.option("--units", "TEXT", options.units, "Unit of the values, for the record.");
+  declare_volume(app, options);
+  declare_projections(app, options);
+  cli::add_printer(app, options.printer);
+  app.group("Output and performance");
+  cli::add_stack_output(app, options.stack.half, options.stack.compression);
+  cli::add_threads(app);
+}
+
+std::array<int, 3> axes_of(const Options& options, const std::string& letters) {
+  const std::string order = options.axes.empty() ? letters : options.axes;
+  if (order.size() != 3 || !std::is_permutation(order.begin(), order.end(), letters.begin())) {
+    throw Error{Fault::usage, "--axes: '" + order + "' is not an order of the letters " + letters};
+  }
+  std::array<int, 3> axes{};
+  for (std::size_t i = 0; i < 3; ++i) axes[i] = static_cast<int>(order.find(letters[i]));
+  return axes;
+}
+
+void check_export(const cli::App& app, const Options& options) {
+  const std::string why = "is for data of other programs; the input is one of these tools' own files";
+  refuse_given(app, {"--array", "--axes", "--full-scale", "--units"}, why);
+  refuse_given(app, volume_flags, why);
+  refuse_given(app, projection_flags, why);
+  if (options.output == "-" || options.output.ends_with(".npy") || options.output.starts_with("/dev/")) return;
+  throw Error{Fault::usage, options.output + ": a volume or stack is written as .npy"};
+}
+
+void check_import(const cli::App& app, const Options& options) {
+  const bool volume = options.voxel_mm.has_value();
+  const bool projections = options.projections != "none";
+  if (!volume && !projections) {
+    throw Error{Fault::usage,
+                options.input + ": what is it? Give --voxel MM for a volume, --projections virtual or projector"};
+  }
+  if (volume) {
+    refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");
+  } else {
+    refuse_given(app, volume_flags, "is for volumes; omit it, or --projections");
+    refuse_given(app, {"--grid"}, "is for volumes; omit it, or --projections");
+  }
+  if (options.angle_step_deg == 0.0) throw Error{Fault::usage, "--angle-step: must not be 0"};
+  const std::string ending = volume ? ".vdb" : ".exr";
+  if (options.output == "-" || options.output.ends_with(ending) || options.output.starts_with("/dev/")) return;
+  throw Error{Fault::usage, options.output + ": " + (volume ? "a volume" : "a stack") + " is written as " + ending};
+}
+
+}  // namespace vam::convert_tool

@@ -1,0 +1,189 @@
+#include "vam-convert/projections.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/exr/stack.hpp"
+#include "io/settings/printer_file.hpp"
+#include "io/stream/input_name.hpp"
+#include "io/vdb/vdb.hpp"
+#include "vam-convert/images.hpp"
+#include "vam-convert/resliced.hpp"
+#include "vam-convert/slices.hpp"
+
+namespace vam::convert_tool {
+
+namespace {
+
+/// Of slices along z.
+struct Heights {
+  int count = 0;
+  double z0_mm = 0;
+  double pitch_mm = 0;
+};
+
+/// Where the rows of a slice go, and its columns.
+struct Plan {
+  int per_turn = 0;  // angles
+  int turns = 0;
+  bool backwards = false;
+  double shift = 0;  // of columns, to the right
+  int columns = 0;
+};
+
+void plan_turns(const Options& options, double stated_deg, int angles, Plan& plan) {
+  const double step_deg = options.angle_step_deg.value_or(stated_deg != 0 ? stated_deg : 360.0 / angles);
+  const std::string name = io::input_name(options.input);
+  const double per_turn = 360 / std::abs(step_deg);
+  plan.per_turn = round_int(per_turn);
+  plan.backwards = step_deg < 0;
+  if (std::abs(per_turn - plan.per_turn) > 1e-3) {
+    throw Error{Fault::usage, "--angle-step: " + format_number(step_deg) + " degrees make " + format_number(per_turn) +
+                                  " projections a turn, no whole number"};
+  }
+  plan.turns = angles / plan.per_turn;
+  if (plan.turns == 0) {
+    throw Error{Fault::data, name + ": has " + std::to_string(angles) + " projections, " +
+                                 std::to_string(plan.per_turn) + " make a turn; check --angle-step"};
+  }
+  if (const int over = angles - plan.turns * plan.per_turn; over > 0) {
+    warn(name + ": the last " + std::to_string(over) + " of " + std::to_string(angles) +
+         " projections are left out, as they make no whole turn");
+  }
+}
+
+double axis_column(const Options& options, const model::Projector& projector, int columns) {
+  const double usual = columns == projector.columns ? projector.axis_column : 0.5 * (columns - 1);
+  return options.axis_column.value_or(options.projections == "projector" ? usual : 0.5 * (columns - 1));
+}
+
+/// Slices are counted upwards, rows of images downwards.
+double slice_of_zero(const Options& options, const model::Projector& projector, int slices, bool frames) {
+  const bool own = frames && options.projections == "projector" && slices == projector.rows;
+  if (!options.axis_row && !own) return 0.5 * (slices - 1);
+  const double row = options.axis_row.value_or(projector.axis_row);
+  return frames ? slices - 1 - row : row;
+}
+
+void plan_columns(const Options& options, const model::Projector& projector, int columns, Plan& plan) {
+  const double axis = axis_column(options, projector, columns);
+  if (options.projections == "projector") {
+    plan.columns = projector.columns;
+    plan.shift = projector.axis_column - axis;
+    return;
+  }
+  plan.columns = ceil_int(2 * std::max(axis, columns - 1 - axis) + 1 - 1e-6);
+  plan.shift = 0.5 * (plan.columns - 1) - axis;
+}
+
+double pixel_mm(const Options& options, const model::Projector& projector) {
+  const double pitch = options.pixel_mm.value_or(projector.pixel_mm);
+  if (options.projections == "projector" && std::abs(pitch / projector.pixel_mm - 1) > 1e-6) {
+    throw Error{Fault::usage, "--pixel: " + format_number(pitch) + " mm, but projector.pixel_mm is " +
+                                  format_number(projector.pixel_mm) +
+                                  "; give --set projector.pixel_mm=" + format_number(pitch) + " here and to vam-dose"};
+  }
+  return pitch;
+}
+
+/// The mean over the turns.
+Image one_turn(const Image& slice, const Plan& plan) {
+  Image turn(slice.width, plan.per_turn);
+  for (int n = 0; n < plan.turns * plan.per_turn; ++n) {
+    const int a = n % plan.per_turn;
+    float* to = turn.row(plan.backwards ? (plan.per_turn - a) % plan.per_turn : a);
+    const float* from = slice.row(n);
+    for (int c = 0; c < slice.width; ++c) to[c] += from[c] / static_cast<float>(plan.turns);
+  }
+  return turn;
+}
+
+/// Linear between columns.
+Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
+  if (plan.shift == 0 && plan.columns == turn.width) return turn;
+  const int whole = floor_int(plan.shift);
+  const auto part = static_cast<float>(plan.shift - whole);
+  Image placed(plan.columns, turn.height);
+  for (int a = 0; a < turn.height; ++a) {
+    for (int c = 0; c < turn.width; ++c) {
+      const float value = turn(c, a);
+      if (value == 0) continue;
+      for (const int right : {0, 1}) {
+        const float weight = right == 1 ? part : 1 - part;
+        const int to = c + whole + right;
+        if (weight == 0) continue;
+        if (to < 0 || to >= plan.columns) {
+          throw Error{Fault::data, name + ": has light on column " + std::to_string(c) + ", which is column " +
+                                       std::to_string(to) + " of " + std::to_string(plan.columns) +
+                                       " of the projector; check --axis-column and --set projector.columns"};
+        }
+        placed(to, a) += weight * value;
+      }
+    }
+  }
+  return placed;
+}
+
+model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
+                         const Heights& heights, bool frames) {
+  model::StackInfo info;
+  const bool projector = options.projections == "projector";
+  info.space = projector ? model::Space::projector : model::Space::virtual_;
+  info.width = plan.columns;
+  info.height = plan.per_turn;
+  info.count = heights.count;
+  info.pixel_mm = pixel_mm(options, printer.projector);
+  info.row_mm = heights.pitch_mm;
+  info.z_start_mm = heights.z0_mm;
+  info.angle_step_deg = 360.0 / plan.per_turn;
+  info.units = frames && options.units == "relative" ? "fraction of full intensity" : options.units;
+  info.history = {app.history()};
+  if (projector) info.extra["vam:printer"] = io::printer_settings(printer);
+  return info;
+}
+
+Heights own_heights(const Options& options, const model::Projector& projector, int slices, bool frames) {
+  const double pitch_mm = options.slice_pitch_mm.value_or(pixel_mm(options, projector));
+  return {slices, -slice_of_zero(options, projector, slices, frames) * pitch_mm, pitch_mm};
+}
+
+std::optional<model::Grid> grid_like(const Options& options) {
+  if (options.like.empty()) return std::nullopt;
+  return io::read_volumes(options.like).front().grid();
+}
+
+void warn_of_light(const Options& options, double left_out) {
+  if (left_out < 1e-3) return;
+  warn(io::input_name(options.input) + ": " + format_number(100 * left_out, 3) +
+       " % of the light lies above or below " + options.like + " and is left out; check --axis-row");
+}
+
+}  // namespace
+
+void make_projections(const cli::App& app, const Options& options, std::optional<io::FileType> type,
+                      const model::Printer& printer) {
+  auto images = open_source(options, type, "zax");
+  const bool frames = images->are_frames();
+  if (!frames && options.orientation != "normal") {
+    throw Error{Fault::usage, "--orientation: is for images and videos; give the array's --axes, or turn it in NumPy"};
+  }
+  Slices slices(std::move(images), options, printer);
+  Plan plan;
+  plan_turns(options, slices.angle_step_deg(), slices.size().rows, plan);
+  plan_columns(options, printer.projector, slices.size().columns, plan);
+  const std::optional<model::Grid> grid = grid_like(options);
+  const Heights own = own_heights(options, printer.projector, slices.size().images, frames);
+  Resliced resliced(slices, own.z0_mm, own.pitch_mm, grid);
+  const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
+  io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);
+  Image slice;
+  while (resliced.next(slice)) out.write(shifted(one_turn(slice, plan), plan, io::input_name(options.input)));
+  warn_of_light(options, resliced.left_out());
+  out.commit();
+}
+
+}  // namespace vam::convert_tool

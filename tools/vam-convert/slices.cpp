@@ -1,0 +1,78 @@
+#include "vam-convert/slices.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/index.hpp"
+#include "optics/projector_frames.hpp"
+#include "response.hpp"
+
+namespace vam::convert_tool {
+
+struct Slices::Lit {
+  int first = 0;
+  std::vector<float> values;
+};
+
+namespace {
+
+/// Intensity of every 16-bit level; nothing where the response is not known, and taken to be linear.
+std::vector<float> intensities(const Options& options, const model::Printer& printer) {
+  std::vector<float> table;
+  if (options.projections != "projector" || printer.projector.response.empty()) return table;
+  const resin::Response response = tool::response_of(printer.projector);
+  for (int level = 0; level < 65536; ++level) table.push_back(static_cast<float>(response.intensity(level / 65535.0)));
+  return table;
+}
+
+void respond(const std::vector<float>& table, Image& image) {
+  if (table.empty()) return;
+  for (float& value : image.values) {
+    value = table[static_cast<std::size_t>(std::lround(65535 * std::clamp(value, 0.0F, 1.0F)))];
+  }
+}
+
+}  // namespace
+
+Slices::Slices(std::unique_ptr<Images> images, const Options& options, const model::Printer& printer)
+    : images_(std::move(images)), size_(images_->size()) {
+  if (images_->are_frames()) collect(options, printer);
+}
+
+Slices::~Slices() = default;
+
+io::ArraySize Slices::size() const { return size_; }
+
+double Slices::angle_step_deg() const { return images_->angle_step_deg(); }
+
+void Slices::collect(const Options& options, const model::Printer& printer) {
+  const std::vector<float> table = intensities(options, printer);
+  Image frame;
+  while (images_->next(frame)) {
+    optics::orient(frame, options.orientation);
+    respond(table, frame);
+    for (int y = frame.height - 1; y >= 0; --y) {
+      const float* begin = frame.row(y);
+      const float* end = begin + frame.width;
+      const float* first = std::find_if(begin, end, [](float value) { return value != 0; });
+      while (end > first && end[-1] == 0) --end;
+      lit_.push_back({static_cast<int>(first - begin), {first, end}});
+    }
+  }
+  size_ = {frame.height, count_of(lit_) / frame.height, frame.width};
+}
+
+bool Slices::next(Image& slice) {
+  if (lit_.empty()) return images_->next(slice);
+  if (done_ == size_.images) return false;
+  slice = Image(size_.columns, size_.rows);
+  for (int a = 0; a < size_.rows; ++a) {
+    const Lit& lit = lit_[product(a, size_.images) + static_cast<std::size_t>(done_)];
+    std::copy(lit.values.begin(), lit.values.end(), slice.row(a) + lit.first);
+  }
+  ++done_;
+  return true;
+}
+
+}  // namespace vam::convert_tool

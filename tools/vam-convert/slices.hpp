@@ -1,0 +1,35 @@
+// Projections slice by slice: frames, one a stage angle, are collected first.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/image.hpp"
+#include "io/array/array_reader.hpp"
+#include "model/printer.hpp"
+#include "vam-convert/images.hpp"
+
+namespace vam::convert_tool {
+
+class Slices {
+ public:
+  /// Frames are held, what is dark in them left out; levels become intensities by the projector's response where it has
+  /// one. Throws Fault::memory.
+  Slices(std::unique_ptr<Images> images, const Options& options, const model::Printer& printer);
+  ~Slices();
+  /// Slices, angles and columns.
+  [[nodiscard]] io::ArraySize size() const;
+  [[nodiscard]] double angle_step_deg() const;
+  /// Upwards: a row for each angle; false after the last.
+  bool next(Image& slice);
+
+ private:
+  struct Lit;  // what is not dark of a row
+  void collect(const Options& options, const model::Printer& printer);
+  std::unique_ptr<Images> images_;
+  io::ArraySize size_;
+  std::vector<Lit> lit_;
+  int done_ = 0;
+};
+
+}  // namespace vam::convert_tool
