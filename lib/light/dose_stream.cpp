@@ -56,12 +56,19 @@ void DoseStream::emit_ready() {
   while (next_ < all) {
     const std::size_t end = std::min(all, next_ + slabs_per_pass);
     const SlabRange needed = light_.lit_by({next_, end});
-    const std::size_t passed = std::min(needed.first, first_row_ + rows_.size()) - first_row_;
-    rows_.erase(rows_.begin(), rows_.begin() + passed);
-    first_row_ += passed;
-    if (!finished_ && needed.end > first_row_ + rows_.size()) return;
+    if (needed.first < needed.end) {  // not a block that no row lights
+      drop_rows_below(needed.first);
+      if (!finished_ && needed.end > first_row_ + rows_.size()) return;
+    }
     emit(end);
   }
+}
+
+/// The next blocks need none of them.
+void DoseStream::drop_rows_below(std::size_t row) {
+  const std::size_t passed = std::clamp(row, first_row_, first_row_ + rows_.size()) - first_row_;
+  rows_.erase(rows_.begin(), rows_.begin() + static_cast<std::ptrdiff_t>(passed));
+  first_row_ += passed;
 }
 
 void DoseStream::emit(std::size_t end) {

@@ -32,6 +32,7 @@ class DoseStream {
  private:
   void take_slab();
   void emit_ready();
+  void drop_rows_below(std::size_t row);
   void emit(std::size_t end);
 
   const Simulation& simulation_;

@@ -124,6 +124,15 @@ TEST_CASE("more rows than slices, and fewer") {
   }
 }
 
+TEST_CASE("slices that no row lights lie below those that rows light") {
+  const model::Grid deep = model::centred_grid(30, 30, slices, voxel_mm, -34);
+  const Simulation simulation(printer(), {}, stack(slices), deep);
+  const SlabRange first = simulation.state().clear->lit_by({0, 4});
+  REQUIRE(first.first >= first.end);
+  const std::vector<Image> light = light_of(slices);
+  for (const std::size_t piece : {1, 203}) check_same(streamed(simulation, light, piece), whole(simulation, light));
+}
+
 TEST_CASE("a stream around an insert, and of a part that is lifted past the image") {
   std::vector<Image> inserts(slices, Image(30, 30));
   for (int k = 40; k < 170; ++k) {
