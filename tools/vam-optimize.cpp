@@ -26,8 +26,8 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-/// Three arrays of a slice and of a sinogram (three and six where other printers are faced), of all slices where light
-/// couples them.
+/// Three slices and three sinograms for each slice (six sinograms with --robust), of all slices where light couples
+/// them.
 void require_memory_for(const Scene& scene, const light::Operator& light, bool tolerant, const std::string& subject) {
   const bool whole = light.couples_slices() || tolerant;
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
@@ -62,7 +62,7 @@ void run(const cli::App& app, Options& options) {
   const auto light = make_light(scene, options);
   require_memory_for(scene, *light, options.printer_tolerances.has_value(), subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
-  beginning.begin(task, in, scene, options);
+  beginning.begin(task, in, scene, *light, options);
   if (device::interrupted()) return;
   const auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {

@@ -132,6 +132,17 @@ is "the pixels of an interrupted run" "$(tail -c 20000 parts.exr | cksum)" "$(ta
 same "its trace" parts.csv whole.csv
 same "its report" parts.json whole.json
 is "its state is removed on completion" "$(ls run.state 2>/dev/null)" ""
+
+# Passes that have not begun when the run is interrupted start from the coarser levels, as they do in one run.
+vam-slice --shape boat --voxel 0.1 -o boat.vdb
+passes() { timeout -s INT "$1" vam-optimize --geometry parallel --angles 60 --no-blur --iterations 30 --patience 0 \
+  --checkpoint passes.state boat.vdb -o "$2"; }
+passes 100 passes.exr
+for seconds in 1 1.5 2 2.5 3 60; do
+  passes $seconds passed.exr && break
+  [ -e passed.exr ] && break
+done
+is "the pixels of interrupted passes" "$(tail -c 200000 passed.exr | cksum)" "$(tail -c 200000 passes.exr | cksum)"
 for seconds in 0.5 1 2 5 20; do
   timeout --preserve-status -s INT $seconds \
     vam-optimize --iterations 100000 --patience 0 --checkpoint run.state part.vdb -o never.exr

@@ -47,15 +47,13 @@ std::vector<Showing> read_flips(const std::string& path) {
     ++number;
     if (line.empty()) continue;
     const Json event = parse_json(line);
-    if (!event.is_object()) {
-      throw Error{Fault::data, path + ":" + std::to_string(number) + ": not a line of a vam-project log"};
+    try {
+      if (event.at("event") != "flip") continue;
+      const Showing showing{event.at("t_monotonic_s"), event.at("frame")};
+      if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
+    } catch (const Json::exception&) {
+      throw Error{Fault::data, path + ":" + std::to_string(number) + ": is not an event of a vam-project log"};
     }
-    if (event.value("event", "") != "flip") continue;
-    if (!event.contains("t_monotonic_s") || !event.contains("frame")) {
-      throw Error{Fault::data, path + ":" + std::to_string(number) + ": flip without time or frame"};
-    }
-    const Showing showing{event["t_monotonic_s"].get<double>(), event["frame"].get<int>()};
-    if (flips.empty() || flips.back().frame != showing.frame) flips.push_back(showing);
   }
   if (flips.empty()) throw Error{Fault::data, path + ": contains no flips; give the log of vam-project"};
   return flips;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/error.hpp"
 #include "base/text.hpp"
 #include "device/os/angle_sample.hpp"
 #include "io/stream/stream.hpp"
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double margin_s = 0.1;  // of the samples before the first and after the last frame
 
-struct Turn {
+struct MeasuredTurn {
   metrology::CameraAxis axis;
   double speed_deg_s = 0;
 };
@@ -48,9 +49,12 @@ metrology::StageCourse course_of(const std::vector<metrology::StagePoint>& point
 
 // What the frames of a turn have in common, the camera's clock and with the stage's samples its course, moves the phase
 // as a whole.
-Turn measure(const ScanOptions& options, const model::Printer& printer,
-             const std::vector<metrology::StagePoint>& points) {
+MeasuredTurn measure(const ScanOptions& options, const model::Printer& printer,
+                     const std::vector<metrology::StagePoint>& points) {
   BeadTurn frames = read_turn(options, printer);
+  if (frames.time_s.empty() || frames.time_s.front() == 0) {
+    throw Error{Fault::data, "lag: the frames have no times; capture them with vam-capture --follow"};
+  }
   std::vector<double>& angle_deg = frames.scan.angle_deg;
   std::optional<metrology::StageCourse> course;
   if (!points.empty()) {
@@ -58,7 +62,7 @@ Turn measure(const ScanOptions& options, const model::Printer& printer,
     std::transform(frames.time_s.begin(), frames.time_s.end(), angle_deg.begin(),
                    [&](double t_s) { return course->angle_deg(t_s); });
   }
-  Turn turn{metrology::find_camera_axis(frames.scan), metrology::turning_speed_deg_s(frames.time_s, angle_deg)};
+  MeasuredTurn turn{metrology::find_camera_axis(frames.scan), metrology::turning_speed_deg_s(frames.time_s, angle_deg)};
   stats::Measured& phase = turn.axis.phase_deg;
   phase.sigma = std::hypot(phase.sigma, turn.speed_deg_s * frames.time_sigma_s);
   if (course) {
@@ -74,8 +78,8 @@ Finding scan_lag(const ScanOptions& options, const model::Printer& printer) {
   ScanOptions other = options;
   other.from = options.reverse;
   const auto points = read_points(options.angles);
-  const Turn one = measure(options, printer, points);
-  const Turn two = measure(other, printer, points);
+  const MeasuredTurn one = measure(options, printer, points);
+  const MeasuredTurn two = measure(other, printer, points);
   const auto lag = metrology::camera_lag_ms(one.axis, one.speed_deg_s, two.axis, two.speed_deg_s);
   Finding finding;
   finding.value("camera_lag", lag, "ms", "bead turned in both directions");

@@ -1,5 +1,7 @@
 #include "vam-optimize/beginning.hpp"
 
+#include <utility>
+
 namespace vam::optimize_tool {
 
 Beginning::Beginning(const cli::App& app, const model::Printer& printer, const model::StackInfo& info,
@@ -11,11 +13,12 @@ Beginning::Beginning(const cli::App& app, const model::Printer& printer, const m
   interruption_ = checkpoint_->interruption(job_of(app, printer, options));
 }
 
-void Beginning::begin(optimize::VolumeTask& task, const Inputs& in, const Scene& scene, Options& options) {
+void Beginning::begin(optimize::VolumeTask& task, const Inputs& in, const Scene& scene, const light::Operator& light,
+                      Options& options) {
   if (initial_) task.initial = [this](int k) { return k < count_ ? (*initial_)(k) : Image(width_, height_); };
   task.interruption = interruption_;
-  if (interruption_.from != nullptr) return;
-  if (const auto start = coarse_start(in, scene, options)) continue_from(*start, task, options);
+  if (interruption_.from != nullptr && light.couples_slices()) return;  // there is one pass
+  if (auto start = coarse_start(in, scene, options)) continue_from(std::move(*start), task, options);
 }
 
 }  // namespace vam::optimize_tool

@@ -16,9 +16,11 @@ class Beginning {
  public:
   /// Opens --checkpoint and --init. Throws Error: no_input, no_output, data.
   Beginning(const cli::App& app, const model::Printer& printer, const model::StackInfo& info, const Options& options);
-  /// The task starts there and refers to this. Without either file the coarser levels are solved, which takes time:
-  /// call it after all that may refuse the task, and ask device::interrupted() then.
-  void begin(optimize::VolumeTask& task, const Inputs& in, const Scene& scene, Options& options);
+  /// The task starts there and refers to this. Without --init the coarser levels are solved, which takes time: call it
+  /// after all that may refuse the task, and ask device::interrupted() then. A checkpoint has the iterate of the pass
+  /// that was interrupted; where passes may follow, these start from the coarser levels, too.
+  void begin(optimize::VolumeTask& task, const Inputs& in, const Scene& scene, const light::Operator& light,
+             Options& options);
   /// The run was interrupted: the checkpoint appears.
   void keep() { checkpoint_->keep(); }
   /// The run is complete.

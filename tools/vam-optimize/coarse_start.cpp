@@ -21,7 +21,8 @@ constexpr double most_wrong = 0.02;   // voxel error rate of a print that is of 
 constexpr int first_iterations = 60;  // at the coarsest level
 constexpr int raises = 3;
 constexpr int next_iterations = 10;  // at those above, and for each raise of the limit where the part does not print
-constexpr double least_half_width = 0.05, widest = 0.08;  // in doses; a wider one costs the surface its place
+constexpr double least_half_width = 0.05,
+                 largest_half_width = 0.08;  // in doses; a wider one costs the surface its place
 
 Inputs coarser(const Inputs& in) {
   Inputs coarse;
@@ -60,41 +61,42 @@ optimize::StackSamples samples(const Scene& scene, const Options& options) {
 bool worthwhile(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
 
 /// The level's own work.
-struct Solved {
+struct Level {
   optimize::VolumeOutcome outcome;
   std::vector<Image> images;
 };
 
-Solved solve(const Inputs& in, const Scene& scene, Options options, const std::optional<CoarseStart>& before) {
+Level solve_level(const Inputs& in, const Scene& scene, Options options, std::optional<CoarseStart> before) {
   optimize::VolumeTask task = make_task(scene, in, options);
   task.limits.patience = task.limits.early = 0;
   task.limits.at_least = task.limits.iterations = before ? next_iterations : first_iterations;
-  if (before) continue_from(*before, task, options);
+  if (before) continue_from(std::move(*before), task, options);
   if (task.raising.factor > 0) {
-    task.raising.first = task.limits.at_least + 1;  // the last iterate is not looked at
+    task.raising.first =
+        task.limits.at_least + 1;  // one more: the conditions are not evaluated after the last iteration
     task.raising.next = next_iterations;
     task.limits.iterations = task.raising.first + raises * next_iterations;
   }
-  Solved solved;
-  task.write = [&](int, const Image& image) { solved.images.push_back(image); };
+  Level level;
+  task.write = [&](int, const Image& image) { level.images.push_back(image); };
   task.interruption.pause = device::interrupted;
-  solved.outcome = optimize::optimise(task, *make_light(scene, options));
-  return solved;
+  level.outcome = optimize::optimise(task, *make_light(scene, options));
+  return level;
 }
 
 /// What is refused at a coarser level is left to the finer one.
-std::optional<CoarseStart> solved(const Inputs& in, const Scene& finer, const Options& options,
-                                  const Options& finer_options) {
+std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& finer, const Options& options,
+                                              const Options& finer_options) {
   const Scene scene = make_scene(in.target.front(), model::coarser(finer.printer), options);
-  const std::optional<CoarseStart> before = coarse_start(in, scene, options);
+  std::optional<CoarseStart> before = coarse_start(in, scene, options);
   if (device::interrupted()) return std::nullopt;
-  auto [outcome, images] = solve(in, scene, options, before);
+  auto [outcome, images] = solve_level(in, scene, options, std::move(before));
   const model::DoseMetrics& m = outcome.metrics;
   if (outcome.stop == optimize::StopReason::interrupted || m.part == 0 || m.ver > most_wrong) return std::nullopt;
   note("vam-optimize: voxels of " + mm_text(scene.grid.voxel_mm) + ": process window " + format_number(m.pw, 2) +
        ", VER " + format_number(m.ver, 2) + " after " + std::to_string(outcome.iterations) + " iterations");
   return CoarseStart{{std::move(images), samples(scene, options), samples(finer, finer_options)},
-                     m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, widest) : 0,
+                     m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, largest_half_width) : 0,
                      outcome.even,
                      outcome.eigenvalue};
 }
@@ -104,15 +106,15 @@ std::optional<CoarseStart> solved(const Inputs& in, const Scene& finer, const Op
 std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options) {
   if (!options.coarse_start || !worthwhile(in.grid())) return std::nullopt;
   try {
-    return solved(coarser(in), scene, coarser(options), options);
+    return start_from_coarser(coarser(in), scene, coarser(options), options);
   } catch (const Error& error) {
     if (error.fault != Fault::data && error.fault != Fault::usage) throw;
     return std::nullopt;
   }
 }
 
-void continue_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options) {
-  task.initial = start.images;
+void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options) {
+  task.initial = std::move(start.images);
   task.even = start.even;
   options.how.half_width = start.half_width;
   options.how.eigenvalue = start.eigenvalue;

@@ -25,6 +25,6 @@ struct CoarseStart {
 [[nodiscard]] std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options);
 
 /// The task starts from it.
-void continue_from(const CoarseStart& start, optimize::VolumeTask& task, Options& options);
+void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options);
 
 }  // namespace vam::optimize_tool

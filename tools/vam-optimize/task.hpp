@@ -14,7 +14,8 @@ namespace vam::optimize_tool {
 [[nodiscard]] model::StackInfo stack_info(const Scene& scene, const io::SparseVolume& target, const cli::App& app,
                                           const Options& options);
 
-/// Without its output. Scene, inputs and options stay the caller's.
+/// Without its output. Scene, inputs and options must outlive the task. Only options.how is read later, when a pass
+/// begins; all else is copied here.
 [[nodiscard]] optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options);
 
 /// The printers to judge the frames with, of --robust.

@@ -79,9 +79,9 @@ class Apg final : public Method {
   }
 
   [[nodiscard]] bool keeps_scale() const override { return true; }
-  [[nodiscard]] std::optional<SurfaceDeviation> surface_deviation(std::span<const Slab> dose) const override {
+  [[nodiscard]] std::optional<SurfaceMiss> surface_miss(std::span<const Slab> dose) const override {
     if (!surface_ || surface_->points().empty()) return std::nullopt;
-    return surface_->deviation(dose);
+    return surface_->miss(dose);
   }
   [[nodiscard]] double eigenvalue() const override { return options_.eigenvalue; }
 
@@ -196,7 +196,8 @@ class Apg final : public Method {
   /// easy parts reach the widest process window they can and hard ones are not given thresholds they cannot reach.
   void widen(const Problem& problem, const light::Operator& light, const Iterate& iterate) {
     if (problem.demands.grey) return;
-    for (bool any = true; any;) {
+    bool widened = false;
+    for (bool any = true; any; widened = widened || any) {
       any = false;
       const PerSlice losses_now = voxel_losses(problem, light, iterate);
       for (std::size_t s = 0; s < half_width_.size(); ++s) {
@@ -209,8 +210,8 @@ class Apg final : public Method {
           any = true;
         }
       }
-      if (any) loss_ = losses(problem, light, iterate);
     }
+    if (widened) loss_ = losses(problem, light, iterate);
   }
 
   Iterate before_;

@@ -1,6 +1,7 @@
 // State out and in again: one list of fields serves both ways.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -48,6 +49,16 @@ class Archive {
   void operator()(std::vector<T>& values) {
     values.resize(count(values.size()));
     for (T& value : values) (*this)(value);
+  }
+  /// each(element) moves one. Memory is taken as elements arrive: a damaged size ends with the file.
+  template <class T, class Each>
+  void list(std::vector<T>& values, const Each& each) {
+    const std::size_t size = count(values.size());
+    values.resize(std::min(size, values.size()));
+    for (std::size_t i = 0; i < size; ++i) {
+      if (i == values.size()) values.emplace_back();
+      each(values[i]);
+    }
   }
   void operator()(std::vector<float>& values) {
     values.resize(count(values.size()));

@@ -23,7 +23,7 @@ struct Iterate {
 };
 
 /// How far the print's surface lies from the target's, outwards positive, in voxels; every point no more than one.
-struct SurfaceDeviation {
+struct SurfaceMiss {
   double mean = 0;
   double rms = 0;
 };
@@ -63,7 +63,7 @@ class Method {
   /// Doses have their true scale, as slices that share dose need; else each slice is scaled to a largest dose of 1.
   [[nodiscard]] virtual bool keeps_scale() const { return false; }
   /// Of a method that asks for the surface; of others nothing.
-  [[nodiscard]] virtual std::optional<SurfaceDeviation> surface_deviation(std::span<const Slab> /*dose*/) const {
+  [[nodiscard]] virtual std::optional<SurfaceMiss> surface_miss(std::span<const Slab> /*dose*/) const {
     return std::nullopt;
   }
   /// MethodOptions::eigenvalue of a method that has computed it; of coarser voxels it is the same within 5 %.

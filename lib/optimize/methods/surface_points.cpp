@@ -156,7 +156,7 @@ PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs)
   return result;
 }
 
-SurfaceDeviation SurfacePoints::deviation(std::span<const Slab> dose) const {
+SurfaceMiss SurfacePoints::miss(std::span<const Slab> dose) const {
   const std::vector<float> missed = misses(dose);
   double area = 0, sum = 0, squares = 0;
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -1,6 +1,5 @@
 #include "optimize/run/front.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "optimize/methods/metrics.hpp"
@@ -10,21 +9,17 @@
 namespace vam::optimize {
 
 void exchange(Archive& archive, std::vector<FrontPoint>& front) {
-  constexpr int most = 1 << 20;
-  auto count = static_cast<int>(front.size());
-  archive(count);
-  front.resize(static_cast<std::size_t>(std::clamp(count, 0, most)));
-  for (FrontPoint& p : front) {
+  archive.list(front, [&](FrontPoint& p) {
     model::DoseMetrics& m = p.metrics;
     for (double* field :
          {&p.max_intensity, &p.peak, &p.efficiency, &m.ver, &m.pw, &m.iou, &m.min_part, &m.max_void, &m.iou_threshold})
       archive(*field);
     auto faced = static_cast<int>(p.pw_tolerances.has_value());
     archive(faced);
-    if (faced == 0) continue;
+    if (faced == 0) return;
     if (!p.pw_tolerances) p.pw_tolerances = 0;
     archive(*p.pw_tolerances);
-  }
+  });
 }
 
 FrontPoint front_point(const Problem& problem, const light::Operator& light, double max_intensity, Iterate state,

@@ -29,14 +29,9 @@ void Ledger::add(const model::DoseStatistics& statistics, const model::DoseMetri
 }
 
 void Ledger::exchange(Archive& archive) {
-  const auto list = [&](std::vector<SliceFigures>& figures) {
-    auto size = static_cast<int>(figures.size());
-    archive(size);
-    figures.resize(size);
-    for (SliceFigures& each : figures) each.exchange(archive);
-  };
-  list(rows_);
-  list(ends_);
+  const auto each = [&](SliceFigures& figures) { figures.exchange(archive); };
+  archive.list(rows_, each);
+  archive.list(ends_, each);
   last_.exchange(archive);
   archive(seen_);
   total_.exchange(archive);

@@ -32,9 +32,9 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
 }
 
 /// Nothing has improved for `patience` iterations.
-bool lost_patience(Standing& standing, const Limits& limits, double reached) {
-  if (reached > standing.best + limits.least_gain) {
-    standing.best = reached;
+bool lost_patience(Standing& standing, const Limits& limits, double merit_now) {
+  if (merit_now > standing.best + limits.least_gain) {
+    standing.best = merit_now;
     standing.best_at = standing.iteration;
   }
   return limits.patience > 0 && standing.iteration - standing.best_at >= limits.patience;
@@ -43,14 +43,14 @@ bool lost_patience(Standing& standing, const Limits& limits, double reached) {
 // Deviations of a true surface, in voxels: vam-sdf finds up to 0.06 more than the dose at the surface tells.
 constexpr double true_mean = 0.05, true_rms = 0.2;
 
-bool is_true(const std::optional<SurfaceDeviation>& surface) {
+bool is_true(const std::optional<SurfaceMiss>& surface) {
   return surface && std::abs(surface->mean) <= true_mean && surface->rms <= true_rms;
 }
 
 /// Whether the goal counts at this iterate.
 bool enough(const Method& method, const Limits& limits, const Iterate& state, int iteration) {
   if (iteration >= limits.at_least) return true;
-  return limits.early > 0 && iteration >= limits.early && is_true(method.surface_deviation(state.dose));
+  return limits.early > 0 && iteration >= limits.early && is_true(method.surface_miss(state.dose));
 }
 
 /// Whether to stop at this iterate, and why.
@@ -87,7 +87,11 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
                    Iterate& state, Standing& standing, const Watch& watch, const Pause& pause) {
   bool looked = standing.iteration >= 0;
   if (!looked) {
-    state.g.empty() ? method.start(problem, light, state) : method.resume(problem, light, state);
+    if (state.g.empty()) {
+      method.start(problem, light, state);
+    } else {
+      method.resume(problem, light, state);
+    }
     standing.iteration = 0;
   }
   for (;; ++standing.iteration) {

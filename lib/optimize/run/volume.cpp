@@ -62,7 +62,11 @@ class VolumeRun {
   VolumeOutcome operator()() {
     Work work;
     if (task_.interruption.to != nullptr) exchange(*task_.interruption.to, mark_);
-    task_.interruption.from != nullptr ? resume(*task_.interruption.from, work) : settle_limit();
+    if (task_.interruption.from != nullptr) {
+      resume(*task_.interruption.from, work);
+    } else {
+      fix_max_intensity();
+    }
     while (finished_.jobs() < jobs()) {
       if (!run_pass(next_pass(), work)) return interrupted();
       work = {};
@@ -102,7 +106,7 @@ class VolumeRun {
     return {first, last, std::max(0, first - halo_), std::min(jobs(), last + halo_)};
   }
 
-  void settle_limit() {
+  void fix_max_intensity() {
     const IntensityLimit& limit = task_.limit;
     if (limit.most <= 0 && limit.of_even <= 0) return;
     even_ = task_.even.mean > 0 ? task_.even : even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
@@ -191,7 +195,7 @@ class VolumeRun {
     if (halo_ == 0) {  // slices that share dose with other passes are to scale already
       bring_to_threshold(problem, light, whole_ ? Together::pass : Together::slice, max_intensity_, scenarios, state);
     }
-    if (whole_) surface_ = work.method->surface_deviation(state.dose);
+    if (whole_) surface_ = work.method->surface_miss(state.dose);
     const auto doses = statistics(state.dose, problem);
     const auto cut = cut_statistics(state.dose, problem);
     const auto figures = metrics(state.dose, problem);
@@ -207,7 +211,7 @@ class VolumeRun {
     hand_out(state, pass, light);
   }
 
-  /// Slices that are alike stand beside the part, and above or below it.
+  /// Identical slices share a job, but some may be level with the part and others above or below it.
   void add_outside(const Problem& problem, std::span<const Slab> dose, const Pass& pass) {
     const OutsideSlices found = outside_part(dose, problem, task_.part);
     for (int k = 0; k < task_.source.slices; ++k) {
@@ -267,7 +271,7 @@ class VolumeRun {
   int halo_;
   double max_intensity_ = 0, eigenvalue_ = 0;
   EvenDose even_;
-  std::optional<SurfaceDeviation> surface_;
+  std::optional<SurfaceMiss> surface_;
   RunMark mark_;
   Schedule schedule_;
   std::vector<int> times_;  // slices that a job stands for

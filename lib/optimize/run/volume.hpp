@@ -68,7 +68,7 @@ struct VolumeOutcome {
   std::optional<model::Outside> outside;     // of the part's box, at that threshold; none of a grey target
   std::vector<std::int64_t> wrong;           // where slices share light: of each slice, voxels on the wrong side of it
   std::vector<SliceDemand> asked;            // by each slice; empty of a grey target
-  std::optional<SurfaceDeviation> surface;   // where slices share light
+  std::optional<SurfaceMiss> surface;        // where slices share light
   double eigenvalue = 0;                     // Method::eigenvalue() of the last pass
   double efficiency = 0;
   double max_intensity = 0;                // the limit, as raised; 0: none

@@ -137,7 +137,7 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   const auto resume = [&](const std::string& bytes, const std::string& job) {
     std::size_t read = 0;
     Archive from(Archive::Way::in, "x.state", [&](void* to_, std::size_t n) {
-      REQUIRE(read + n <= bytes.size());
+      if (read + n > bytes.size()) throw vam::Error{vam::Fault::data, "x.state: ends early"};
       std::copy_n(bytes.data() + read, n, static_cast<char*>(to_));
       read += n;
     });
@@ -155,4 +155,11 @@ TEST_CASE("a damaged state, and one of another job, are refused") {
   bad = state;
   bad[bad.size() - 20] = static_cast<char>(bad[bad.size() - 20] ^ 1);
   CHECK_THROWS_WITH_AS(resume(bad, "job"), doctest::Contains("checksum"), vam::Error);
+  const std::int64_t negative = -5;  // as the size of a list, among others
+  for (std::size_t at = 0; at + sizeof negative <= 600; at += 4) {
+    CAPTURE(at);
+    bad = state;
+    std::memcpy(bad.data() + at, &negative, sizeof negative);
+    CHECK_THROWS_AS(resume(bad, "job"), vam::Error);
+  }
 }

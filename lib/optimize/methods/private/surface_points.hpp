@@ -37,7 +37,7 @@ class SurfacePoints {
   /// Adds `share` of the derivatives of these losses by the doses: the transpose of misses().
   void add_slopes(std::span<const float> misses, std::span<Slab> slopes, float share = 1) const;
   /// By the doses of the two voxels, linear between them; points count by the area that they stand for.
-  [[nodiscard]] SurfaceDeviation deviation(std::span<const Slab> dose) const;
+  [[nodiscard]] SurfaceMiss miss(std::span<const Slab> dose) const;
   [[nodiscard]] const std::vector<SurfacePoint>& points() const { return points_; }
 
  private:
