@@ -46,6 +46,7 @@ ok 'whole' vam-check a.vdb
 
 # What is refused.
 fails 64 'what is it\? Give --voxel MM' vam-convert a.npy -o x.vdb
+fails 64 'stdin: what is it\? Give --voxel MM' sh -c 'vam-convert <a.npy'
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
 fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --projections virtual -o x.vdb
 fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif

@@ -36,7 +36,11 @@ cli::Manual manual() {
        "moved so that the axis is at projector.axis_column, and vam-dose follows their rays through bath, glass and "
        "resin.",
        "Grey of images is a fraction of full grey, and that is the intensity, or with --projections projector what "
-       "projector.response makes of it."},
+       "projector.response makes of it. Colours are read as their luma, so that of a film in blue alone, as OpenCAL "
+       "plays "
+       "it, full intensity is --full-scale 0.114 and some 30 levels are left; extract its blue channel first where "
+       "that is too coarse. The stage angle from frame to frame of a film is 6 x turns per minute / frames per "
+       "second."},
       {{"A part to NumPy, and back:",
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb && vam-convert part.vdb -o part.npy && vam-convert "
         "part.npy "

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "io/stream/input_name.hpp"
 
 namespace vam::convert_tool {
 
@@ -104,8 +105,8 @@ void check_import(const cli::App& app, const Options& options) {
   const bool volume = options.voxel_mm.has_value();
   const bool projections = options.projections != "none";
   if (!volume && !projections) {
-    throw Error{Fault::usage,
-                options.input + ": what is it? Give --voxel MM for a volume, --projections virtual or projector"};
+    throw Error{Fault::usage, io::input_name(options.input) +
+                                  ": what is it? Give --voxel MM for a volume, --projections virtual or projector"};
   }
   if (volume) {
     refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");
