@@ -5,7 +5,7 @@
 
 #include "base/per_slice.hpp"
 #include "model/circle.hpp"
-#include "tomo/depth_to_axis.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::light {
 

@@ -5,7 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/per_slice.hpp"
-#include "light/private/gaussian_blur.hpp"
+#include "light/gaussian_blur.hpp"
 
 namespace vam::light {
 

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::light {
 

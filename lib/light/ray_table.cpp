@@ -6,6 +6,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "light/private/chief_ray_dose.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::light {
 

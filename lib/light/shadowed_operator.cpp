@@ -6,7 +6,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
-#include "tomo/depth_to_axis.hpp"
+#include "tomo/absorption.hpp"
 #include "tomo/trapezoid.hpp"
 
 namespace vam::light {

@@ -13,7 +13,7 @@
 #include "base/text.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
-#include "tomo/depth_to_axis.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::light {
 

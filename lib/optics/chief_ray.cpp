@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "optics/private/fresnel.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::optics {
 
@@ -39,17 +40,6 @@ Approach approach(const View& view, double x_p) {
   ray.impact_rate = (1.0 - l / d) * cos_b + (l * cos_b - x_w * sin_b) * ray.phi_rate;
   ray.transmittance = fresnel(1, cos_phi, view.bath_index, cos_b);
   return ray;
-}
-
-// Largest |b| n_0 that passes every shell: n b is conserved and sin = n b / (n_k R_k) <= 1 on both sides of each.
-double largest_invariant(const View& view) {
-  double outside = view.bath_index;
-  double most = outside * view.shells.front().radius_mm;
-  for (const Shell& shell : view.shells) {
-    most = std::min(most, std::min(outside, shell.index) * shell.radius_mm);
-    outside = shell.index;
-  }
-  return most;
 }
 
 void check(const View& view) {
@@ -145,10 +135,6 @@ std::optional<double> column_of(const View& view, double x_v_mm) {
   if (!(std::abs(x_v_mm) < reach_mm(view))) return std::nullopt;
   return column_of_impact(view, x_v_mm * view.shells.back().index / view.bath_index);
 }
-
-double grazing_impact_mm(const View& view) { return largest_invariant(view) / view.bath_index; }
-
-double reach_mm(const View& view) { return largest_invariant(view) / view.shells.back().index; }
 
 double resin_radius_mm(const View& view) { return view.shells.back().radius_mm; }
 

@@ -51,12 +51,6 @@ struct ChiefRay {
 /// The column whose ray passes the axis at that distance before it meets the vial: the inverse of impact_mm.
 [[nodiscard]] double column_of_impact(const View& view, double impact_mm);
 
-/// The largest distance of a ray that meets the resin.
-[[nodiscard]] double grazing_impact_mm(const View& view);
-
-/// Largest |x_v| of any ray in the resin; inside this radius every point is lit from all sides.
-[[nodiscard]] double reach_mm(const View& view);
-
 /// Radius of the resin.
 [[nodiscard]] double resin_radius_mm(const View& view);
 

@@ -6,6 +6,7 @@
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::optics {
 

@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::optics {
 

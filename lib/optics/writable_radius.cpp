@@ -6,9 +6,22 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "optics/chief_ray.hpp"
 
 namespace vam::optics {
+
+double largest_invariant(const View& view) {
+  double outside = view.bath_index;
+  double most = outside * view.shells.front().radius_mm;
+  for (const Shell& shell : view.shells) {
+    most = std::min(most, std::min(outside, shell.index) * shell.radius_mm);
+    outside = shell.index;
+  }
+  return most;
+}
+
+double grazing_impact_mm(const View& view) { return largest_invariant(view) / view.bath_index; }
+
+double reach_mm(const View& view) { return largest_invariant(view) / view.shells.back().index; }
 
 double writable_radius_mm(const model::Printer& printer) {
   const model::Projector& projector = printer.projector;

@@ -4,7 +4,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "tomo/depth_to_axis.hpp"
+#include "tomo/absorption.hpp"
 
 namespace vam::tomo {
 

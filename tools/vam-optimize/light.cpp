@@ -7,7 +7,7 @@
 #include "base/text.hpp"
 #include "io/settings/pose_file.hpp"
 #include "io/stream/input_name.hpp"
-#include "light/blur.hpp"
+#include "light/gaussian_blur.hpp"
 #include "light/make_operator.hpp"
 #include "light/poses.hpp"
 #include "model/dose_metrics.hpp"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "optics/chief_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 

@@ -10,6 +10,7 @@
 #include "base/text.hpp"
 #include "metrology/calibrate/private/edge_fit.hpp"
 #include "optics/chief_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 

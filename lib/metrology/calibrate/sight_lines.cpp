@@ -7,6 +7,7 @@
 
 #include "base/constants.hpp"
 #include "model/circle.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 

@@ -6,6 +6,7 @@
 #include "base/index.hpp"
 #include "metrology/ost/private/cubic.hpp"
 #include "optics/skew_ray.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace vam::metrology {
 

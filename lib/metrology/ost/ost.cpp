@@ -20,6 +20,7 @@
 #include "optics/chief_ray.hpp"
 #include "optics/resample.hpp"
 #include "optics/skew_ray.hpp"
+#include "optics/writable_radius.hpp"
 #include "tomo/filter.hpp"
 #include "tomo/radon.hpp"
 

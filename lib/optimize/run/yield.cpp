@@ -6,8 +6,9 @@
 
 #include "base/json.hpp"
 #include "base/log.hpp"
-#include "light/blur.hpp"
+#include "light/gaussian_blur.hpp"
 #include "light/simulation.hpp"
+#include "light/volume_blur.hpp"
 #include "model/magnification.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/target/exclusions.hpp"

@@ -7,6 +7,7 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vial_dose.hpp"
+#include "optics/writable_radius.hpp"
 #include "oracle/skew_dose.hpp"
 
 using namespace vam;

@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "optics/writable_radius.hpp"
 #include "oracle/ray_dose.hpp"
 
 using namespace vam;

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "light/private/vial_operator.hpp"
+#include "optics/writable_radius.hpp"
 
 namespace parts {
 

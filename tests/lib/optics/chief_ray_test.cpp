@@ -7,6 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "optics/writable_radius.hpp"
 #include "oracle/ray_tracer.hpp"
 
 using namespace vam;

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/parallel.hpp"
 #include "optics/resample_stack.hpp"
+#include "optics/writable_radius.hpp"
 
 using namespace vam;
 using namespace vam::optics;

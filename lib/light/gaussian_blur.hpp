@@ -7,6 +7,15 @@
 
 namespace vam::light {
 
+/// Weights {middle, first neighbours, ...} of the discrete Gaussian e^{-t} I_n(t), t = sigma^2 in pixels: the heat
+/// kernel of the lattice [LIN90]. Its variance is sigma^2 exactly, however narrow it is, and
+/// two in a row are one with the sum of the variances. From t = 500 on it is the sampled Gaussian, which is the same to
+/// 1e-4 of its height. Cut where less than 1e-9 is left, then normalised.
+[[nodiscard]] std::vector<double> gaussian_weights(double sigma_px);
+
+/// Standard deviation that a point spread psf (mm) and diffusion for a time have together: sqrt(psf^2 + 2 D t).
+[[nodiscard]] double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds);
+
 class GaussianBlur {
  public:
   /// sigma in voxels.

@@ -1,35 +1,14 @@
-#include "light/blur.hpp"
+#include "light/volume_blur.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
-#include <numbers>
 #include <span>
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "light/private/gaussian_blur.hpp"
+#include "light/gaussian_blur.hpp"
 
 namespace vam::light {
-
-std::vector<double> gaussian_weights(double sigma_px) {
-  const double t = sigma_px * sigma_px;
-  const bool wide = t > 500;  // the Bessel functions overflow
-  std::vector<double> weights;
-  double sum = 0;
-  for (int n = 0; weights.empty() || 1 - sum > 1e-9; ++n) {
-    const double weight = wide ? std::exp(-0.5 * n * n / t) / std::sqrt(2 * std::numbers::pi * t)
-                               : std::exp(-t) * std::cyl_bessel_i(static_cast<double>(n), t);
-    weights.push_back(weight);
-    sum += n == 0 ? weight : 2 * weight;
-  }
-  for (double& weight : weights) weight /= sum;
-  return weights;
-}
-
-double spread_mm(double psf_mm, double diffusion_mm2_s, double seconds) {
-  return std::sqrt(psf_mm * psf_mm + 2 * diffusion_mm2_s * seconds);
-}
 
 VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out)
     : smear_(std::make_unique<GaussianBlur>(sigma_px)), out_(std::move(out)) {}

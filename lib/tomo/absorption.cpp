@@ -1,4 +1,4 @@
-#include "tomo/depth_to_axis.hpp"
+#include "tomo/absorption.hpp"
 
 #include <cmath>
 

@@ -1,9 +1,11 @@
-#include "light/blur.hpp"
+#include "light/volume_blur.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
+
+#include "light/gaussian_blur.hpp"
 
 using namespace vam;
 using namespace vam::light;
