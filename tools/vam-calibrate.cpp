@@ -15,8 +15,9 @@ cli::Manual manual() {
   return {
       "vam-calibrate",
       "measure the instrument and write calibration records",
-      {"Each command reads frames that vam-capture recorded while vam-project showed a test pattern, measures one "
-       "property of the instrument and writes a calibration record. --flips is the log of vam-project, which states "
+      {"Each scan command reads frames recorded by vam-capture, most of them while vam-project shows a test pattern, "
+       "measures one property of the instrument and writes a calibration record. --flips is the log of vam-project, "
+       "which states "
        "which pattern frame was on and when. check reports the records in force. vam-calibrate-all(1) shows the "
        "patterns, captures the frames and runs lag, latency, response, axis and edges in this order; flat and beam on "
        "request.",
@@ -110,8 +111,9 @@ void add_beam(cli::App& app, ScanOptions& o) {
               "Distance of the first plane from the rotation axis. Required without --side.");
   scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes. Required without --side.")
       .was("--step");
-  scan.option("--pixel", "MM", o.pixel_mm, cli::non_negative,
-              "Pixel pitch: without --side of the bare sensor, and required; with --side of the frames at the axis.")
+  scan.option("--pixel", "MM", o.pixel_mm, cli::positive,
+              "Pixel pitch of the bare sensor (required without --side), or of the frames at the rotation axis (with "
+              "--side).")
       .default_is("as stated in the stack, with --side");
 }
 
@@ -157,9 +159,11 @@ void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
   resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
   resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
   resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
-  resin.option("--profile", "FILE.png", o.profile, "Profilometer height map of the standard, to measure its diameter.")
+  resin
+      .option("--profile", "FILE.png", o.profile,
+              "Height image of the standard from a profilometer, to measure its diameter.")
       .reads();
-  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height map.");
+  resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
 }
 
 void declare(cli::App& app, ScanOptions& o, ResinOptions& resin) {

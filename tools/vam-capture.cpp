@@ -112,8 +112,9 @@ void declare(cli::App& app, Options& o) {
   app.group("Camera");
   add_camera(app, o);
   app.group("Frame selection");
-  app.option("--frames", "N", o.frames, {1, 1e6}, "Number of frames.")
-      .default_is("until a signal or the end of a recording");
+  app.option("--frames", "N", o.frames, {1, 1e6},
+             "Number of frames. Required for a stack unless --live or --view-step is given.")
+      .default_is("until a signal or the end of a recording, for a folder or with --live");
   app.option("--view-step", "DEG", o.every_deg, cli::positive,
              "Angle between the frames to keep: those nearest to its multiples.")
       .default_is("every frame is kept")

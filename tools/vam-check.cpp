@@ -112,9 +112,10 @@ int main(int argc, char** argv) {
   app.positional("FILE ...", options.files, "Stacks, volumes, videos, records, reports, printer files, or other files.")
       .reads();
   app.flag("--fast", options.fast, "Check the headers of stacks and volumes, not their values.");
-  app.flag("--seal", options.seal,
-           "Seal printer files instead: append a line with the seal, against which the tools verify the file from then "
-           "on.")
+  app.flag(
+         "--seal", options.seal,
+         "Seal printer files instead of checking them: append a line with the seal, against which the tools verify the "
+         "file from then on. Standard input is copied to standard output with this line.")
       .form();
   return app.run(argc, argv, [&] { run(options); });
 }

@@ -26,13 +26,14 @@ cli::Manual manual() {
       "list stages, cameras, displays and light engines",
       {"Lists the devices found on this machine, each with its device string, for the printer file and for --device, "
        "--display and --light, and a description. A line below a device states why it cannot be used, and the remedy: "
-       "no permission (the group to join or the udev rule to write), in use by another program (its process), a "
-       "graphics card controlled by a desktop session. If no device of a kind is found, the checks to make are listed.",
+       "access denied (with the group to join or the udev rule to add), in use by another program (with its process "
+       "number), a graphics card controlled by a desktop session. If no device of a kind is found, the checks to make "
+       "are listed.",
        "No commands are sent: nothing moves and no light is switched on. The device on a serial port cannot be "
        "determined in this way; the port is listed as gcs: or, where the maker of its USB converter suggests another "
        "protocol, by that scheme. --probe queries each port for the identity of a controller, by one protocol after "
        "the other. This does not move the stage, but most GRBL boards are reset when their port is opened, and other "
-       "instruments on such ports receive commands of a foreign protocol."},
+       "instruments on such ports receive commands of a protocol that they do not understand."},
       {{"List the connected devices:", "vam-devices"},
        {"A simulated stage on a pseudo-terminal, queried for its identity:",
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "

@@ -26,10 +26,10 @@ std::vector<std::string> description() {
       "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; frames without recorded "
       "angles require --view-step. Each view is used at its own angle: missing, repeated and unevenly spaced views are "
       "weighted accordingly, and a gap of more than 15 degrees is an error. A uniform background is fitted and "
-      "subtracted. Specks on window or lens, which stay in place, and bubbles, which move through, are distinguished "
-      "from the print because the values of a ray and of its reverse, half a turn later, disagree; they are replaced "
-      "by "
-      "the value of the other ray, and --report states their fractions. Image rows run downwards along the axis; z = 0 "
+      "subtracted. Specks on window or lens, which stay in place, and bubbles, which drift through the field of "
+      "view, are distinguished from the print because the values of a ray and of its reverse, half a turn later, "
+      "differ; they are replaced by the value of the other ray, and --report states their fractions. Image rows run "
+      "downwards along the axis; z = 0 "
       "is the row at the height of the lens, camera.axis_row or the middle one.",
       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
       "scatter >= I_p }: --mesh writes its surface, --projections an image for the operator. Bodies of less than 1 % "
@@ -124,7 +124,7 @@ void declare_print(cli::App& app, Options& o) {
   app.option("--resin", "FILE", o.resin_record, "Record of vam-calibrate resin with the gelation threshold I_p.")
       .reads();
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
-             "Smallest body that belongs to the print. Default: 1 % of the largest body's volume.")
+             "Minimum volume of a body that belongs to the print. Default: 1 % of the largest body's volume.")
       .was("--pieces");
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (.ply or .stl).")
       .writes({".ply", ".stl"})

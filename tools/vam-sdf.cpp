@@ -54,7 +54,9 @@ void declare(cli::App& app, Options& options) {
       .writes({".ply"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
-  app.option("--resin", "FILE", options.resin_record, "Record of vam-calibrate resin that holds the isovalue.").reads();
+  app.option("--resin", "FILE", options.resin_record,
+             "Record of vam-calibrate resin with the gelation threshold I_p, used as isovalue.")
+      .reads();
   app.option("--design-isovalue", "VALUE", options.design_isovalue, cli::any, "Isovalue of a design volume's surface.");
   app.was("--reference-isovalue").was("--reference-level");
   app.option("--min-body", "MM3", options.pieces_mm3, cli::non_negative,

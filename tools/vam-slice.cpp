@@ -31,7 +31,8 @@ using slice_tool::Options;
 
 void report_repairs(const solid::Part& part) {
   if (!part.repair || (!part.repair->changed() && part.repair->closed())) return;
-  warn(part.subject + ": " + part.repair->summary() + (part.repair->closed() ? "" : "; the inside test is a vote"));
+  warn(part.subject + ": " + part.repair->summary() +
+       (part.repair->closed() ? "" : "; the inside is determined by majority"));
 }
 
 io::SparseVolume volume_of(const std::string& name, const solid::Part& part, const model::Grid& grid,

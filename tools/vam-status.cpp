@@ -36,8 +36,8 @@ cli::Manual manual() {
       "vam-status",
       "show the progress of a print",
       {"Reads the logs in the run folder of vam-print, of a print in progress or finished, and prints one line: "
-       "the state (preparing, run-up, printing or ended), turn and stage angle, the fraction of the exposure "
-       "delivered, "
+       "the state (preparing; run-up, dark; printing; ended, with the outcome; or the time since the last log entry, "
+       "if the end of the print was not logged), turn and stage angle, the fraction of the exposure delivered, "
        "the number of missed vertical blanks and, with live metrology (vam-print --until), the fractions of the part "
        "that are cured and missing. With --watch it repeats this until the print ends; on a terminal the line is "
        "refreshed in place.",

@@ -25,7 +25,7 @@ struct Figure {
 
 const std::vector<Figure>& figure_list() {
   static const std::vector<Figure> all{
-      {"ver", "voxel error rate: fraction of voxels that are void with at least the minimum part dose"},
+      {"ver", "voxel error rate: void voxels with at least the minimum part dose, as a fraction of all voxels"},
       {"pw", "process window: minimum part dose - maximum void dose (> 0: a threshold prints the part exactly)"},
       {"ipdr", "in-part dose range: maximum - minimum part dose"},
       {"cv", "coefficient of variation of the part dose"},

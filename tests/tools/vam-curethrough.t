@@ -101,10 +101,15 @@ printf 'grey,reading\n0,1.2\n64,6.3\n128,25\n192,58\n255,111\n' >diode.csv
 ok "response" vam-curethrough response diode.csv --dark-reading 1 -o table.csv --plot response.png --report diode.json
 is "dark reading subtracted" "$(tail -n 1 table.csv)" "255,110"
 quiet "the table is one that correct reads" vam-curethrough correct ladder.vdb --max-irradiance 110 --response table.csv -o x.exr
-ok "sweep" vam-curethrough sweep dc=4..6,omega_max=1/inf $light --plot sweep.png --report sweep.json
+ok "sweep" vam-curethrough sweep df_over_dc=4..6,omega_max=1/inf $light --plot sweep.png --report sweep.json
 holds "the error is least if the assumed dose is the true one" "$(json sweep.json points.2.ratio) < 0.001"
 holds "larger errors below the true dose" "$(json sweep.json points.0.ratio) > 0.1"
 holds "larger errors above the true dose" "$(json sweep.json points.4.ratio) > 0.1"
+
+is "the ratio is in the report" "$(json sweep.json points.2.df_over_dc)" 5.0
+ok "the former name of the ratio" sh -c "vam-curethrough sweep dc=4..5,omega_max=1 $light 2>warning | head -n 1 >header"
+is "the former name is read with a warning" "$(cat warning)" "vam-curethrough: warning: dc is now df_over_dc"
+is "the table has the present name" "$(cut -d , -f 1 header)" df_over_dc
 
 # ---- wrong inputs
 fails 64 'no command' vam-curethrough
@@ -128,7 +133,7 @@ fails 66 'nowhere.vdb' vam-curethrough correct nowhere.vdb $light -o no.exr
 mkdir letters; echo hello >letters/letter.txt
 fails 73 'letter.txt, which is not a frame' vam-curethrough correct ladder.vdb $light --png letters
 fails 64 'the table is printed on standard output' vam-curethrough correct ladder.vdb $light --catalogue resins.csv -o -
-fails 64 "neither dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
+fails 64 "neither df_over_dc=FROM..TO" vam-curethrough sweep dose=1..2 $light
 ok "a part thinner than a voxel" vam-slice --shape ladder --scale 0.02 --voxel 0.05 --stretch-z 1 -o thin.vdb
 fails 65 'no voxel reaches a coverage of 1; there is nothing to print' vam-curethrough correct thin.vdb $light --min-coverage 1 -o no.exr
 done_testing

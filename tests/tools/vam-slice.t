@@ -77,7 +77,7 @@ volume 1000 vam-slice quads.obj --unit cm --scale 0.5 --voxel 0.25
 volume 216 vam-slice cube.stl --fit 6 --voxel 0.25
 volume 64 sh -c 'vam-slice --voxel 0.25 "$@" <cube.stl' -
 ok "repairs are reported" sh -c 'vam-slice twice.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "dropped 5 duplicate triangles"'
-ok "votes are reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 boundary edges remain; the inside test is a vote"'
+ok "a majority is reported" sh -c 'vam-slice lidless.stl --voxel 0.5 -o out.vdb 2>&1 | grep -q "4 boundary edges remain; the inside is determined by majority"'
 quiet "a closed mesh needs no warning" vam-slice cube.stl --voxel 0.5 -o out.vdb
 ok "the largest size that fits" vam-slice cube.stl --fit-writable --voxel 0.25 -o out.vdb --report report.json
 holds "it fills the circle except for half the diagonal of a voxel" \

@@ -176,9 +176,10 @@ void declare_output(cli::App& app, CorrectOptions& options) {
              "Write grey levels as numbered PNGs into a new FOLDER (projector.bits each); no stack is then written "
              "unless -o is given.")
       .writes();
-  app.choice(
-      "--values", options.values, {"intensity", "grey"},
-      "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey 0 to 1 through the response.");
+  app.choice("--values", options.values, {"intensity", "grey"},
+             "Pixels of the stack: fractions of the maximum intensity, for vam-project, or grey levels from 0 to 1, "
+             "computed by the "
+             "response.");
   app.flag("--quantise", options.quantise,
            "Write the grey levels of the PNGs to the stack instead of exact values; all slices are then in memory (2 "
            "bytes per pixel).");
@@ -202,7 +203,8 @@ void declare(cli::App& app, CorrectOptions& options) {
            "them to cure.");
   app.option(
       "--clear", "DOSE", options.clear, {0, 1, true},
-      "Dose, in full-cure doses, to which a gap must fall somewhere to be clear; other gaps are reported as tight.");
+      "Maximum dose, in full-cure doses, at the least exposed point of a gap that counts as clear; gaps above it are "
+      "reported as tight.");
   add_part(app, options.part);
   app.option("--mask", "FILE", options.mask,
              "PNG map of the columns: 0 empty or without such gaps, 128 with a tight gap, 255 with a gap that fuses at "

@@ -51,7 +51,8 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "printf 'grey,reading\\n0,0.2\\n64,5.3\\n128,24\\n192,57\\n255,110\\n' | vam-curethrough response -o "
        "response.csv"},
       {"The study of the paper's figure 5c:",
-       "vam-curethrough sweep dc=1..8,omega_max=1..5 --max-irradiance 110 --min-irradiance 0.2 --report sweep.json"}};
+       "vam-curethrough sweep df_over_dc=1..8,omega_max=1..5 --max-irradiance 110 --min-irradiance 0.2 --report "
+       "sweep.json"}};
 }
 
 std::vector<std::string> notes() {

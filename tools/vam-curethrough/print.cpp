@@ -22,14 +22,14 @@ void add_print(cli::App& app, PrintOptions& options) {
       .was("--critical-dose");
   app.default_is("resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
-             "Irradiance at the window, at grey 0.");
+             "Intensity at the window at grey 0 (overrides projector.min_intensity_mw_cm2).");
   app.default_is("projector.min_intensity_mw_cm2").was("--min-intensity");
   app.option("--max-irradiance", "MW_CM2", options.max_intensity_mw_cm2, cli::positive,
-             "Irradiance at the window, at full grey.");
+             "Intensity at the window at full grey (overrides projector.max_intensity_mw_cm2).");
   app.default_is("projector.max_intensity_mw_cm2").was("--max-intensity");
   app.option("--response", "FILE", options.response,
              "Measured grey response (CSV with the columns grey,intensity); its first entry determines the minimum "
-             "irradiance.");
+             "intensity.");
   app.default_is("projector.response, else a linear response");
   app.choice("--exposure-mode", options.exposure, {"continuous", "layered"},
              "Motion of the platform: continuous, or at rest during each layer (exposed for slice height / speed).");

@@ -68,7 +68,7 @@ void run(const cli::App& root, const cli::App& app, const GreyResponseOptions& o
 
 struct SweepOptions {
   PrintOptions print;
-  std::string ranges = "dc=1..8,omega_max=1..5";
+  std::string ranges = "df_over_dc=1..8,omega_max=1..5";
   std::vector<double> heights{4, 6, 8, 10, 14, 20, 40};
   double slice_um = 50;
   std::optional<double> gel_dose_mj_cm3;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
@@ -42,16 +43,25 @@ std::vector<double> values_of(const std::string& text, const std::string& whole)
   return values;
 }
 
+constexpr const char* dose_ratio = "df_over_dc";
+
+// The former name is accepted with a warning.
+std::string present_name(const std::string& key) {
+  if (key != "dc") return key;
+  warn(std::string("dc is now ") + dose_ratio);
+  return dose_ratio;
+}
+
 void parse(const std::string& ranges, resin::Study& study) {
   study.omega_max = {1};
   for (const std::string& part : split(ranges, ',')) {
     const std::size_t equals = part.find('=');
-    const std::string key = part.substr(0, equals);
-    if (equals == std::string::npos || (key != "dc" && key != "omega_max")) {
-      throw Error{Fault::usage, ranges + ": '" + part + "' is neither dc=FROM..TO nor omega_max=FROM..TO" +
-                                    did_you_mean(key, {"dc", "omega_max"})};
+    const std::string key = present_name(part.substr(0, equals));
+    if (equals == std::string::npos || (key != dose_ratio && key != "omega_max")) {
+      throw Error{Fault::usage, ranges + ": '" + part + "' is neither df_over_dc=FROM..TO nor omega_max=FROM..TO" +
+                                    did_you_mean(key, {dose_ratio, "omega_max"})};
     }
-    (key == "dc" ? study.dose_factors : study.omega_max) = values_of(part.substr(equals + 1), ranges);
+    (key == dose_ratio ? study.dose_factors : study.omega_max) = values_of(part.substr(equals + 1), ranges);
   }
 }
 
@@ -60,7 +70,8 @@ Json json_number(double value) { return std::isfinite(value) ? Json(value) : Jso
 Json figures(const std::vector<resin::StudyPoint>& points, const resin::Study& study) {
   Json list = Json::array();
   for (const resin::StudyPoint& point : points) {
-    Json entry{{"dc", point.dose_factor}, {"omega_max", json_number(point.omega_max)}, {"printable", point.printable}};
+    Json entry{
+        {"df_over_dc", point.dose_factor}, {"omega_max", json_number(point.omega_max)}, {"printable", point.printable}};
     if (point.printable) {
       entry["extra_slices"] = point.extra_slices;
       entry["ratio"] = point.ratio;
@@ -78,7 +89,7 @@ Json figures(const std::vector<resin::StudyPoint>& points, const resin::Study& s
 }
 
 std::string csv_of(const std::vector<resin::StudyPoint>& points, double slice_um) {
-  std::string text = "dc,omega_max,height_um,uncorrected_error_um,corrected_error_um,ratio\n";
+  std::string text = "df_over_dc,omega_max,height_um,uncorrected_error_um,corrected_error_um,ratio\n";
   for (const resin::StudyPoint& point : points) {
     const std::string head = format_number(point.dose_factor) + "," + format_number(point.omega_max) + ",";
     if (!point.printable) text += head + ",,,\n";
@@ -106,9 +117,10 @@ std::vector<int> whole_heights(const std::vector<double>& heights) {
 }  // namespace
 
 void declare(cli::App& app, SweepOptions& options) {
-  app.positional("RANGES", options.ranges,
-                 "Parameters to vary: dc, the assumed full-cure dose as a multiple of the gelation threshold, and "
-                 "omega_max. Each is FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
+  app.positional(
+      "RANGES", options.ranges,
+      "Parameters to vary: df_over_dc, the ratio of the assumed full-cure dose D_f to the gelation threshold "
+      "D_c, and omega_max. Each is FROM..TO, FROM..TO..STEP or VALUE/VALUE/....");
   app.option("--rung-heights", "SLICES,...", options.heights, 0,
              "Heights of the rungs of the ladder; each gap is as high as the next rung.")
       .was("--heights");
@@ -116,7 +128,7 @@ void declare(cli::App& app, SweepOptions& options) {
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation threshold D_c of the working curve.");
   app.default_is("a fifth of the full-cure dose, as in the paper");
-  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against dc.").writes();
+  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against df_over_dc.").writes();
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);
@@ -131,7 +143,7 @@ void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   const auto points = resin::run_study(resin::graded_ladder(whole_heights(options.heights)), study);
   if (options.report != "-") io::write_text("-", csv_of(points, options.slice_um));
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);
-  io::write_report(options.report, "vam-curethrough-sweep/1", figures(points, study));
+  io::write_report(options.report, "vam-curethrough-sweep/2", figures(points, study));
 }
 
 }  // namespace vam::curethrough

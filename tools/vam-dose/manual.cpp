@@ -7,7 +7,7 @@ namespace {
 std::vector<std::string> description() {
   return {
       "vam-dose reads sinograms and writes the volume 'dose': the energy absorbed by every voxel during one turn of "
-      "the vial. It predicts the print before resin is used, as voxels of equal dose cure alike.",
+      "the vial. It predicts the print before resin is used, because the cure of a voxel is determined by its dose.",
       "Projector sinograms (vam-optimize, vam-resample) are simulated with chief rays in three dimensions: for every "
       "voxel and stage angle the column and row whose ray passes through the voxel, including refraction and Fresnel "
       "losses, the density of the rays there, and absorption along the path through the resin. The rays of a projector "
@@ -82,7 +82,7 @@ std::vector<std::string> notes() {
 }  // namespace
 
 cli::Manual manual() {
-  return {"vam-dose", "simulate the dose that a print leaves in the resin",     description(), examples(),
+  return {"vam-dose", "simulate the dose that a print delivers to the resin",   description(), examples(),
           notes(),    {"vam-optimize", "vam-resample", "vam-score", "vam-view"}};
 }
 

@@ -21,13 +21,12 @@ std::vector<std::string> purpose() {
       "(parallel-beam) sinogram, which vam-resample converts for a projector: three to four times faster, but "
       "resampling then halves the process window.",
       "Step lengths are determined automatically.",
-      "--method auto starts from projections that were optimised at half of the resolution, and those from a quarter, "
-      "as long as the part has 48 voxels across: an iteration takes an eighth of the time there, so most of the "
-      "convergence is cheap. With --init, poses, --robust, --tradeoff or --grey-target, and where the coarser part "
-      "does "
-      "not print, it is " +
-          std::string(optimize::automatic_method) + " with at least " + std::to_string(optimize::automatic_iterations) +
-          " iterations."};
+      "--method auto starts from projections that were optimised at half of the resolution, which in turn start from "
+      "a quarter, as long as the finer of the two has at least 48 voxels across the part: an iteration takes an eighth "
+      "of the time there, so most of the convergence is cheap. With --init, poses, --robust, --tradeoff or "
+      "--grey-target, or if the coarser part does not print, auto is " +
+          std::string(optimize::automatic_method) + " at full resolution with at least " +
+          std::to_string(optimize::automatic_iterations) + " iterations."};
 }
 
 /// A paragraph for each row of the method table.
@@ -48,7 +47,7 @@ std::vector<std::string> dose_and_intensity() {
       "the threshold dose is prescribed on the surface, so that the threshold lies in the middle half of the window. "
       "The dose is the sum of intensity * (angle step in radian) over all angles along the rays.",
       "Intensity is limited (--max-intensity, --turns), because the brightest pixel at full grey determines the "
-      "duration of the print: unconstrained projections consist of single-pixel peaks, and their print takes some ten "
+      "duration of the print: unconstrained projections consist of single-pixel peaks, and the print takes about ten "
       "times as long at the same process window. The reference is the even intensity, at which the mean dose is the "
       "threshold dose if every pixel is lit at every angle. The maximum intensity is twice that, and is raised while "
       "the conditions of --until are not met; --shortest begins lower and raises it in smaller steps, with which most "

@@ -127,8 +127,10 @@ void declare_parameters(cli::App& app, Options& options) {
 /// How long the print takes, which the brightest pixel determines.
 void declare_duration(cli::App& app, Options& options) {
   app.option("--turns", "N", options.turns, cli::positive,
-             "Duration of the print, in turns at full grey: sets --max-intensity from resin.critical_dose_mj_cm3, "
-             "resin.absorption_per_mm and projector.max_intensity_mw_cm2, and --diffusion-time.");
+             "Turns in which the print must be complete, with the brightest pixel at full grey: determines "
+             "--max-intensity from resin.critical_dose_mj_cm3, resin.absorption_per_mm and "
+             "projector.max_intensity_mw_cm2, and --diffusion-time. (vam-project --turns sets the number of turns "
+             "shown.)");
   app.flag("--shortest", options.shortest,
            readers("--max-intensity") +
                "find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
@@ -142,7 +144,7 @@ void declare_duration(cli::App& app, Options& options) {
                  "at least " +
                  std::to_string(optimize::front_points) + " maximum intensities, from " +
                  format_number(optimize::shortest_of_even) + " times the even intensity upwards in steps of " +
-                 format_number(100 * (optimize::front_raising.factor - 1)) + " %. Requires " +
+                 format_number(100 * (optimize::front_raising.factor - 1)) + " %. Takes " +
                  std::to_string(optimize::front_iterations) +
                  " iterations; the projections written are those of the last maximum intensity.")
       .writes({".csv", ".png"});
@@ -153,7 +155,7 @@ void declare_proof(cli::App& app, Options& options) {
   app.option("--certify", "FILE", options.certify,
              "After the optimisation, compute a lower bound on the ratio of the largest void dose to the least part "
              "dose that holds for any projections (certificate in the report), and write the weights that prove it as "
-             "a volume (VDB); they are large in the regions that limit the process window. Requires " +
+             "a volume (VDB); they are large in the regions that limit the process window. Takes " +
                  std::to_string(optimize::certify_iterations) + " additional iterations.")
       .writes({".vdb"});
 }

@@ -43,7 +43,8 @@ std::vector<std::pair<std::string, std::string>> examples() {
 std::vector<std::string> notes() {
   return {
       "Accuracy: extremes, means and the figures at the critical dose are exact; VER, IoU and percentiles resolve the "
-      "dose to 2^-12 of its value, and VER counts undecided voxels as errors.",
+      "dose to 2^-12 of its value, and void voxels that this resolution cannot distinguish from the minimum part dose "
+      "count as errors in VER.",
       "Memory: 32 slices, 0.3 bytes per voxel, and 0.15 GiB. Voxels of both volumes beyond 32 MiB are kept in a "
       "scratch file in $TMPDIR, else /var/tmp. --mesh adds the dose.",
       "Sources: Kelly et al., Computed Axial Lithography, 2017, fig 8 (print as points); Rackson et al., Object-space "

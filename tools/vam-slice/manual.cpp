@@ -18,7 +18,8 @@ std::vector<std::string> description() {
       "Meshes are repaired first: coincident points are welded, rounding cracks closed, degenerate and duplicate "
       "triangles removed, all others oriented outwards. Solids may overlap; nested shells represent a solid within a "
       "solid, or a cavity if the inner shell faces inwards in the file. Repairs are reported in a warning. If holes "
-      "remain, the inside test is a vote: windings are counted along x, y and z from both ends of every row of voxels, "
+      "remain, the inside is determined by majority: windings are counted along x, y and z from both ends of every row "
+      "of voxels, "
       "and the median decides. A surface that encloses no volume is an error.",
       "The vial reduces the image of a projector that is not telecentric vertically, by M_vp < 1 (Orth et al. 2022). "
       "The target is therefore stretched along z by 1/M_vp, so that slices are rows of the projector and the print has "

@@ -70,7 +70,7 @@ void declare(cli::App& app, Options& options) {
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
       .form();
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
-             "Inside test: exact (closed meshes), by vote (meshes with holes), or chosen automatically.");
+             "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically.");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
   app.default_is("projector.pixel_mm");
   app.choice("--extent", options.extent, {"part", "writable", "resin"},

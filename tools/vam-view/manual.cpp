@@ -6,7 +6,7 @@ cli::Manual manual() {
   return {
       "vam-view",
       "draw a volume, a sinogram, frames or a video as an image",
-      {"vam-view recognizes a file by its content, not by its name: an OpenVDB volume (part, dose, scatter, distance), "
+      {"vam-view recognises a file by its content, not by its name: an OpenVDB volume (part, dose, scatter, distance), "
        "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It writes one "
        "PNG with axes in mm or degrees, a colour bar with the unit, and a scale bar if the pixel size is known.",
        "For a volume it shows a section: axial (x to the right, y up), coronal (x to the right, z up) or sagittal (y "

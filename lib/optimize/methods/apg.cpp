@@ -227,7 +227,8 @@ class Apg final : public Method {
 MethodEntry apg_method() {
   return {"apg",
           "Constrains the void to doses below LOW and the part to doses above HIGH by preconditioned, accelerated "
-          "projected gradient, each slice from the better of fbp and dose-norm; the window of a slice that satisfies "
+          "projected gradient, starting each slice from the better result of fbp and dose-norm; the window of a slice "
+          "that satisfies "
           "both is widened.",
           "Beck and Teboulle, FISTA, 2009; two-metric projection: Bertsekas, 1982",
           60,

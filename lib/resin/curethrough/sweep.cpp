@@ -64,7 +64,7 @@ std::vector<std::uint8_t> graded_ladder(const std::vector<int>& heights) {
 }
 
 std::vector<StudyPoint> run_study(const std::vector<std::uint8_t>& part, const Study& study) {
-  check(study.dose_factors, 0, "dc");
+  check(study.dose_factors, 0, "df_over_dc");
   check(study.omega_max, 1, "omega_max");
   if (std::find(part.begin(), part.end(), std::uint8_t{1}) == part.end()) {
     throw Error{Fault::data, "parameter study: the part is empty"};

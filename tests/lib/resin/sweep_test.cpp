@@ -42,7 +42,8 @@ TEST_CASE("a study needs values in range") {
   resin::Study study;
   study.gel_dose_mj_cm3 = 100;
   study.omega_max = {1};
-  CHECK_THROWS_WITH_AS((void)resin::run_study({0, 1, 0}, study), "dc: no values; give a list or a range", Error);
+  CHECK_THROWS_WITH_AS((void)resin::run_study({0, 1, 0}, study), "df_over_dc: no values; give a list or a range",
+                       Error);
   study.dose_factors = {0};
   CHECK_THROWS_AS((void)resin::run_study({0, 1, 0}, study), Error);
   study.dose_factors = {1};
