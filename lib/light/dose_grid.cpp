@@ -18,7 +18,7 @@ model::Grid dose_grid(const model::Printer& printer, const model::StackInfo& inf
   const double voxel_mm = info.row_mm > 0 ? info.row_mm : info.pixel_mm;
   if (parallel && !(std::abs(voxel_mm / info.pixel_mm - 1) < 1e-3)) {
     throw Error{Fault::data, "sinogram: its slices are " + mm_text(voxel_mm) + " apart, its columns " +
-                                 mm_text(info.pixel_mm) + "; voxels are cubes"};
+                                 mm_text(info.pixel_mm) + "; they must be equal, because voxels are cubes"};
   }
   const double all = parallel ? info.width * info.pixel_mm : 2 * optics::reach_mm(optics::projector_view(printer));
   const int n = std::max(1, ceil_int(size_mm.value_or(all) / voxel_mm - 1e-6));

@@ -19,7 +19,7 @@ tomo::ParallelGeometry parallel_turn(const model::StackInfo& info, const model::
   require_one_turn(info.height, info.angle_step_deg);
   if (!(std::abs(grid.voxel_mm / info.pixel_mm - 1) < 1e-3)) {
     throw Error{Fault::data, "sinogram: its columns are " + format_number(info.pixel_mm) + " mm wide, the voxels " +
-                                 format_number(grid.voxel_mm) + " mm; the parallel dose needs them alike"};
+                                 format_number(grid.voxel_mm) + " mm; a parallel-beam dose requires equal widths"};
   }
   return {grid.nx,
           grid.ny,

@@ -91,8 +91,8 @@ VialSetup completed(VialSetup setup) {
   if (setup.poses.empty()) {
     require_one_turn(setup.turn.rows, setup.turn.step_rad * deg_per_rad);
   } else if (setup.poses.size() != static_cast<std::size_t>(setup.turn.rows)) {
-    throw Error{Fault::data, "poses: " + std::to_string(setup.poses.size()) + " for " +
-                                 std::to_string(setup.turn.rows) + " frames; one a frame is needed"};
+    throw Error{Fault::data, "poses: " + std::to_string(setup.poses.size()) + " poses for " +
+                                 std::to_string(setup.turn.rows) + " frames; one pose per frame is required"};
   }
   const double resin_mm = optics::resin_radius_mm(setup.view);
   setup.radius_mm = setup.radius_mm > 0 ? std::min(setup.radius_mm, resin_mm) : resin_mm;

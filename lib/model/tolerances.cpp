@@ -32,7 +32,7 @@ std::size_t named(std::string_view name, const std::string& clause) {
 
 double amount(std::string text, std::string_view unit, const std::string& clause) {
   if (!text.ends_with(unit)) {
-    throw Error{Fault::usage, "'" + clause + "': is not in " + std::string(unit) + std::string(example)};
+    throw Error{Fault::usage, "'" + clause + "': the unit must be " + std::string(unit) + std::string(example)};
   }
   text = trimmed(std::string_view(text).substr(0, text.size() - unit.size()));
   const auto value = parse_number(text);
@@ -88,10 +88,10 @@ DeviatingPrinter deviate(const Printer& printer, const Tolerances& tolerances, c
   off.printer.vial.radius_mm *= 1 + 0.01 * of(tolerances, by, Deviating::radius);
   off.printer.resin.psf_mm = std::max(0.0, printer.resin.psf_mm + of(tolerances, by, Deviating::psf));
   if (off.intensity > 0 && off.printer.resin.index >= 1 && resin_radius_mm(off.printer.vial) > 0) return off;
-  throw Error{Fault::usage, "tolerances: " + format_number(off.intensity) + " times the lamp, index " +
-                                format_number(off.printer.resin.index) + " and " +
-                                format_number(resin_radius_mm(off.printer.vial)) +
-                                " mm of resin are no printer; reduce them"};
+  throw Error{Fault::usage, "tolerances: they allow an impossible printer (relative intensity " +
+                                format_number(off.intensity) + ", resin index " +
+                                format_number(off.printer.resin.index) + ", resin radius " +
+                                format_number(resin_radius_mm(off.printer.vial)) + " mm); reduce them"};
 }
 
 std::vector<PrinterDeviation> balanced_corners() {

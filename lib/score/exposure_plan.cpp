@@ -29,9 +29,11 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
   const double aim = mj_cm3 * aimed_dose(doses, threshold);
   const double quarter = mj_cm3 * std::max(0.0, 0.25 * (doses.min_part - doses.max_void));
   if (!(middle > 0) || !(critical / middle <= most_turns)) {
-    throw Error{Fault::data, "exposure: a turn at full intensity gives the middle of the process window " +
-                                 format_number(middle) + " mJ/cm3 of the critical " + format_number(critical) +
-                                 "; the part cannot be printed at this intensity"};
+    throw Error{Fault::data, "exposure: at full intensity the middle of the process window is at " +
+                                 format_number(middle) + " mJ/cm3 per turn, and the critical dose is " +
+                                 format_number(critical) + " mJ/cm3; " +
+                                 (middle > 0 ? "the print would take more than " + format_number(most_turns) + " turns"
+                                             : std::string("the part receives no light"))};
   }
   ExposurePlan plan;
   const double showings = std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding)));

@@ -18,13 +18,13 @@ bool prints(const Verdict& verdict) { return verdict.whole.pw >= 0; }
 std::string words(const Verdict& verdict) {
   const std::int64_t cut = voxels(verdict.with_cut) - voxels(verdict.whole);
   std::string line = std::string(prints(verdict) ? "will print" : "will not print") + ": process window " +
-                     margin(verdict.whole) + " of the largest dose, VER " + format_number(verdict.whole.ver, 3) +
-                     ", of " + std::to_string(voxels(verdict.whole)) + " voxels";
+                     margin(verdict.whole) + " of the largest dose, VER " + format_number(verdict.whole.ver, 3) + " (" +
+                     std::to_string(voxels(verdict.whole)) + " voxels)";
   if (cut > 0) {
-    line += "; including " + std::to_string(cut) + " voxels cut by the surface " + margin(verdict.with_cut) + ", VER " +
-            format_number(verdict.with_cut.ver, 3);
+    line += "; including the " + std::to_string(cut) + " voxels cut by the surface: process window " +
+            margin(verdict.with_cut) + ", VER " + format_number(verdict.with_cut.ver, 3);
   }
-  if (verdict.seconds) line += "; " + format_number(*verdict.seconds, 4) + " s";
+  if (verdict.seconds) line += "; duration " + format_number(*verdict.seconds, 4) + " s";
   return line;
 }
 

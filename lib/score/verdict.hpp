@@ -21,8 +21,8 @@ struct Verdict {
 /// Some threshold dose prints all voxels that are wholly in part or void.
 [[nodiscard]] bool prints(const Verdict& verdict);
 
-/// "will print: process window +0.065 of the largest dose, VER 0, of 412345 voxels; with the 43492 that the surface
-/// cuts -0.31, VER 0.004; 360 s".
+/// "will print: process window +0.065 of the largest dose, VER 0 (412345 voxels); including the 43492 voxels cut
+/// by the surface: process window -0.31, VER 0.004; duration 360 s".
 [[nodiscard]] std::string words(const Verdict& verdict);
 
 /// verdict, and with_surface: ver, pw, iou and the number of voxels.

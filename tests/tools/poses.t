@@ -94,13 +94,13 @@ sed 's/2126/2026/' axis.json >old.json
 vam-optimize --method fbp --angles 60 --wobble-record old.json part.vdb -o old.exr 2>errors
 is "a record past its validity is used with a warning" "$? $(grep -c 'warning: old.json: is .* h old and was valid for' errors)" '0 1'
 vam-optimize --method fbp --angles 60 --wobble-record axis.json --set 'calibration.vial=vial 9' part.vdb -o other.exr 2>errors
-is "one of another vial, too" "$? $(grep -c "warning: axis.json: is of vial '', this is 'vial 9'" errors)" '0 1'
+is "one of another vial, too" "$? $(grep -c "warning: axis.json: belongs to vial '', but calibration.vial is 'vial 9'" errors)" '0 1'
 printf '{"schema":"vam-calibration/1",'"$times"',"scan":"edges","values":{}}' >still.json
 fails 65 'lacks wobble_mm' vam-optimize --wobble-record still.json part.vdb -o none.exr
 wrong() { printf '%s' "$2" >wrong.json; fails 65 "$1" vam-optimize --wobble-record wrong.json part.vdb -o none.exr; }
 head='{"schema":"vam-calibration/1",'"$times"',"scan":"axis"' values='"values":{"wobble_mm":{"value":0.3},"wobble_phase":{"value":20}}'
 wrong 'changed after it was written' "$head,$values,\"seal\":\"xxh3:00000000000000000000000000000000\"}"
-wrong 'of a scan that failed' "$head,$values,\"status\":\"fail\"}"
+wrong 'the record of a failed scan' "$head,$values,\"status\":\"fail\"}"
 wrong 'a wobble of -0.3 mm' "$head,\"values\":{\"wobble_mm\":{\"value\":-0.3},\"wobble_phase\":{\"value\":20}}}"
 wrong 'lacks wobble_mm' "$head,\"values\":{\"wobble_mm\":{\"value\":\"x\"},\"wobble_phase\":{\"value\":20}}}"
 for other in '' '[]' '{"schema":5}' "$head" "$head,\"values\":4}" '{"schema":"vam-calibration/1","scan":3,"values":{}}'; do
@@ -122,7 +122,7 @@ fails 65 'align the vial' vam-optimize --angles 60 --poses wide.csv part.vdb -o 
 : >empty.csv
 fails 65 'empty.csv' vam-optimize --angles 60 --poses empty.csv part.vdb -o none.exr
 head -n 31 wobble.csv >half.csv
-fails 65 'one a frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
+fails 65 'one pose per frame' vam-dose plain.exr --poses half.csv --like part.vdb -o none.vdb
 fails 64 'give only one' vam-optimize --angles 60 --poses wobble.csv --helix 5 part.vdb -o none.exr
 fails 64 'do not apply to a parallel beam' vam-optimize --angles 60 --geometry parallel --poses wobble.csv part.vdb -o none.exr
 fails 64 'in-plane' vam-dose wobble.exr --in-plane --like part.vdb -o none.vdb

@@ -103,6 +103,6 @@ is 'before any motion, and no folder is left' "$(ls -d foreign 2>/dev/null)" ''
 camera_down
 echo '{"stage": {"serial": "another"}}' >other.json
 fails 65 'was measured with the stage .*, but the one in use is another; run vam-calibrate' vam-calibrate check --devices other.json
-fails 65 "is of instrument 'simulated', this is 'other'" vam-calibrate check --set calibration.instrument=other
+fails 65 "belongs to instrument 'simulated', but calibration.instrument is 'other'" vam-calibrate check --set calibration.instrument=other
 screen_down
 done_testing

@@ -94,8 +94,8 @@ is 'the records in force' "$(json state edges.usable) $(json state edges.sha256)
 # Expired, foreign and missing records.
 fails 65 'has no record of latency; run vam-calibrate' vam-calibrate check --need latency
 fails 64 'expected one of edges' vam-calibrate check --need edge
-fails 65 "is of instrument 'lab 1', this is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
-fails 65 "is of vial 'A7', this is 'B1'" vam-project --print-printer --set calibration.vial=B1
+fails 65 "belongs to instrument 'lab 1', but calibration.instrument is 'lab 2'" vam-project --print-printer --set calibration.instrument='lab 2'
+fails 65 "belongs to vial 'A7', but calibration.vial is 'B1'" vam-project --print-printer --set calibration.vial=B1
 ok 'without records a tool continues' vam-project --print-printer --set calibration.folder= -o plain.toml
 vam-calibrate axis turn --view-step 10 --set calibration.valid_hours=1e-7
 fails 65 'current-axis.json: is .* h old and was valid for' vam-project --print-printer

@@ -85,7 +85,7 @@ is 'missing frames are an error' "$? $(grep -c '3 of 10 frames are missing' said
 is 'its dropped frames are in the manifest' "$(grep -c '"dropped":\[3,4\]' folder/manifest.jsonl)" 1
 is 'the incomplete one is marked' "$(grep '"complete":false' folder/manifest.jsonl | grep -o '"number":[0-9]*')" '"number":6'
 vam-capture --device "replay:views.exr" --frames 10 -o folder/ 2>said
-is 'another camera is refused' "$? $(grep -c 'was taken with camera' said)" '73 1'
+is 'another camera is refused' "$? $(grep -c 'was captured with another setting (camera' said)" '73 1'
 quiet 'a whole recording' vam-capture --device replay:views.exr --frames 12 -o whole/
 cp -r whole half; rm half/000003.png half/00001*.png
 sed -e '5d' -e '12,13d' whole/manifest.jsonl >half/manifest.jsonl

@@ -23,7 +23,7 @@ is 'the chain names the sinogram' "$(grep -c '^  [0-9a-f]\{16\}  vam-sinogram .*
 is 'another part has a different seal' "$(vam-slice a.off --voxel 0.4 -o b.vdb && vam-check b.vdb | grep -c "$part")" 0
 
 flip sino.exr -500 bad.exr
-fails 65 'bad.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); make it again' vam-check bad.exr
+fails 65 'bad.exr: image [0-9]* changed after it was written \(sealed [0-9a-f]{8}, read [0-9a-f]{8}\); create it again' vam-check bad.exr
 fails 65 'bad.exr: image [0-9]* changed' vam-resample bad.exr -o frames.exr
 ok '--fast checks headers only' vam-check --fast bad.exr
 python3 - <<'PY'
@@ -79,6 +79,6 @@ fails 64 -- vam-check --slow
 fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
 fails 65 'a.off' vam-check --seal a.off
 mkfifo fifo
-fails 66 'fifo: is no regular file; give it on standard input' vam-check fifo
+fails 66 'fifo: is not a regular file; give it on standard input' vam-check fifo
 
 done_testing

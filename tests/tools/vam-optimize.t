@@ -227,20 +227,20 @@ fails 64 '--robust: method cal does not use it; omit it, or choose one of apg' \
 fails 64 'use --geometry vial' vam-optimize --geometry parallel --robust lamp=3% part.vdb -o out.exr
 fails 64 'does not apply to --grey-target' vam-optimize --grey-target --robust lamp=3% part.vdb -o out.exr
 fails 64 "no tolerance is called 'colour'; there are axis" vam-optimize --robust colour=3 part.vdb -o out.exr
-fails 64 "'axis=0.5': is not in px; write for example" vam-optimize --robust axis=0.5 part.vdb -o out.exr
+fails 64 "'axis=0.5': the unit must be px; write for example" vam-optimize --robust axis=0.5 part.vdb -o out.exr
 fails 64 "'-1' is not a number above 0 in px" vam-optimize --robust axis=-1px part.vdb -o out.exr
 fails 64 'requires --robust' vam-optimize --yield-printers 5 part.vdb -o out.exr
 python3 "$VAM_SOURCE/tests/tools/scans.py" beam beam
 records='--set calibration.folder=cal'
 fails 64 'no calibration.folder' vam-optimize --robust calibration part.vdb -o out.exr
 fails 65 'cal: has no record of edges, latency or beam' vam-optimize $records --robust calibration part.vdb -o out.exr
-fails 64 "'lamp=3': is not in %" vam-optimize $records --robust calibration,lamp=3 part.vdb -o out.exr
+fails 64 "'lamp=3': the unit must be %" vam-optimize $records --robust calibration,lamp=3 part.vdb -o out.exr
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 $records
 quiet "tolerances of the records" vam-optimize --angles 30 --iterations 10 $records --robust calibration,lamp=3% \
   --yield-printers 0 --report recorded.json coarse.vdb -o recorded.exr
 is "those that there are" "$(value recorded.json robust.single.0.name) $(value recorded.json robust.single.1.name)" "lamp psf"
 is "the others are named" "$(value recorded.json robust.exact)" "['axis', 'index', 'angle', 'radius']"
-fails 64 'are no printer' vam-optimize --robust lamp=150% coarse.vdb -o out.exr
+fails 64 'impossible printer' vam-optimize --robust lamp=150% coarse.vdb -o out.exr
 
 # The print at the threshold against the design: 0.1 voxels of 0.26 mm on average, RMS 0.25.
 vam-slice --shape torus --voxel 0.26 -o torus.vdb && vam-optimize --angles 120 torus.vdb -o asked.exr

@@ -176,14 +176,14 @@ fails 65 'truncated' vam-slice cut.stl -o x.vdb
 fails 65 'nan.stl' vam-slice nan.stl -o x.vdb
 fails 65 'empty.stl' vam-slice empty.stl -o x.vdb
 fails 65 'no size' vam-slice point.stl -o x.vdb
-fails 65 'ambiguous.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
+fails 65 'cannot be determined.*encloses no volume' vam-slice sheet.stl --no-centre --voxel 0.3 -o x.vdb
 fails 65 'not closed.*boundary edges' vam-slice lidless.stl --fill exact -o x.vdb
 fails 65 'reaches .* from the axis, beyond the writable radius of 8.301 mm .127.7 voxels.' vam-slice cube.stl --scale 5 -o x.vdb
-fails 65 'omit --no-centre; --scale 0.0572 or --fit-writable fits it' vam-slice far.stl --no-centre -o x.vdb
-fails 65 '; --scale 2.91 or --fit-writable fits it, --extent' vam-slice cube.stl --scale 5 -o x.vdb
+fails 65 'omit --no-centre; give --scale 0.0572 or --fit-writable to make it fit' vam-slice far.stl --no-centre -o x.vdb
+fails 65 '; give --scale 2.91 or --fit-writable to make it fit, or --extent resin to accept' vam-slice cube.stl --scale 5 -o x.vdb
 ok "the stated scale fits" vam-slice cube.stl --scale 2.91 -o x.vdb
-fails 65 '; --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
-fails 65 '; --voxel 1.51 fits it' vam-slice stack --voxel 4 -o x.vdb
+fails 65 '; give --fit 11.6 or' vam-slice cube.stl --fit 30 -o x.vdb
+fails 65 '; give --voxel 1.51 to make it fit' vam-slice stack --voxel 4 -o x.vdb
 ok "the stated voxel fits images" vam-slice stack --voxel 1.51 -o x.vdb
 fails 64 'does not apply to images' vam-slice stack --up y -o x.vdb
 fails 65 'array.npy: is a NumPy array .*, not a mesh; one of' vam-slice array.npy -o x.vdb

@@ -138,9 +138,9 @@ solid::PlacementAdvice advice(const Options& options) {
     advice.or_fit.clear();
   }
   advice.off_axis = "omit --no-centre; ";
-  advice.beyond = ", --extent resin accepts it where resin is lit from some angles only";
+  advice.beyond = ", or --extent resin to accept resin that is lit from some angles only";
   advice.too_high = "--place auto finds a height within them";
-  advice.too_tall = ", --any-height accepts it for vam-optimize --helix";
+  advice.too_tall = ", or --any-height to accept it for vam-optimize --helix";
   return advice;
 }
 

@@ -52,7 +52,8 @@ void AravisClock::refresh() {
 std::optional<double> AravisClock::host_s(double device_s, double arrived_s, double exposure_s) {
   if (!ready()) return std::nullopt;
   if (const auto stamped_s = camera_clock_.host_s(device_s, arrived_s, exposure_s)) return stamped_s;
-  warn(name_ + ": its time stamps are not of the clock that it reports; frames are timed by their arrival");
+  warn(name_ +
+       ": its time stamps do not agree with the clock that it reports; the arrival times of the frames are used");
   camera_clock_ = ReadClock();
   return std::nullopt;
 }

@@ -41,8 +41,8 @@ static_assert(model::has_schemes(backends, model::light_schemes));
 void refuse_steps(const Address& address) {
   for (const char* key : {"current", "max_current"}) {
     if (!address.options.contains(key)) continue;
-    throw Error{Fault::usage, "device '" + address.text + "': " + key +
-                                  ": former unit: controller steps, inverted on a LightCrafter 4500; give " + key +
+    throw Error{Fault::usage, "device '" + address.text + "': option " + key +
+                                  " (in controller steps) is no longer supported; give " + key +
                                   "_percent, in per cent of full current"};
   }
 }

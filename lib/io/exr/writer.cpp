@@ -210,7 +210,7 @@ void StackWriter::State::send(const std::string& bytes) {
   position += bytes.size();
   if (!spool) return out.write(bytes);
   if (std::fwrite(bytes.data(), 1, bytes.size(), spool.get()) != bytes.size()) {
-    throw Error{Fault::io, out.name() + ": cannot write a temporary file; $TMPDIR is full?"};
+    throw Error{Fault::io, out.name() + ": cannot write a temporary file; check the free space in $TMPDIR"};
   }
 }
 

@@ -141,7 +141,8 @@ CaptureFolder::CaptureFolder(const std::string& folder, const Json& head) : fold
     manifest_ = read_manifest(folder);
     const std::string other = difference(Json::parse(manifest_.head), head);
     if (!other.empty()) {
-      throw Error{Fault::no_output, folder + ": was taken with " + other + "; name another folder"};
+      throw Error{Fault::no_output,
+                  folder + ": was captured with another setting (" + other + "); give another folder"};
     }
     // What was being written when the capture before ended is no line.
     const std::string text = read_all(path);

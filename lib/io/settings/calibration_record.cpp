@@ -75,8 +75,8 @@ void take_over_lag(model::Printer& printer, const CalibrationRecord& record) {
   const std::string then = camera.value("stamp", "arrival");
   const std::string now = printer.camera.stamp;
   if (then != "arrival" && now != "auto" && then != now) {
-    throw Error{Fault::data, record.path + ": is of time stamps at the " + then + " of exposures, camera.stamp is " +
-                                 now + "; run vam-calibrate"};
+    throw Error{Fault::data, record.path + ": was measured with time stamps at the " + then +
+                                 " of the exposure, but camera.stamp is " + now + "; run vam-calibrate lag"};
   }
   const bool former = record.json->at("values").contains("camera_latency");  // of a record from before the name
   printer.camera.lag_ms = record.value(former ? "camera_latency" : "camera_lag");
@@ -214,16 +214,17 @@ std::string objection(const CalibrationRecord& record, const model::Calibration&
   const Json& json = *record.json;
   const std::string instrument = json.value("instrument", "");
   if (instrument != calibration.instrument) {
-    return "is of instrument '" + instrument + "', this is '" + calibration.instrument + "'; run vam-calibrate";
+    return "belongs to instrument '" + instrument + "', but calibration.instrument is '" + calibration.instrument +
+           "'; run vam-calibrate";
   }
   const std::string name = json.value("scan", "");
   const std::string vial = json.value("vial", "");
   const bool of_vial = std::any_of(std::begin(scans), std::end(scans),
                                    [&](const ScanKind& scan) { return scan.of_vial && name == scan.name; });
   if (of_vial && vial != calibration.vial) {
-    return "is of vial '" + vial + "', this is '" + calibration.vial + "'; run vam-calibrate";
+    return "belongs to vial '" + vial + "', but calibration.vial is '" + calibration.vial + "'; run vam-calibrate";
   }
-  if (json.value("status", "") == "fail") return "is of a scan that failed; run vam-calibrate";
+  if (json.value("status", "") == "fail") return "is the record of a failed scan; run vam-calibrate";
   const double made_s = parse_utc(json.value("utc", ""), record.path);
   const double end_s = parse_utc(json.value("valid_until", ""), record.path);
   if (utc_s > end_s) {

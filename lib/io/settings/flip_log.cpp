@@ -46,7 +46,7 @@ void FlipLog::read() {
       missed_ += missed;
       blanks_ += 1 + missed;
     } catch (const Json::exception&) {
-      throw Error{Fault::data, file_ + ":" + std::to_string(line_) + ": is no event of vam-project's log"};
+      throw Error{Fault::data, file_ + ":" + std::to_string(line_) + ": is not an event of a vam-project log"};
     }
   }
 }

@@ -34,7 +34,7 @@ model::Poses read_poses(const std::string& path) {
 void require_angles(const std::string& path, const model::Poses& poses, int frames, double start_deg, double step_deg) {
   if (frames > 0 && poses.size() != static_cast<std::size_t>(frames)) {
     throw Error{Fault::data, path + ": has " + std::to_string(poses.size()) + " poses, but the stack has " +
-                                 std::to_string(frames) + " frames; one a frame is needed"};
+                                 std::to_string(frames) + " frames; one pose per frame is required"};
   }
   if (const std::string why = model::objection(poses, start_deg, step_deg); !why.empty()) {
     throw Error{Fault::data, path + ": " + why + "; the step is 360 degrees divided by the number of stage angles"};
@@ -46,7 +46,7 @@ WobbleRecord read_wobble(const std::string& path, const model::Printer& printer,
   const std::string scan = (*record.json)["scan"];
   const auto refuse = [&](const std::string& why) { return Error{Fault::data, path + ": " + why}; };
   if (scan != "edges" && scan != "axis") throw refuse("is a record of " + scan + ", not of edges or axis");
-  if (record.json->value("status", "") == "fail") throw refuse("is of a scan that failed; run vam-calibrate");
+  if (record.json->value("status", "") == "fail") throw refuse("is the record of a failed scan; run vam-calibrate");
   if (const std::string why = objection(record, printer.calibration, utc_seconds()); !why.empty()) {
     warn(path + ": " + why);
   }

@@ -160,8 +160,8 @@ void check_whole(std::string_view text, const std::string& subject) {
 void check_depth(std::string_view text, const std::string& subject) {
   const auto count = std::count_if(text.begin(), text.end(), [](char c) { return c == '.' || c == '[' || c == '{'; });
   if (count <= most_levels) return;
-  throw Error{Fault::data, subject + ": has " + std::to_string(count) + " dots and brackets; up to " +
-                               std::to_string(most_levels) + " are read, and no printer file has as many"};
+  throw Error{Fault::data, subject + ": has " + std::to_string(count) +
+                               " dots and brackets; the limit for a printer file is " + std::to_string(most_levels)};
 }
 
 // The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
@@ -234,7 +234,7 @@ std::string slurp(const std::string& file) {
   if (!stream.is_open() || stream.bad()) {
     throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
   }
-  if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is no printer file"};
+  if (text.size() > most_bytes) throw Error{Fault::data, file + ": is longer than 256 KiB; it is not a printer file"};
   return text;
 }
 

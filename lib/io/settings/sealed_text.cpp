@@ -22,9 +22,10 @@ void require_equal(const std::string& seal, const Digest& read, const std::strin
   Digest sealed;
   const bool whole = parse_seal(seal, sealed);
   if (whole && sealed == read) return;
-  throw Error{Fault::data, name + ": changed after it was written (sealed " +
-                               (whole ? shortened(sealed) : "illegibly") + ", read " + shortened(read) +
-                               "); make it again, or remove " + where + " if the change was meant"};
+  throw Error{Fault::data, name + ": changed after it was written (" +
+                               (whole ? "sealed " + shortened(sealed) + ", read " : "seal unreadable, hash ") +
+                               shortened(read) + "); create it again, or remove " + where +
+                               " if the change was intentional"};
 }
 
 }  // namespace

@@ -136,8 +136,8 @@ struct Apart::State {
       run_child(slots, bounds, source, parse, parent);
     }
     if (child.process < 0) {
-      throw Error{Fault::memory, source.name + ": no process to read it in (" + std::strerror(errno) +
-                                     "); allow this tool a second process"};
+      throw Error{Fault::memory, source.name + ": cannot start the process that parses it (" + std::strerror(errno) +
+                                     "); raise the limit on processes (ulimit -u)"};
     }
   }
 

@@ -54,7 +54,7 @@ std::string file_head(const std::string& path) {
   std::error_code ignored;
   const auto about = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(about) && !std::filesystem::is_regular_file(about)) {  // a look would take its bytes
-    throw Error{Fault::no_input, path + ": is no regular file; give it on standard input"};
+    throw Error{Fault::no_input, path + ": is not a regular file; give it on standard input"};
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};

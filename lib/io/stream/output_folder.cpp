@@ -54,7 +54,7 @@ void OutputFolder::write(const std::string& name, std::string_view bytes) const 
   std::ofstream file(fs::path(temporary_) / name, std::ios::binary);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
-  if (!file) throw Error{Fault::io, (target_ / name).string() + ": cannot write; is the disk full?"};
+  if (!file) throw Error{Fault::io, (target_ / name).string() + ": cannot write; check the free space on the disk"};
 }
 
 // One call for the whole folder, in place of an fsync for each of a thousand files.
@@ -62,7 +62,8 @@ void OutputFolder::synchronize() const {
   const int folder = ::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   const bool done = folder >= 0 && syncfs(folder) == 0;
   if (folder >= 0) ::close(folder);
-  if (!done) throw Error{Fault::io, target_.string() + ": not all files were written; is the disk full?"};
+  if (!done)
+    throw Error{Fault::io, target_.string() + ": not all files were written; check the free space on the disk"};
 }
 
 void OutputFolder::commit() {

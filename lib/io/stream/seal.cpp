@@ -91,7 +91,7 @@ std::string chained_seal(std::string_view line) {
 
 std::string mismatch(const std::string& what, const Digest& sealed, const Digest& read) {
   return what + " changed after it was written (sealed " + shortened(sealed) + ", read " + shortened(read) +
-         "); make it again, or remove its attributes vam:seal and vam:facts_seal if the change was meant";
+         "); create it again, or remove its attributes vam:seal and vam:facts_seal if the change was intentional";
 }
 
 }  // namespace vam::io

@@ -45,8 +45,9 @@ stats::Measured camera_lag_ms(const CameraAxis& forwards, double forwards_deg_s,
                               double backwards_deg_s) {
   for (const double speed_deg_s : {forwards_deg_s, backwards_deg_s}) {
     if (speed_deg_s > 0) continue;
-    throw Error{Fault::data, "lag: the stage rotates at " + format_number(speed_deg_s, 4) +
-                                 " deg/s; capture one turn with vam-stage spin and one with --direction reversed"};
+    throw Error{Fault::data,
+                "lag: the stage rotates at " + format_number(speed_deg_s, 4) +
+                    " deg/s; capture one turn with vam-stage spin --direction 1 and one with --direction -1"};
   }
   for (const auto* turn : {&forwards, &backwards}) {
     if (turn->phase_deg.sigma <= needed_phase_sigma_deg) continue;

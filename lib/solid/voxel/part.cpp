@@ -52,8 +52,9 @@ void require_settled(const Vote& vote, const Repair& repair, const std::string& 
   const std::string found = vote.inside == 0 ? "it encloses no volume"
                                              : std::to_string(vote.undecided) + " of " + std::to_string(vote.inside) +
                                                    " voxels are undecided";
-  throw Error{Fault::data, subject + ": inside is ambiguous: the surface has " + std::to_string(repair.boundary_edges) +
-                               " boundary edges and " + found + "; close it in a mesh editor"};
+  throw Error{Fault::data, subject + ": the inside cannot be determined: the surface has " +
+                               std::to_string(repair.boundary_edges) + " boundary edges and " + found +
+                               "; close it in a mesh editor"};
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ Part mesh_part(model::TriangleSoup mesh, const std::string& subject, const Affin
   part.repair = repair(mesh, subject);
   if (mode == FillMode::exact && !part.repair->closed()) {
     throw Error{Fault::data, subject + ": is not closed (" + part.repair->summary() +
-                                 "); automatic filling votes on what is inside"};
+                                 "); automatic filling determines the inside by majority"};
   }
   part.voted = mode == FillMode::vote || !part.repair->closed();
   part.extent = extent(mesh);

@@ -61,10 +61,11 @@ std::string three_digits(double value) {
   return format_number(std::floor(value / step * (1 + 1e-12)) * step, 3);
 }
 
-/// "--scale 0.264 or --fit-writable": what makes the part fit.
+/// "give --scale 0.264 or --fit-writable": what makes the part fit.
 std::string smaller(const PlacementAdvice& advice, double factor) {
   const std::string& size = advice.size;
-  return (factor > 0 ? size + " " + three_digits(advice.value * factor) : "a smaller " + size) + advice.or_fit;
+  return "give " + (factor > 0 ? size + " " + three_digits(advice.value * factor) : "a smaller " + size) +
+         advice.or_fit;
 }
 
 /// `what` reaches that far from the axis.
@@ -76,9 +77,10 @@ void require_radius(double reach_mm, const Writable& room, double voxel_mm, cons
   };
   const std::string far = what + " " + both(reach_mm) + " from the axis, beyond the ";
   if (!room.from_all_sides) {
-    throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; " + remedy + " fits it"};
+    throw Error{Fault::data, far + "resin's edge at " + both(room.radius_mm) + "; " + remedy + " to make it fit"};
   }
-  throw Error{Fault::data, far + "writable radius of " + both(room.radius_mm) + "; " + remedy + " fits it" + beyond};
+  throw Error{Fault::data,
+              far + "writable radius of " + both(room.radius_mm) + "; " + remedy + " to make it fit" + beyond};
 }
 
 }  // namespace
@@ -175,7 +177,7 @@ model::Grid grid_around(const PlacedExtent& part, double voxel_mm, double radius
 
 void require_lit(double farthest_mm, const Writable& room, double voxel_mm, const std::string& subject,
                  const PlacementAdvice& advice) {
-  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach", "smaller voxels or a smaller scale",
+  require_radius(farthest_mm, room, voxel_mm, subject + ": its voxels reach", "give smaller voxels or a smaller scale",
                  advice.beyond);
 }
 
@@ -191,10 +193,13 @@ void require_writable(const PlacedExtent& part, const Writable& room, double vox
                  remedy, advice.beyond);
   if (part.box.low[2] < room.low_mm - rounding_mm || part.box.high[2] > room.high_mm + rounding_mm) {
     const bool fits = part.box.size()[2] <= room.high_mm - room.low_mm + rounding_mm;
-    throw Error{Fault::data, subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
-                                 format_number(part.box.high[2], 4) + " mm, but the projector's rows cover " +
-                                 format_number(room.low_mm, 4) + " ... " + format_number(room.high_mm, 4) + " mm; " +
-                                 (fits ? advice.too_high : remedy + " fits it" + advice.too_tall)};
+    throw Error{Fault::data,
+                subject + ": spans z = " + format_number(part.box.low[2], 4) + " ... " +
+                    format_number(part.box.high[2], 4) + " mm" +
+                    (advice.stretch_z == 1 ? "" : " after stretching by " + format_number(advice.stretch_z, 4)) +
+                    ", but the projector's rows cover " + format_number(room.low_mm, 4) + " ... " +
+                    format_number(room.high_mm, 4) + " mm; " +
+                    (fits ? advice.too_high : remedy + " to make it fit" + advice.too_tall)};
   }
 }
 

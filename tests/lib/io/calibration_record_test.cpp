@@ -72,7 +72,7 @@ TEST_CASE("a lag counts from the moment that the time stamps named then, and fro
     model::Printer printer;
     printer.camera.stamp = stamp;
     const std::string refusal = message_of([&] { apply_records(printer, calibration, now_s); });
-    CHECK(has(refusal, "at the start of exposures, camera.stamp is end; run") == (std::string(stamp) == "end"));
+    CHECK(has(refusal, "at the start of the exposure, but camera.stamp is end; run") == (std::string(stamp) == "end"));
     CHECK((printer.camera.lag_ms == 3.5) == refusal.empty());
   }
 }
@@ -90,10 +90,10 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(has(refusal(calibration, now_s - 3600), "is 1 h ahead of this machine's clock"));
   auto other = calibration;
   other.instrument = "printer 2";
-  CHECK(has(refusal(other, now_s), "is of instrument 'printer 1', this is 'printer 2'"));
+  CHECK(has(refusal(other, now_s), "belongs to instrument 'printer 1', but calibration.instrument is 'printer 2'"));
   other = calibration;
   other.vial = "vial 8";
-  CHECK(has(refusal(other, now_s), "is of vial 'vial 7', this is 'vial 8'"));
+  CHECK(has(refusal(other, now_s), "belongs to vial 'vial 7', but calibration.vial is 'vial 8'"));
   write_record(other, "latency", {{"status", "pass"}, {"values", {{"latency", {{"value", 8}}}}}}, now_s);
   other.vial = "vial 7";
   CHECK(refusal(other, now_s).empty());  // a latency is of no vial
@@ -147,7 +147,7 @@ TEST_CASE("records override the printer file and --set overrides records") {
   CHECK(printer.projector.response == table);
   CHECK(load_printer(file, {}, Records::ignore).projector.axis_column == 400);
   CHECK(load_printer(file, {"calibration.folder="}).projector.axis_column == 400);
-  CHECK(has(message_of([&] { (void)load_printer(file, {"calibration.instrument=other"}); }), "is of instrument"));
+  CHECK(has(message_of([&] { (void)load_printer(file, {"calibration.instrument=other"}); }), "belongs to instrument"));
 }
 
 TEST_CASE("a changed digit in a record, or in its response table, is refused; its layout is free") {
@@ -164,12 +164,12 @@ TEST_CASE("a changed digit in a record, or in its response table, is refused; it
   std::string changed = whole;
   changed.replace(changed.find("511.3"), 5, "591.3");
   CHECK(has(refusal(changed), "current-edges.json: changed after it was written (sealed "));
-  CHECK(has(refusal(changed), "remove its key seal if the change was meant"));
+  CHECK(has(refusal(changed), "remove its key seal if the change was intentional"));
   Json bare = Json::parse(changed);
   bare.erase("seal");
   CHECK(refusal(bare.dump()).empty());  // as a record of before, or by hand
   bare["seal"] = 7;
-  CHECK(has(refusal(bare.dump()), "sealed illegibly"));
+  CHECK(has(refusal(bare.dump()), "seal unreadable"));
 
   const std::string table = (std::filesystem::path(calibration.folder) / "r.csv").string();
   scratch::spill(table, "grey,intensity\n0,0\n255,3.5\n");

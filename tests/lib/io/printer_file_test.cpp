@@ -186,7 +186,7 @@ TEST_CASE("files that would fill the memory or the stack are refused in one line
   std::string dotted = "vial";
   for (int i = 0; i < 100'000; ++i) dotted += ".a";
   CHECK(has(error_of([&] { (void)parse_printer(dotted + " = 1\n", "p.toml"); }, Fault::data),
-            "p.toml: has 100000 dots and brackets; up to 4096"));
+            "p.toml: has 100000 dots and brackets; the limit for a printer file is 4096"));
   CHECK(has(error_of([&] { (void)parse_printer("a = " + std::string(100'000, '['), "p.toml"); }, Fault::data), "dots"));
   const std::string inline_keys = "{" + dotted + " = 1}";
   CHECK(has(error_of([&] { (void)load_printer("", {"vial.radius_mm=" + inline_keys}); }, Fault::usage), "not a value"));

@@ -180,7 +180,7 @@ TEST_CASE("a mismatch is one line with image or grid, both hashes and a remedy")
   std::string line;
   CHECK(status([&] { (void)seen_stack(folder / "s.exr"); }, &line) == 65);
   CHECK(line.find("s.exr: image 2 changed after it was written (sealed ") != std::string::npos);
-  CHECK(line.find("make it again") != std::string::npos);
+  CHECK(line.find("create it again") != std::string::npos);
 }
 
 TEST_CASE("OpenEXR keeps the seal through a compression without loss; with loss the change is noticed") {

@@ -25,16 +25,17 @@ Verdict verdict() {
 }  // namespace
 
 TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that are known") {
-  CHECK(
-      words(verdict()) ==
-      "will print: process window +0.0653 of the largest dose, VER 0, of 1000 voxels; including 110 voxels cut by the "
-      "surface -0.312, VER 0.0041");
+  CHECK(words(verdict()) ==
+        "will print: process window +0.0653 of the largest dose, VER 0 (1000 voxels); including the 110 voxels cut by "
+        "the surface: process window -0.312, VER 0.0041");
   Verdict hollow = verdict();
   hollow.with_cut = hollow.whole;
   hollow.whole.pw = hollow.with_cut.pw = -0.02;
   hollow.whole.ver = 0.003;
   hollow.seconds = 360.04;
-  CHECK(words(hollow) == "will not print: process window -0.02 of the largest dose, VER 0.003, of 1000 voxels; 360 s");
+  CHECK(words(hollow) ==
+        "will not print: process window -0.02 of the largest dose, VER 0.003 (1000 voxels); "
+        "duration 360 s");
 }
 
 TEST_CASE("a window of width 0 prints, and the report says what the line says") {

@@ -144,9 +144,9 @@ TEST_CASE("the refusal names the value that fits, rounded down, and it does fit"
     return data_error([&] { require_writable(part, room, 0.5, "part", size); }).find(words) != std::string::npos;
   };
   CHECK(has("part: 20 x 40 x 70 mm, reaches 22.36 mm", {}));
-  CHECK(has("; scale 0.341 fits it", {}));  // 7.646 / 22.36 = 0.34196
-  CHECK(has("; --scale 8.68 or --fit fits it", sized("--scale", 25.4, 1)));
-  CHECK(has("; --fit 23.9 or --fit fits it", sized("--fit", 70, 1)));
+  CHECK(has("; give scale 0.341 to make it fit", {}));  // 7.646 / 22.36 = 0.34196
+  CHECK(has("; give --scale 8.68 or --fit to make it fit", sized("--scale", 25.4, 1)));
+  CHECK(has("; give --fit 23.9 or --fit to make it fit", sized("--fit", 70, 1)));
   CHECK(has("20 x 40 x 50 mm", sized("scale", 1, 1.4)));
 }
 
