@@ -108,6 +108,8 @@ void declare(cli::App& app, Options& options) {
              "Address of the controller in a daisy chain (GCS: 16 at most).");
   app.flag("--reset-at-open", options.stage.reset_at_open,
            "GRBL: the board is reset when its port is opened, as most boards are, and loses its position.");
+  app.flag("--no-switches", options.stage.no_switches,
+           "GRBL: the board has no homing switches ($22=0) and refuses to home.");
   app.flag("--old-firmware", options.stage.old_firmware, "Zaber: firmware 6.28, whose motion commands have no speed.");
   app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N].");
   app.group("Program");

@@ -58,7 +58,10 @@ std::vector<std::string> description() {
       "A device is a scheme, a place and options. gcs:/dev/ttyUSB0 is a PI controller (General Command Set 2.0, for "
       "example C-863 with M-060.PD) on a serial or USB port; its baud rate is detected unless ?baud=115200 is given; "
       "?address=2 selects one controller of a daisy chain and ?axis=NAME an axis. grbl:/dev/ttyACM0 is a GRBL 1.1 "
-      "board with the stage on axis X, in degrees (?axis=Y for another). zaber:/dev/ttyUSB0 is a Zaber rotary stage "
+      "board with the stage on axis X, in degrees (?axis=Y for another; ?home=here for a board without homing "
+      "switches: "
+      "--home takes the present position as 0 degrees, for this command only). zaber:/dev/ttyUSB0 is a Zaber rotary "
+      "stage "
       "(ASCII protocol; ?address=2 and ?axis=2 for another of a chain, ?steps_per_deg=N for a controller without "
       "stored "
       "microsteps per turn). tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial "
@@ -217,6 +220,9 @@ void drive(const std::string& command, Options& options) {
   if (!options.log.empty() && device::describe(*stage).contains("simulated")) begin["simulated"] = true;
   log("begin", begin);
   if (options.only_plan) return device::print_line(plan_text(*stage, options));
+  if (command == "home" && !stage->keeps_zero()) {
+    throw Error{Fault::data, "stage: home=here: its zero lasts for one command; give --home to spin"};
+  }
   if (command == "home" || options.home_first) device::home(*stage, clock, options.timeout_s);
   const std::map<std::string, std::function<void()>> actions{
       {"home", [] {}},

@@ -150,6 +150,7 @@ for name in flips.jsonl printer.toml; do
   fails 65 "edited/$name: changed after the print" print --resume edited --run none
   mv kept edited/$name
 done
+fails 65 'home=here, whose zero ended with the print' print --resume again --set 'stage.device=grbl:/dev/ttyACM0?home=here' --run none
 is 'another device is not a different setting' "$(print --resume again --plan --set 'stage.device=sim:' --set resin.name=new 2>&1 | grep -c 'other settings')" 0
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
 ok 'the dose of a run' dose whole.dose '--shown whole'

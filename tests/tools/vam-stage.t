@@ -137,6 +137,23 @@ done
 is 'no motion, and the board is not unlocked' "$(grep -Ec '"moving"|[$]X' truth)" 0
 stage_down
 
+# A GRBL board without homing switches: its zero is where it stands, for one command.
+stage_up --protocol grbl --no-switches --reset-at-open --acceleration 5000 --max-speed 720
+board() { verb=$1; shift; LD_PRELOAD=$shim vam-stage $verb --device "grbl:$PWD/stage?home=here" "$@"; }
+fails 64 'home=there is not one of switch, here' vam-stage home --device "grbl:$PWD/stage?home=there"
+fails 76 'no homing switches, [$]22=0.; add [?]home=here' env LD_PRELOAD=$shim vam-stage home --device "grbl:$PWD/stage"
+fails 65 'not referenced' board spin --speed 360
+fails 65 'home=here: its zero lasts for one command' board home
+fails 65 'home=here: .*give --relative' board move --home --angle 90
+quiet 'a motion by an angle' board move --relative --angle 30 --speed 360
+board spin --home --speed 360 --run-up 0.25 --rate 100 >samples
+is 'home=here: spin' "$?" 0
+holds 'from where it stood' "$(head -n 1 samples | json /dev/stdin angle_deg) < -90 && $(tail -n 1 samples | json /dev/stdin angle_deg) >= 360"
+stage_down
+stage_up --protocol grbl
+fails 65 'finds its switches .[$]22=1.; omit home=here' board spin --home --speed 60
+stage_down
+
 # A GRBL board instead.
 stage_up --protocol grbl --acceleration 5000 --max-speed 720
 fails 64 'not one of X, Y, Z' vam-stage identify --device "grbl:$PWD/stage?axis=A"

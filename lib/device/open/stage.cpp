@@ -46,14 +46,18 @@ std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* 
 }
 
 std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow({"baud", "axis"});
+  address.allow({"baud", "axis", "home"});
   const std::string axis = address.word("axis", "X");
   if (axis != "X" && axis != "Y" && axis != "Z") {
     throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is not one of X, Y, Z"};
   }
+  const std::string home = address.word("home", "switch");
+  if (home != "switch" && home != "here") {
+    throw Error{Fault::usage, "device '" + address.text + "': home=" + home + " is not one of switch, here"};
+  }
   auto lock = lock_device(address.place, guardian);
   auto port = open_serial(address.place, address.integer("baud", 50, 4000000).value_or(115200));
-  auto stage = make_grbl_stage(std::move(port), clock, axis.front() - 'X', guardian);
+  auto stage = make_grbl_stage(std::move(port), clock, axis.front() - 'X', guardian, home == "here");
   stage->hold(std::move(lock));
   return stage;
 }

@@ -25,8 +25,13 @@ const std::string soft_reset = "\x18";
 
 class GrblStage final : public Stage {
  public:
-  GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian)
-      : link_(std::move(port)), port_(link_.port()), clock_(clock), axis_(axis), stop_order_(guardian) {
+  GrblStage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian, bool home_here)
+      : link_(std::move(port)),
+        port_(link_.port()),
+        clock_(clock),
+        axis_(axis),
+        stop_order_(guardian),
+        home_here_(home_here) {
     greet();
   }
 
@@ -58,10 +63,11 @@ class GrblStage final : public Stage {
     return caps;
   }
 
-  // Motions power the motor. "$X" would unlock a board that lost its position: only homing does.
+  // Motions power the motor. "$X" would unlock a board that lost its position: only homing does, or home=here.
   void enable() override {}
 
   void start_homing() override {
+    if (home_here_) return take_zero_here();
     watch();
     send("$H");
     homing_ = true;
@@ -94,6 +100,8 @@ class GrblStage final : public Stage {
   }
 
   bool referenced() override { return referenced_; }
+
+  bool keeps_zero() override { return !home_here_; }
 
   void set_speed(double deg_s) override { speed_deg_s_ = deg_s; }
 
@@ -145,6 +153,18 @@ class GrblStage final : public Stage {
   }
 
  private:
+  // A board without switches has no zero of its own: it counts from where it was switched on or reset.
+  void take_zero_here() {
+    read_settings();
+    if (settings_["$22"] != 0) {
+      throw Error{Fault::data, port_.name() + ": home=here: this board finds its switches ($22=" +
+                                   format_number(settings_["$22"]) + "); omit home=here"};
+    }
+    if (state_of(status()) == "Alarm") order("$X");
+    offset_deg_ -= sample().angle_deg;
+    referenced_ = true;
+  }
+
   std::string letter() const { return std::string(1, static_cast<char>('X' + axis_)); }
 
   void greet() {
@@ -197,11 +217,16 @@ class GrblStage final : public Stage {
     port_.write(line + "\n");
   }
 
+  static std::string meaning(const std::string& line) {
+    if (line == "error:9") return " (alarm state); run `vam-stage home`";
+    if (line == "error:5") return " (no homing switches, $22=0); add ?home=here to the device";
+    return "";
+  }
+
   void require_ok(const std::string& question, const std::string& line) const {
     if (line == "ok") return;
     if (line.rfind("error:", 0) == 0 || line.rfind("ALARM:", 0) == 0) {
-      throw Error{Fault::protocol, port_.name() + ": '" + question + "' was refused with " + line +
-                                       (line == "error:9" ? " (alarm state); run `vam-stage home`" : "")};
+      throw Error{Fault::protocol, port_.name() + ": '" + question + "' was refused with " + line + meaning(line)};
     }
     throw link_.malformed(question, line);
   }
@@ -257,6 +282,7 @@ class GrblStage final : public Stage {
   std::map<std::string, double> settings_;
   double offset_deg_ = 0;
   double speed_deg_s_ = 10;
+  bool home_here_;
   bool homing_ = false;
   bool referenced_ = false;  // a board does not tell whether it was homed, nor how far its zero is from the switch
   std::optional<double> idle_since_s_;
@@ -264,8 +290,9 @@ class GrblStage final : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_grbl_stage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian) {
-  return std::make_unique<GrblStage>(std::move(port), clock, axis, guardian);
+std::unique_ptr<Stage> make_grbl_stage(std::unique_ptr<Port> port, Clock& clock, int axis, Guardian* guardian,
+                                       bool home_here) {
+  return std::make_unique<GrblStage>(std::move(port), clock, axis, guardian, home_here);
 }
 
 }  // namespace vam::device

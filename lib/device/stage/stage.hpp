@@ -49,6 +49,8 @@ class Stage {
   virtual bool homed() = 0;
   /// False where the controller knows that its zero is not at the reference: it may stand anywhere.
   virtual bool referenced() { return true; }
+  /// False where homing finds no place of the stage, but takes the present one: no zero outlasts the command.
+  virtual bool keeps_zero() { return true; }
   virtual void set_speed(double deg_s) = 0;
   /// Declares the present angle of a standing stage to be angle_deg.
   virtual void set_angle(double angle_deg) = 0;

@@ -31,6 +31,18 @@ void require_referenced(Stage& stage) {
               "controller keeps the reference"};
 }
 
+namespace {
+
+void require_zero_that_lasts(Stage& stage) {
+  if (stage.keeps_zero()) return;
+  throw Error{
+      Fault::data,
+      "stage: home=here: the zero is where the stage is when the command begins, so that an angle has no meaning "
+      "to the next; give --relative"};
+}
+
+}  // namespace
+
 void require_speed_in_range(Stage& stage, double speed_deg_s) {
   const double most_deg_s = stage.caps().max_speed_deg_s;
   if (most_deg_s <= 0 || speed_deg_s <= most_deg_s) return;
@@ -55,6 +67,7 @@ void home(Stage& stage, Clock& clock, double timeout_s) {
 
 void move(Stage& stage, Clock& clock, double angle_deg, bool relative, double speed_deg_s, double timeout_s) {
   require_speed_in_range(stage, speed_deg_s);
+  if (!relative) require_zero_that_lasts(stage);
   if (!relative) require_referenced(stage);
   wait_until_standing(stage, clock, 0.02, braking_s);
   StopOnExit stopper(stage);

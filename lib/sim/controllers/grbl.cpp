@@ -86,9 +86,11 @@ class SimGrbl final : public SimController {
 
   // Configuration: rates are in units per minute ($110), accelerations in units per second squared ($120).
   std::string settings_text() const {
-    std::array<char, 200> text{};
-    std::snprintf(text.data(), text.size(), "$10=1\r\n$20=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n", 0,
-                  60 * settings_.max_speed_deg_s, settings_.motor.acceleration_deg_s2, settings_.max_deg);
+    std::array<char, 240> text{};
+    std::snprintf(text.data(), text.size(),
+                  "$10=1\r\n$20=%d\r\n$22=%d\r\n$110=%.3f\r\n$120=%.3f\r\n$130=%.3f\r\nok\r\n", 0,
+                  settings_.no_switches ? 0 : 1, 60 * settings_.max_speed_deg_s, settings_.motor.acceleration_deg_s2,
+                  settings_.max_deg);
     return text.data();
   }
 
@@ -107,6 +109,8 @@ class SimGrbl final : public SimController {
       return reply(line, command, "[MSG:Caution: Unlocked]\r\nok\r\n");
     }
     if (command == "$H") {
+      // Configuration, $22, and Interface, error 5: "Homing cycle is not enabled via settings."
+      if (settings_.no_switches) return reply(line, command, "error:5\r\n");
       homing_fault_ = arrive(line, command);
       if (silent()) return;
       homing_ = true;

@@ -20,7 +20,7 @@ namespace {
 
 struct GrblLab : StageLab {
   explicit GrblLab(const SimGcsSettings& sim = {}) : StageLab(make_sim_grbl, sim) {}
-  void open() { stage = make_grbl_stage(port(), clock, 0, nullptr); }
+  void open(bool home_here = false) { stage = make_grbl_stage(port(), clock, 0, nullptr, home_here); }
 };
 
 }  // namespace
@@ -64,6 +64,51 @@ TEST_CASE("GRBL: each user homes, whether or not the board greets him; only homi
     CHECK(fault_of(print) == Fault::data);
     CHECK(lab.commands("$X") == 0);
   }
+}
+
+TEST_CASE("GRBL: a board without switches takes its zero where it stands, for one user") {
+  SimGcsSettings sim;
+  sim.no_switches = true;
+  GrblLab lab(sim);
+  lab.open();
+  CHECK(error_of([&] { home(*lab.stage, lab.clock, 60); }, Fault::protocol).find("?home=here") != std::string::npos);
+  lab.open(true);
+  SpinPlan plan;
+  plan.speed_deg_s = 60;
+  std::vector<AngleSample> samples;
+  const auto print = [&] { spin(*lab.stage, lab.clock, plan, [&](const AngleSample& s) { samples.push_back(s); }); };
+  CHECK(fault_of(print) == Fault::data);
+  move(*lab.stage, lab.clock, 40, true, 30, 60);
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.stage->sample().angle_deg == 0);
+  CHECK(error_of([&] { move(*lab.stage, lab.clock, 10, false, 30, 60); }, Fault::data).find("home=here") !=
+        std::string::npos);
+  print();
+  CHECK(samples.back().angle_deg >= 360);
+  lab.open(true);
+  CHECK(fault_of(print) == Fault::data);
+}
+
+TEST_CASE("GRBL: home=here unlocks a board without switches, and is refused by one that has them") {
+  SimGcsSettings sim;
+  sim.no_switches = true;
+  GrblLab lab(sim);
+  lab.open(true);
+  lab.stage->set_speed(10);
+  lab.stage->start_move(100);
+  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+  const auto other = lab.port();
+  other->write("\x18");  // in motion: alarm
+  lab.clock.sleep_until(lab.clock.now_s() + 0.5);
+  (void)other->read(0.1);
+  lab.open(true);
+  home(*lab.stage, lab.clock, 60);
+  CHECK(lab.commands("$X") == 1);
+  move(*lab.stage, lab.clock, 10, true, 30, 60);
+  GrblLab homes;
+  homes.open(true);
+  CHECK(error_of([&] { home(*homes.stage, homes.clock, 60); }, Fault::data).find("omit home=here") !=
+        std::string::npos);
 }
 
 TEST_CASE("GRBL: a locked board is not unlocked by a motion") {
