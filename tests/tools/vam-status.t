@@ -48,6 +48,33 @@ ok 'a print that was killed' sh -c 'vam-status half | grep -q "^no log entry for
 echo '{"turns":1.5,"missing_percent":34.25,"iou":0.5}' >half/ost.jsonl
 ok 'live metrology' sh -c 'vam-status half | grep -q "cured 65.8 %, missing 34.2 %"'
 
+# Folders of prints that have just begun, or were killed at once: logs that are missing, empty or cut.
+without() { rm -rf part; cp -r run part; rm -f part/SHA256SUMS part/summary.json; for f; do : >part/$f.jsonl; done; }
+line_of() { vam-status part 2>&1 | sed 's/  angle .* deg  / | /;s/for [0-9]* s/for N s/'; }
+without; rm part/*.jsonl
+is 'settings but no log yet' "$(line_of)" 'preparing  turn 0.00 of unknown | dose delivered unknown  missed 0 of 0 vertical blanks'
+rm part/printer.toml; echo '{}' >part/calibration.json
+is 'no settings yet' "$(line_of)" 'preparing  turn 0.00 of unknown | dose delivered unknown  missed 0 of 0 vertical blanks'
+without events
+is 'events are lost: the number of turns and the dose are unknown' "$(line_of | sed 's/[0-9]* vert/N vert/')" \
+  'printing  turn 3.00 of unknown | dose delivered unknown  missed 0 of N vertical blanks'
+without; rm part/printer.toml
+is 'the settings are lost, and with them the speed' "$(line_of | sed 's/  missed.*//')" 'ended: done  turn 3.00 of 3 | dose delivered unknown'
+without angles
+holds 'angles are lost: the last image has one' "$(vam-status part | sed 's/.*turn \([0-9.]*\) of 3 .*/\1/') > 2.9"
+without flips; sed -i '/"event":"end"/d' part/events.jsonl; touch -d '1 hour ago' part/*
+is 'killed before light' "$(line_of)" 'no log entry for N s; end not logged  turn 3.00 of 3 | dose delivered 0.0 %  missed 0 of 0 vertical blanks'
+bad=0
+for log in events flips angles stage; do
+  for tenths in 1 3 5 7 9; do
+    without; head -c $(($(stat -c %s run/$log.jsonl) * tenths / 10)) run/$log.jsonl >part/$log.jsonl
+    [ "$(vam-status part 2>&1 | grep -c ' turn [0-9.]* of ')" = 1 ] || bad=$((bad + 1))
+  done
+done
+is 'cut anywhere: one line, status 0' $bad 0
+without events flips angles
+ok 'a page of empty logs' vam-status part --page bare.html
+
 # Names of folder, records and outcome are escaped.
 hostile='<img src=x onerror=document.title=1>&amp;"'
 mv half "$hostile"

@@ -110,10 +110,9 @@ std::string figures_table(const RunFolder& run) {
   const auto row = [](const std::string& name, const std::string& value) {
     return "<tr><th>" + name + "</th><td>" + page_text(value) + "</td></tr>\n";
   };
-  const double turn = std::clamp(p.angle_deg / 360, 0.0, std::max(0.0, p.turns));
-  std::string rows = "<table>" + row("turn", fixed(turn, 2) + " of " + format_number(p.turns));
+  std::string rows = "<table>" + row("turn", turn_text(p));
   rows += row("stage angle", fixed(std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 1) + " deg");
-  rows += row("dose delivered", fixed(100 * p.given_fraction, 1) + " % of this print");
+  rows += row("dose delivered", given_text(p) + " of this print");
   rows += row("missed vertical blanks", std::to_string(p.missed) + " of " + std::to_string(p.blanks));
   rows += p.missing_percent ? row("cured / missing", fixed(100 - *p.missing_percent, 1) + " % / " +
                                                          fixed(*p.missing_percent, 1) + " % of the part")

@@ -54,10 +54,17 @@ std::string word(const Json& line, const char* key) {
 
 RunFolder::RunFolder(const std::string& path) : path_(path) {
   if (!fs::is_directory(path)) throw Error{Fault::no_input, path + ": not a folder; give the run folder of vam-print"};
-  if (!fs::exists(file("events.jsonl"))) {
+  const bool begun = fs::exists(file("printer.toml")) || fs::exists(file("calibration.json"));  // about to be armed
+  if (!begun && !fs::exists(file("events.jsonl"))) {
     throw Error{Fault::data, path + ": has no events.jsonl; give the run folder of a print that vam-print has armed"};
   }
+  load_settings();
+}
+
+void RunFolder::load_settings() {
+  if (settled_ || !fs::exists(file("printer.toml"))) return;
   printer_ = io::load_printer(file("printer.toml"), {}, io::Records::ignore);
+  settled_ = true;
 }
 
 std::string RunFolder::file(const std::string& name) const { return (fs::path(path_) / name).string(); }
@@ -67,6 +74,7 @@ std::vector<io::ShownImage> RunFolder::shown() const {
 }
 
 void RunFolder::read() {
+  load_settings();
   read_events();
   read_angle();
   read_flips();
@@ -78,7 +86,8 @@ void RunFolder::read() {
 
 void RunFolder::read_events() {
   progress_.silent_s = 1e9;
-  for (const char* name : {"events.jsonl", "angles.jsonl"}) {
+  const bool armed = fs::exists(file("events.jsonl"));  // before, there are only the settings
+  for (const char* name : {armed ? "events.jsonl" : "printer.toml", armed ? "angles.jsonl" : "calibration.json"}) {
     std::error_code problem;
     const auto written = fs::last_write_time(file(name), problem);
     if (problem) continue;
@@ -117,6 +126,7 @@ void RunFolder::read_angle() {
 }
 
 void RunFolder::read_flips() {
+  if (progress_.turns > 0 && settled_) progress_.given_fraction = 0;
   if (!flips_) {
     if (!fs::exists(file("flips.jsonl"))) return;
     flips_.emplace(path_);
@@ -124,10 +134,14 @@ void RunFolder::read_flips() {
   flips_->read();
   progress_.missed = flips_->missed();
   progress_.blanks = flips_->blanks();
+  if (const auto shown = flips_->shown(); !shown.empty()) {  // angles.jsonl may be cut
+    progress_.angle_deg = std::max(progress_.angle_deg, shown.back().angle_deg);
+  }
   double lit_s = 0;
   for (const io::ShownImage& image : flips_->shown()) lit_s += image.seconds;
   const double wanted_deg = 360 * progress_.turns - progress_.from_deg;
-  if (wanted_deg > 0) progress_.given_fraction = std::min(1.0, lit_s * printer_.stage.speed_deg_s / wanted_deg);
+  if (settled_ && progress_.turns > 0 && wanted_deg > 0)
+    progress_.given_fraction = std::min(1.0, lit_s * printer_.stage.speed_deg_s / wanted_deg);
 }
 
 void RunFolder::read_records() {
@@ -150,20 +164,35 @@ std::string state_of(const PrintProgress& progress) {
   return progress.angle_deg < progress.from_deg ? "run-up, dark" : "printing";
 }
 
+std::string turn_text(const PrintProgress& p) {
+  char text[64];
+  if (p.turns <= 0) {  // neither is known of a print that is not armed, or whose events.jsonl is cut
+    std::snprintf(text, sizeof text, "%.2f of unknown", std::max(0.0, p.angle_deg / 360));
+  } else {
+    std::snprintf(text, sizeof text, "%.2f of %g", std::clamp(p.angle_deg / 360, 0.0, p.turns), p.turns);
+  }
+  return text;
+}
+
+std::string given_text(const PrintProgress& p) {
+  char text[32];
+  if (!p.given_fraction) return "unknown";
+  std::snprintf(text, sizeof text, "%.1f %%", 100 * *p.given_fraction);
+  return text;
+}
+
 std::string status_line(const PrintProgress& p, double speed_deg_s) {
   char text[256];
   const double end_deg = 360 * p.turns;
-  const double at_deg = std::clamp(p.angle_deg, 0.0, std::max(0.0, end_deg));
-  std::snprintf(text, sizeof text,
-                "  turn %.2f of %g  angle %.1f deg  dose delivered %.1f %%  missed %ld of %ld vertical blanks",
-                at_deg / 360, p.turns, std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), 100 * p.given_fraction,
-                p.missed, p.blanks);
-  std::string line = state_of(p) + text;
+  std::string line = state_of(p) + "  turn " + turn_text(p);
+  std::snprintf(text, sizeof text, "  angle %.1f deg  dose delivered %s  missed %ld of %ld vertical blanks",
+                std::fmod(std::fmod(p.angle_deg, 360) + 360, 360), given_text(p).c_str(), p.missed, p.blanks);
+  line += text;
   if (p.missing_percent) {
     std::snprintf(text, sizeof text, "  cured %.1f %%, missing %.1f %%", 100 - *p.missing_percent, *p.missing_percent);
     line += text;
   }
-  if (!p.outcome && p.silent_s <= silence_s && p.blanks > 0 && speed_deg_s > 0) {
+  if (!p.outcome && p.silent_s <= silence_s && p.blanks > 0 && p.turns > 0 && speed_deg_s > 0) {
     const long left_s = std::lround(std::max(0.0, end_deg - p.angle_deg) / speed_deg_s);
     std::snprintf(text, sizeof text, "  %ld:%02ld left", left_s / 60, left_s % 60);
     line += text;

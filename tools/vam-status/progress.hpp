@@ -19,11 +19,11 @@ struct RecordAge {
 
 /// What the run folder says at one moment. Angles are stage angles in degrees; light comes on at from_deg.
 struct PrintProgress {
-  double turns = 0;  // of the whole print
+  double turns = 0;  // of the whole print; 0: not known
   double from_deg = 0;
-  double angle_deg = 0;       // of the last stage sample
-  double given_fraction = 0;  // of the light of this run: 0 to 1
-  long missed = 0;            // vertical blanks, of `blanks`, from the last run-up turn on
+  double angle_deg = 0;                  // of the last stage sample
+  std::optional<double> given_fraction;  // of the light of this run: 0 to 1; none without turns or settings
+  long missed = 0;                       // vertical blanks, of `blanks`, from the last run-up turn on
   long blanks = 0;
   std::optional<double> missing_percent;  // of the part, by live metrology
   std::optional<std::string> outcome;     // when it has ended
@@ -48,6 +48,7 @@ class RunFolder {
   [[nodiscard]] std::string file(const std::string& name) const;
 
  private:
+  void load_settings();  // once; before a print is armed there may be none
   void read_events();
   void read_angle();
   void read_flips();
@@ -55,10 +56,15 @@ class RunFolder {
 
   std::string path_;
   model::Printer printer_;
+  bool settled_ = false;
   std::optional<io::FlipLog> flips_;
   PrintProgress progress_;
 };
 
+/// "3.41 of 20", "3.41 of unknown" while events.jsonl has no number of turns.
+[[nodiscard]] std::string turn_text(const PrintProgress& progress);
+/// "17.0 %" or "unknown", likewise.
+[[nodiscard]] std::string given_text(const PrintProgress& progress);
 /// "printing  turn 3.41 of 20  angle 147.6 deg  dose delivered 17 % ..."
 [[nodiscard]] std::string status_line(const PrintProgress& progress, double speed_deg_s);
 /// "preparing", "run-up, dark", "printing", "ended: done", ...
