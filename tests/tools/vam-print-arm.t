@@ -150,6 +150,18 @@ for name in flips.jsonl printer.toml; do
   fails 65 "edited/$name: changed after the print" print --resume edited --run none
   mv kept edited/$name
 done
+echo note >edited/note.txt; mv edited 'moved & edited'
+ok 'a folder that was moved, with a file more' vam-dose frames.exr --printer whole/printer.toml --shown 'moved & edited' -o edited.vdb
+mv 'moved & edited' edited
+cp edited/SHA256SUMS kept
+for cut in 'head -c 100' 'head -c 0' 'grep -v flips'; do
+  $cut kept >edited/SHA256SUMS
+  fails 65 'SHA256SUMS: has no hash of [a-z]*.[a-z]*; it was cut or changed; restore it, or delete it' vam-dose frames.exr --printer whole/printer.toml --shown edited -o none.vdb
+  fails 65 'SHA256SUMS: has no hash of [a-z]*.[a-z]*; it was cut or changed; restore it, or delete it' print --resume edited --run none
+done
+mv kept edited/SHA256SUMS; mv edited/events.jsonl kept
+fails 66 'edited/events.jsonl: cannot open' vam-dose frames.exr --printer whole/printer.toml --shown edited -o none.vdb
+mv kept edited/events.jsonl
 fails 65 'home=here, whose zero ended with the print' print --resume again --set 'stage.device=grbl:/dev/ttyACM0?home=here' --run none
 is 'another device is not a different setting' "$(print --resume again --plan --set 'stage.device=sim:' --set resin.name=new 2>&1 | grep -c 'other settings')" 0
 dose() { vam-dose frames.exr --printer whole/printer.toml --report "$1.json" -o "$1.vdb" $2; }
