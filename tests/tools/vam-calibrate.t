@@ -42,6 +42,10 @@ for scan in edges flat axis; do
 done
 
 # Without a folder the record is printed.
+echo '{"camera": {"camera": {"serial": "7"}, "fps": 10, "gain": 3, "gamma": 1, "black_level": 2}, "stage": {"serial": "8"}}' >known.json
+vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 --devices known.json >levels.json
+is 'a record has the identities and the levels of the camera' "$(json levels.json devices)" \
+  "{'camera': {'serial': '7', 'gain': 3, 'gamma': 1, 'black_level': 2}, 'stage': {'serial': '8'}}"
 vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 >beam.json
 is 'beam: status 0' $? 0
 near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"

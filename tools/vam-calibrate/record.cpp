@@ -51,7 +51,12 @@ Json read_devices(const std::string& path) {
   if (!devices.is_object()) throw Error{Fault::data, path + ": not a JSON object of devices"};
   for (const auto& [name, device] : devices.items()) {
     if (!device.is_object()) throw Error{Fault::data, path + ": '" + name + "' is not a JSON object"};
-    if (device.contains(name)) device = Json(device[name]);  // vam-capture reports more than the camera's own
+    if (!device.contains(name)) continue;
+    Json own = device[name];  // beside it vam-capture reports its settings, of which the levels belong to the record
+    for (const char* level : {"gain", "gamma", "black_level", "automatic_off"}) {
+      if (own.is_object() && device.contains(level)) own[level] = device[level];
+    }
+    device = own;
   }
   return devices;
 }
