@@ -5,10 +5,10 @@
 
 namespace vam::light {
 
-/// From a half on, coverage keeps light out.
+/// A voxel is opaque if an insert covers at least half of it.
 [[nodiscard]] constexpr bool opaque(float coverage) { return coverage >= 0.5F; }
 
-/// Behind an insert: of evenly lit pixels a voxel gets at most 1 % of the largest dose, with which nothing prints.
+/// A voxel is in shadow if even light gives it at most 1 % of the largest dose, with which nothing prints.
 [[nodiscard]] constexpr bool in_shadow(float even_dose, float largest) { return !(even_dose > 0.01F * largest); }
 
 /// No dose in the voxels that are at least half insert.

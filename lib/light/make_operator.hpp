@@ -11,9 +11,9 @@
 
 namespace vam::light {
 
-/// How the first projections make up for absorption: by the exact inverse of the exponential Radon transform [TM80], or
-/// by dividing the target by the dose that a uniform disc receives [OST22 Methods], which is cheap and nearly as good
-/// where little is absorbed. A and A* are exact in both cases.
+/// How the first projections compensate for absorption: by the exact inverse of the exponential Radon transform [TM80],
+/// or by dividing the target by the dose that a uniform disc receives [OST22 Methods], which is cheap and nearly as
+/// good where little is absorbed. A and A* are exact in both cases.
 enum class Correction { exact, disc };
 
 /// Parallel light that enters at the resin's wall.

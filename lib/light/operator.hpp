@@ -53,7 +53,7 @@ class Operator {
   /// Whether light of one slice gives dose in others: then methods decide for all slices of a pass together.
   [[nodiscard]] virtual bool couples_slices() const { return false; }
 
-  /// Whether slice k is lit by row k in the first place. Else any row may light it in some frame.
+  /// Whether row k mainly lights slice k; otherwise any row may light any slice in some frame.
   [[nodiscard]] virtual bool rows_are_slices() const { return true; }
 
   /// The rows of light that give dose in these slabs of objects; their own where slices are not coupled.

@@ -1,4 +1,4 @@
-// How far a printer may be from its settings, and the printers that are.
+// Tolerances of the printer's settings, and printers that deviate by them.
 #pragma once
 
 #include <array>

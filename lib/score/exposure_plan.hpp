@@ -25,15 +25,15 @@ struct ExposurePlan {
 /// middle half of the window, as the dose at the part's surface is that; else the window's middle.
 [[nodiscard]] double aimed_dose(const model::DoseMetrics& doses, std::optional<double> threshold);
 
-/// The fewest whole turns at which full light brings the critical dose into the middle half of the process window, and
-/// the fraction of full light, at most 1, that brings the aimed dose to it, or as near as full light can [physics §4].
-/// `doses` and `threshold` times `mj_cm3` are those of all frames once in full light, which takes `turns_of_frames`.
-/// Throws Fault::data when the aim is not positive, or when they are shown more than a million times. The printer must
-/// have a critical dose.
+/// The fewest whole showings of the frames, in turns, at which full light brings the critical dose into the middle half
+/// of the process window, and the fraction of full light, at most 1, that brings the aimed dose to it, or as near as
+/// full light can [physics §4]. `doses` and `threshold` times `mj_cm3` are those of all frames once in full light,
+/// which takes `turns_of_frames`. Throws Fault::data when the aim is not positive, or when they are shown more than a
+/// million times. The printer must have a critical dose.
 [[nodiscard]] ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const model::Printer& printer,
                                          double turns_of_frames = 1, std::optional<double> threshold = {});
 
-/// turns, seconds, multiplier and peak_intensity_mw_cm2, into a report.
+/// turns, duration_s, multiplier and peak_intensity_mw_cm2, into a report.
 void add_to(Json& figures, const ExposurePlan& plan);
 
 }  // namespace vam::score

@@ -1,6 +1,4 @@
 // vam-calibrate edges: where the vial stands, from a sweep of lines through fluorescing resin.
-#include "metrology/calibrate/edges.hpp"
-
 #include <cmath>
 #include <map>
 #include <utility>
@@ -10,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "metrology/calibrate/vial_place.hpp"
 #include "metrology/calibrate/wobble.hpp"
 #include "vam-calibrate/scan.hpp"
 

@@ -6,41 +6,31 @@ cli::Manual manual() {
   return {
       "vam-convert",
       "exchange volumes and projections with other programs",
-      {"vam-convert reads data of other programs and writes the files of these tools, and the other way round. It "
-       "recognizes a file by its content. A volume (VDB) or a stack (EXR) becomes an array of NumPy (.npy). An array "
-       "of 2 "
-       "or 3 axes (.npy, .npz) becomes a volume if --voxel is given, or with --projections a stack of sinograms, so "
-       "that "
-       "vam-dose computes the dose of anybody's projections. A folder of numbered images (PNG, TIFF) and a video (MKV, "
-       "MP4) are read as projections, too, one for each stage angle, or with --voxel as the slices of a volume.",
-       "Arrays: [z][y][x] of volumes, z upwards; [slice][angle][column] of sinograms, slices upwards; "
-       "[frame][row][column] "
-       "of frames, row 0 at the top. Written are little-endian 4-byte floats in C order. Read are whole numbers of 1 "
-       "to 8 "
-       "bytes, floats of 2, 4 and 8, and truth, of either byte order, in C or Fortran order, the latter without "
-       "another "
-       "word. --axes names the axes of an array in another order: projections of VAMToolbox, which are "
-       "[column][angle][z], "
-       "have the order xaz. Values are kept as they are unless --full-scale is given. Python objects (pickles) are "
-       "never read.",
-       "Projections: other programs do not state where they belong, so it is said here: the pitch of the columns at "
-       "the "
-       "axis (--pixel), the stage angle between projections (--angle-step), the column of the axis (--axis-column), "
-       "the "
-       "row of z = 0 (--axis-row) and how the images are turned (--orientation). With --projections virtual they are "
-       "those "
-       "of a parallel beam in the resin, as of a telecentric projector with an index bath; the columns are extended "
-       "until "
-       "the axis is in their middle. With --projections projector they are images of the projector of the printer "
-       "file, "
-       "moved so that the axis is at projector.axis_column, and vam-dose follows their rays through bath, glass and "
-       "resin.",
-       "Grey of images is a fraction of full grey, and that is the intensity, or with --projections projector what "
-       "projector.response makes of it. Colours are read as their luma, so that of a film in blue alone, as OpenCAL "
-       "plays "
-       "it, full intensity is --full-scale 0.114 and some 30 levels are left; extract its blue channel first where "
-       "that is too coarse. The stage angle from frame to frame of a film is 6 x turns per minute / frames per "
-       "second."},
+      {"vam-convert reads data of other programs and writes files of these tools, or the reverse; the content of the "
+       "input decides. A volume (VDB) or a stack (EXR) becomes a NumPy array (.npy). An array of 2 or 3 axes (.npy, "
+       ".npz) becomes a volume with --voxel, or a stack of sinograms with --projections, so that vam-dose computes the "
+       "dose of projections made by any program. A folder of numbered images (PNG, TIFF) or a video (MKV, MP4) is read "
+       "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume.",
+       "Arrays have the order [z][y][x] for volumes, z upwards; [slice][angle][column] for sinograms, slices upwards; "
+       "and [frame][row][column] for frames, row 0 at the top. Output is in little-endian 4-byte floats in C order. "
+       "Input may be integers of 1 to 8 bytes, floats of 2, 4 or 8 bytes, or booleans, in either byte order and in C "
+       "or "
+       "Fortran order. --axes gives another order of the axes: projections of VAMToolbox, [column][angle][z], have the "
+       "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused.",
+       "Projections of other programs do not state their geometry, which is therefore given by options: the column "
+       "pitch at the axis (--pixel), the stage angle between projections (--angle-step), the column of the axis "
+       "(--axis-column), the row of z = 0 (--axis-row) and the orientation of the images (--orientation). With "
+       "--projections virtual they are those of a parallel beam in the resin, as of a telecentric projector with an "
+       "index-matching bath; columns are added until the axis is in the middle. With --projections projector they are "
+       "images of the projector of the printer file, shifted so that the axis is at projector.axis_column, and "
+       "vam-dose "
+       "follows their rays through bath, glass and resin.",
+       "Grey values of images are fractions of full grey. They are used as intensity, or with --projections projector "
+       "converted by projector.response. Colour images are read as luma: for a video in blue only, as OpenCAL plays "
+       "it, "
+       "full intensity is --full-scale 0.114 and about 30 levels remain; if that is too coarse, extract the blue "
+       "channel "
+       "first. The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
       {{"A part to NumPy, and back:",
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb && vam-convert part.vdb -o part.npy && vam-convert "
         "part.npy "
@@ -56,9 +46,9 @@ cli::Manual manual() {
         "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 --like part.vdb | vam-dose --like "
         "part.vdb --set "
         "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 | vam-score --target part.vdb"}},
-      {"Memory: one image in C order; all of the array in another order, as its first values are needed last; of "
-       "frames "
-       "that become sinograms what is not dark in them, 4 bytes a pixel; a volume as it is stored.",
+      {"Memory: one image of an array in C order; the whole of an array in another order, whose first values are "
+       "needed "
+       "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",
        "An array is parsed in a process of its own (vam-formats(7), DESCRIPTION). Sizes are up to 65536 along an axis "
        "(volumes: 32768) and 2^28 an image. Values that are not finite are refused."},
       {"vam-dose", "vam-project", "vam-score", "vam-view"}};

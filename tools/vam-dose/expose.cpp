@@ -115,7 +115,7 @@ light::LightSeen expose_slices(io::StackReader& in, const light::Simulation& sim
   return seen;
 }
 
-/// Every slice by all rows whose rays come by.
+/// Every slice is exposed by all rows whose rays pass through it.
 light::LightSeen expose_volume(io::StackReader& in, const light::Simulation& simulation, const Display& display,
                                const std::vector<double>& turns, int slices, Insert& insert, Blurred& sink) {
   light::LightSeen seen;

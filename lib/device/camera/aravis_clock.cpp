@@ -9,7 +9,7 @@ namespace vam::device {
 
 namespace {
 constexpr int first_readings = 12;                // some of them are held up, at either end
-constexpr double wanted_s = 0.0002, first_s = 1;  // so well it shall be known, where so long a time is enough
+constexpr double wanted_s = 0.0002, first_s = 1;  // accuracy aimed at, and how long to try for it
 constexpr int later_readings = 3;
 constexpr double period_s = 1;
 constexpr double patience_s = 0.05;  // until the latched value is there

@@ -1,4 +1,4 @@
-// What a device says about itself, and whether it is a device.
+// Identity reported by a device, and the mark of simulated devices.
 #pragma once
 
 #include "base/json_fwd.hpp"

@@ -1,5 +1,5 @@
-// SIGINT, SIGTERM and SIGHUP become an exception at the next wait, so that destructors bring the safe state before the
-// process dies of the very signal. This is the polite half of safety; the guardian is the half that cannot be missed.
+// SIGINT, SIGTERM and SIGHUP become an exception at the next wait, so that destructors establish the safe state; the
+// process is then terminated by the same signal. This handles the orderly case; the guardian handles all others.
 #pragma once
 
 #include <functional>

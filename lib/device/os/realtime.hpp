@@ -1,4 +1,4 @@
-// Who keeps step with a device must not wait for others' computing.
+// Real-time priority for threads that control a device.
 #pragma once
 
 namespace vam::device {

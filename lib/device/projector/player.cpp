@@ -16,7 +16,8 @@ namespace {
 constexpr double light_lead_s = 0.1;  // the engine's own time to come on
 constexpr double told_late_s = 0.002;
 
-// Black and dark on every way out, and logged: who reads the log must not take the last image for still on.
+// On every exit the screen is black and the light off, and this is logged: a reader of the log must not take the last
+// image to be still showing.
 class DarkOnExit {
  public:
   DarkOnExit(Display& display, LightEngine* light, const std::function<void(const FlipRecord&)>& log)

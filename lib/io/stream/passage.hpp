@@ -1,5 +1,5 @@
-// Facts on their way from a child, in both directions from one list of members: pass(Put{out}, facts) there,
-// pass(Get{in}, facts) here.
+// Serialisation of the results of a parsing child process, one list of members for writing and reading:
+// pass(Put{out}, facts) there, pass(Get{in}, facts) here.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Volumes are held against what their names promise before anything is computed from them.
+// Checks that the values of a grid are valid for its name before anything is computed from them.
 #pragma once
 
 #include <string>

@@ -26,7 +26,7 @@ class PosedRays {
     double cosine = 1, sine = 0;  // of the part's angle
     double x_mm = 0, y_mm = 0;    // of the part in the vial
     double lift_mm = 0;
-    bool shifted = false;  // the vial is
+    bool shifted = false;  // whether the vial is displaced
     DisplacedVial::Powers powers{};
   };
   int sense_ = 1;

@@ -1,4 +1,4 @@
-// The rotation axis in the camera's image, and how far the vial (or a bead) runs round it: its place over a turn.
+// The rotation axis in the camera's image, and the radius of the circle on which the vial (or a bead) moves.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// How late a camera's time stamps are: what turns with the stage is seen at an angle that is too large by speed times
-// lag, forwards and backwards alike, which its own direction is not [physics §10].
+// Lag of a camera's time stamps: a bead on the stage appears at an angle too large by speed times lag in both
+// directions of rotation, whereas its own phase changes sign [physics §10].
 #pragma once
 
 #include <vector>

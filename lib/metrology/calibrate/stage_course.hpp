@@ -1,5 +1,5 @@
-// Where the stage was during a turn that has ended, by all of its samples at once: answers that come late scatter, and
-// what follows a stage live knows only those of the past.
+// The course of the stage during a turn that has ended, fitted to all of its samples: late replies scatter, and a live
+// prediction can use past samples only.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// State out and in again: one list of fields serves both ways.
+// Serialisation of the optimiser's state: one list of fields for writing and reading.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// What --method auto stands for: the method that measures best in tests/bench/printability, until the part prints with
-// room to spare, and a few iterations at least: what prints from the start has a wider window than simpler methods
-// give.
+// What --method auto stands for: the method with the best results in tests/bench/printability, run until the part
+// prints with a margin, and for a minimum number of iterations, so that easy parts also obtain a wide process window.
 #pragma once
 
 namespace vam::optimize {

@@ -12,7 +12,8 @@ namespace vam::optimize {
 
 namespace {
 
-/// The same frames as unknowns of another operator: columns that it lacks stay dark. Its own transpose.
+/// The same frames as unknowns of another operator: columns that it lacks stay dark. Its transpose is the same with
+/// `from` and `to` exchanged.
 std::vector<Slab> carried(std::span<const Slab> sinograms, const light::Operator& from, const light::Operator& to) {
   std::vector<Slab> there = slabs(sinograms.size(), to.sinogram().width, to.sinogram().height);
   Slab frames(from.image().width, from.image().height);

@@ -1,4 +1,4 @@
-// Printers off their settings, as linear maps of the frames that are made for the printer as set.
+// Forward models of printers that deviate from their settings, applied to the frames of the nominal printer.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Projections that print in printers off their settings, too.
+// Optimisation of projections that tolerate deviations of the printer.
 #pragma once
 
 #include <memory>

@@ -65,7 +65,8 @@ class Prover {
   [[nodiscard]] const Certificate& proof() const { return proof_; }
 
  private:
-  /// Part that rays light which meet next to no void: it costs nothing, and can bear no weight.
+  /// Part voxels that are reached by rays through almost no void: lighting them costs nothing, so they cannot carry
+  /// weight in the proof.
   void find_free() {
     constexpr float next_to_none = 0.02F;
     least_void_ = next_to_none * largest_of_all(largest(even_rays_))[0][0];

@@ -1,4 +1,4 @@
-// What the brightest light there is would do.
+// The dose if every pixel is fully lit at every stage angle.
 #pragma once
 
 #include "light/operator.hpp"

@@ -1,4 +1,4 @@
-// The one loop: step, look, stop.
+// Main iteration loop: step, evaluate, test the stopping criteria.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// How many printers off their settings print the part, at one exposure, and what costs most: the dose of each, by the
-// forward model of the printer as it deviates.
+// Yield over deviating printers at one exposure, and the tolerance with the smallest margin: the dose of each printer
+// is computed by its own forward model.
 #pragma once
 
 #include <functional>

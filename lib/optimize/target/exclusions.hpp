@@ -1,4 +1,4 @@
-// What inserts take out of a problem.
+// Voxels that inserts exclude from the optimisation.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// A simulated PI C-863 with a rotation stage, down to its bad days.
+// A simulated PI C-863 with a rotation stage, including its faults.
 #pragma once
 
 #include <cstdint>

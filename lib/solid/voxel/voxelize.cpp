@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
-#include "solid/voxel/private/voxel_mesh.hpp"
+#include "solid/voxel/private/coverage.hpp"
 #include "solid/voxel/private/voxel_vote.hpp"
 
 namespace vam::solid {

@@ -4,7 +4,7 @@
 
 #include "coverage.hpp"
 #include "fault_of.hpp"
-#include "metrology/calibrate/edges.hpp"
+#include "metrology/calibrate/vial_place.hpp"
 #include "oracle/calibration_scans.hpp"
 
 using namespace vam;

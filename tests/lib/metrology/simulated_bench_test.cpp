@@ -6,7 +6,7 @@
 
 #include "fault_of.hpp"
 #include "metrology/calibrate/beam.hpp"
-#include "metrology/calibrate/edges.hpp"
+#include "metrology/calibrate/vial_place.hpp"
 #include "optics/patterns.hpp"
 #include "sim/bench/scene.hpp"
 

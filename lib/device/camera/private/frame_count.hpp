@@ -1,4 +1,4 @@
-// Frame numbers and times as cameras tell them, made whole.
+// Continuous frame numbers and times from the wrapping counters of cameras.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Private to the VDB files: a look at an archive before OpenVDB believes it.
+// Private to the VDB files: validation of an archive's header before it is passed to OpenVDB.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Private to the VDB files: what the child that reads archives sends of them, record by record. Each begins with its
+// Private to the VDB files: the messages by which the parsing child process returns volumes. Each begins with its
 // Record.
 #pragma once
 

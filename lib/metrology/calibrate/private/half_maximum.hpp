@@ -1,4 +1,4 @@
-// Where a bright thing on a dark ground begins and ends, between pixels.
+// Edges of a bright object on a dark background, at half maximum, with sub-pixel resolution.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// What keeps a loss from rising.
+// Restores the previous iterate of slices whose loss has increased.
 #pragma once
 
 #include <vector>

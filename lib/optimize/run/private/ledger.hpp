@@ -1,4 +1,4 @@
-// What a run adds up over its passes.
+// Totals of a run over all passes.
 #pragma once
 
 #include <span>

@@ -1,7 +1,7 @@
 // Inside by the vote of three axes, for meshes with holes; see voxelize.hpp.
 #pragma once
 
-#include "solid/voxel/private/voxel_mesh.hpp"
+#include "solid/voxel/private/coverage.hpp"
 #include "solid/voxel/voxelize.hpp"
 
 namespace vam::solid {

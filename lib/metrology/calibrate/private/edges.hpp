@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/stats/measured.hpp"
-#include "metrology/calibrate/edges.hpp"
 #include "metrology/calibrate/private/edge_shape.hpp"
+#include "metrology/calibrate/vial_place.hpp"
 
 namespace vam::metrology {
 

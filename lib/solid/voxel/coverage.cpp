@@ -1,4 +1,4 @@
-#include "solid/voxel/private/voxel_mesh.hpp"
+#include "solid/voxel/private/coverage.hpp"
 
 #include <algorithm>
 
