@@ -18,7 +18,7 @@ PY
 }
 bad minus.vdb -3
 bad huge.vdb 1e30
-fails 65 "minus.vdb: grid 'target' has -3 in voxel \(.*\) of this is coverage, 0 to 1" vam-optimize minus.vdb -o x.exr
+fails 65 "minus.vdb: grid 'target' has -3 in voxel \(.*\); this is coverage, 0 to 1" vam-optimize minus.vdb -o x.exr
 fails 65 "huge.vdb: grid 'target' has 1e\+30 in voxel" vam-optimize huge.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-dose light.exr --like minus.vdb -o x.vdb
 fails 65 'coverage, 0 to 1' vam-sinogram minus.vdb -o x.exr

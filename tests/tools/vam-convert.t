@@ -45,8 +45,8 @@ is 'or where it is put' "$(vam-view a.vdb --export /dev/stdout | grep -a '^space
 ok 'whole' vam-check a.vdb
 
 # What is refused.
-fails 64 'what is it\? Give --voxel MM' vam-convert a.npy -o x.vdb
-fails 64 'stdin: what is it\? Give --voxel MM' sh -c 'vam-convert <a.npy'
+fails 64 'the kind of data is not given; use --voxel MM' vam-convert a.npy -o x.vdb
+fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-convert <a.npy'
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
 fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --projections virtual -o x.vdb
 fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif
@@ -159,6 +159,12 @@ middle() { vam-convert frames --projections virtual --pixel 0.5 "$@" -o m.exr; v
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
 is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
 fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --projections projector --pixel 0.1 -o x.exr
+npy make minus.npy '<f4' 1,2,3
+python3 -c 'import struct; f = open("minus.npy", "r+b"); f.seek(-4, 2); f.write(struct.pack("<f", -0.5))'
+vam-convert minus.npy --projections virtual --pixel 1 -o minus.exr 2>err
+is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values down to -0.5' err)" 1
+fails 64 '--axis-column: 1e12 is out of range' vam-convert a.npy --projections virtual --axis-column 1e12 -o x.exr
+fails 64 '--axis-row: 1e300 is out of range' vam-convert a.npy --projections virtual --axis-row 1e300 -o x.exr
 fails 64 '--angle-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --projections virtual --angle-step 7 -o x.exr
 fails 65 'has 360 projections, 720 make a turn' vam-convert frames --projections virtual --angle-step 0.5 -o x.exr
 fails 65 'has light on column .* check --axis-column' vam-convert frames --projections projector --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr

@@ -9,6 +9,8 @@ namespace vam::convert_tool {
 
 namespace {
 
+constexpr cli::Range on_image{-65536, 131072};  // also beside it
+
 void declare_volume(cli::App& app, Options& options) {
   app.group("Volumes");
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "The array is a volume with cubic voxels of this edge.");
@@ -37,9 +39,9 @@ void declare_projections(cli::App& app, Options& options) {
       "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections of "
       "several turns are averaged.");
   app.default_is("that of frames.csv beside the images, else one turn divided by the projections");
-  app.option("--axis-column", "PX", options.axis_column, cli::any, "Column of the projections on which the axis lies.");
+  app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
   app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
-  app.option("--axis-row", "PX", options.axis_row, cli::any,
+  app.option("--axis-row", "PX", options.axis_row, on_image,
              "Row of the images, or slice of the array, on which z = 0 lies.");
   app.default_is("projector.axis_row in images as high as the projector's, else the middle");
   app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
@@ -105,8 +107,10 @@ void check_import(const cli::App& app, const Options& options) {
   const bool volume = options.voxel_mm.has_value();
   const bool projections = options.projections != "none";
   if (!volume && !projections) {
-    throw Error{Fault::usage, io::input_name(options.input) +
-                                  ": what is it? Give --voxel MM for a volume, --projections virtual or projector"};
+    throw Error{
+        Fault::usage,
+        io::input_name(options.input) +
+            ": the kind of data is not given; use --voxel MM for a volume, or --projections virtual or projector"};
   }
   if (volume) {
     refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");

@@ -43,7 +43,7 @@ void plan_turns(const Options& options, double stated_deg, int angles, Plan& pla
   plan.backwards = step_deg < 0;
   if (std::abs(per_turn - plan.per_turn) > 1e-3) {
     throw Error{Fault::usage, "--angle-step: " + format_number(step_deg) + " degrees make " + format_number(per_turn) +
-                                  " projections a turn, no whole number"};
+                                  " projections a turn, which is not an integer"};
   }
   plan.turns = angles / plan.per_turn;
   if (plan.turns == 0) {
@@ -156,6 +156,13 @@ std::optional<model::Grid> grid_like(const Options& options) {
   return io::read_volumes(options.like).front().grid();
 }
 
+/// Filtered projections have negative values, images that a projector shows have none.
+void warn_of_negative(const Options& options, float least) {
+  if (least >= 0) return;
+  warn(io::input_name(options.input) + ": has values down to " + format_number(least) +
+       ", and no projector shows intensities below 0; they are kept");
+}
+
 void warn_of_light(const Options& options, double left_out) {
   if (left_out < 1e-3) return;
   warn(io::input_name(options.input) + ": " + format_number(100 * left_out, 3) +
@@ -181,7 +188,12 @@ void make_projections(const cli::App& app, const Options& options, std::optional
   const Heights heights = grid ? Heights{grid->nz, grid->z_mm(0), grid->voxel_mm} : own;
   io::StackWriter out(options.output, info_of(app, options, printer, plan, heights, frames), options.stack);
   Image slice;
-  while (resliced.next(slice)) out.write(shifted(one_turn(slice, plan), plan, io::input_name(options.input)));
+  float least = 0;
+  while (resliced.next(slice)) {
+    least = std::min(least, *std::min_element(slice.values.begin(), slice.values.end()));
+    out.write(shifted(one_turn(slice, plan), plan, io::input_name(options.input)));
+  }
+  warn_of_negative(options, least);
   warn_of_light(options, resliced.left_out());
   out.commit();
 }

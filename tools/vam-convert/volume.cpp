@@ -41,10 +41,15 @@ void make_volume(const cli::App& app, const Options& options, std::optional<io::
   Image image;
   for (int k = 0; k < grid.nz; k += slab) {
     slices.clear();
-    for (int i = 0; i < slab && in->next(image); ++i) {
+    const int count = std::min(slab, grid.nz - k);
+    for (int i = 0; i < count; ++i) {
+      if (!in->next(image)) {
+        throw Error{Fault::data, options.input + ": ends after " + std::to_string(k + i) + " of " +
+                                     std::to_string(grid.nz) + " slices; it is incomplete"};
+      }
       slices.insert(slices.end(), image.values.begin(), image.values.end());
     }
-    volume.write_slices(k, std::min(slab, grid.nz - k), slices.data());
+    volume.write_slices(k, count, slices.data());
   }
   io::require_usable(options.input, volume, io::TargetKind::grey);
   volume.units = options.units;

@@ -71,7 +71,7 @@ void require_facts(const std::string& path, const VolumeFacts& facts) {
                                const Promise& promise) {
   refuse(path, name,
          "has " + format_number(value) + " in voxel (" + std::to_string(at.x()) + ", " + std::to_string(at.y()) + ", " +
-             std::to_string(at.z()) + ") of " + promise.words);
+             std::to_string(at.z()) + "); " + promise.words);
 }
 
 // The first value of a leaf outside what is promised, as its place; 512 when there is none.

@@ -51,7 +51,7 @@ TEST_CASE("coverage is 0 to 1, and one voxel outside is named") {
     for (const float value : {-3.0F, 2.0F, 1e30F, -0.01F, 1.01F}) {
       CAPTURE(value);
       CHECK(has(refusal(one_voxel(name, value)), "a.vdb: grid '" + name + "' has "));
-      CHECK(has(refusal(one_voxel(name, value)), " in voxel (5, 9, 17) of "));
+      CHECK(has(refusal(one_voxel(name, value)), " in voxel (5, 9, 17); "));
     }
   }
   CHECK(has(refusal(one_voxel("target", 1e30F)), "1e+30"));
