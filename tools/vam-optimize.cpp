@@ -26,10 +26,12 @@ using namespace vam;
 using optimize_tool::Options;
 using optimize_tool::Scene;
 
-/// Three slices and three sinograms for each slice (six sinograms with --robust), of all slices where light couples
-/// them.
-void require_memory_for(const Scene& scene, const light::Operator& light, bool tolerant, const std::string& subject) {
-  const bool whole = light.couples_slices() || tolerant;
+/// Three slices and three sinograms for each slice (six sinograms with --robust), of all slices where they are one
+/// pass.
+void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
+                        const std::string& subject) {
+  const bool tolerant = task.scenarios != nullptr;
+  const bool whole = optimize::takes_whole(task, light);
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
   const int slices = (count + lanes - 1) / lanes * lanes;
   const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) +
@@ -60,7 +62,7 @@ void run(const cli::App& app, Options& options) {
 
   const std::string subject = io::input_name(options.input);
   const auto light = make_light(scene, options);
-  require_memory_for(scene, *light, options.printer_tolerances.has_value(), subject);
+  require_memory_for(scene, task, *light, subject);
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   beginning.begin(task, in, scene, *light, options);
   if (device::interrupted()) return;

@@ -9,7 +9,7 @@
 
 namespace vam::light {
 
-int halo_slices(double sigma_px) { return std::min(lanes, ceil_int(3 * sigma_px)); }
+int halo_slices(double sigma_px) { return ceil_int(3 * sigma_px); }
 
 BlurredOperator::BlurredOperator(const Operator& sharp, double sigma_px, int slices)
     : sharp_(sharp), slices_(slices), smear_(std::make_unique<GaussianBlur>(sigma_px)) {}

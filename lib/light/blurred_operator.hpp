@@ -46,7 +46,7 @@ class BlurredOperator final : public Operator {
   std::unique_ptr<GaussianBlur> smear_;
 };
 
-/// Slices on either side that a slice must know: three sigma, at most 16.
+/// Slices on either side that a slice must know: three sigma.
 [[nodiscard]] int halo_slices(double sigma_px);
 
 }  // namespace vam::light

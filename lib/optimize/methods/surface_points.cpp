@@ -20,10 +20,13 @@ class TargetVolume {
 
   explicit TargetVolume(const Problem& problem) : problem_(problem) {}
 
-  [[nodiscard]] float coverage(const At& at) const {
+  [[nodiscard]] bool contains(const At& at) const {
     const Slab& slab = problem_.target[0];
-    if (at[0] < 0 || at[0] >= slab.width || at[1] < 0 || at[1] >= slab.height) return 0.0F;
-    if (at[2] < 0 || at[2] >= problem_.slices) return 0.0F;
+    return at[0] >= 0 && at[0] < slab.width && at[1] >= 0 && at[1] < slab.height && at[2] >= 0 &&
+           at[2] < problem_.slices;
+  }
+  [[nodiscard]] float coverage(const At& at) const {
+    if (!contains(at)) return 0.0F;
     const SurfacePoint::Voxel v = voxel(at);
     return problem_.target[v.slab].values[v.i];
   }
@@ -80,7 +83,7 @@ class VoxelRow {
     const float here = volume_.coverage(at);
     for (int axis = 0; axis < axes_; ++axis) {
       const TargetVolume::At next = TargetVolume::moved(at, axis, 1);
-      if (!crosses(here, volume_.coverage(next))) continue;
+      if (!volume_.contains(next) || !crosses(here, volume_.coverage(next))) continue;
       const auto [steepest, cosine] = normal(at, axis);
       if (!steepest) continue;
       const SurfacePoint::Voxel from = volume_.voxel(at);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "light/blurred_operator.hpp"
 #include "optimize/methods/metrics.hpp"
@@ -47,7 +48,7 @@ class VolumeRun {
       : task_(task),
         light_(light),
         reader_(task.source, light.object()),
-        whole_(light.couples_slices() || task.scenarios || task.front || task.certify),
+        whole_(takes_whole(task, light)),
         halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
@@ -90,7 +91,7 @@ class VolumeRun {
   }
 
  private:
-  [[nodiscard]] int jobs() const { return static_cast<int>(schedule_.slice_of_job.size()); }
+  [[nodiscard]] int jobs() const { return count_of(schedule_.slice_of_job); }
   [[nodiscard]] int slice(int job) const { return schedule_.slice_of_job[job]; }
 
   static VolumeOutcome interrupted() {
@@ -218,7 +219,7 @@ class VolumeRun {
       const int job = schedule_.job_of_slice[k];
       if (job < pass.first || job >= pass.last) continue;
       const bool beside = k >= task_.part.low[2] && k <= task_.part.high[2];
-      ledger_.add_outside((beside ? found.beside : found.whole)[static_cast<std::size_t>(job - pass.low)]);
+      ledger_.add_outside((beside ? found.beside : found.whole)[job - pass.low]);
     }
   }
 
@@ -283,6 +284,11 @@ class VolumeRun {
 };
 
 }  // namespace
+
+bool takes_whole(const VolumeTask& task, const light::Operator& light) {
+  const bool far = task.blur_px > 0 && light::halo_slices(task.blur_px) > lanes;
+  return light.couples_slices() || far || task.scenarios || task.front || task.certify;
+}
 
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
   if (task.blur_px > 0 && !light.couples_slices() && !task.make(0)->keeps_scale()) {

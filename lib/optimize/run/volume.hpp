@@ -80,6 +80,10 @@ struct VolumeOutcome {
   std::int64_t dark_part_voxels = 0;       // of the part, behind the insert from everywhere
 };
 
+/// Whether all slices are one pass: where light couples them, where a figure is of the whole part, and where the blur
+/// reaches farther than passes overlap.
+[[nodiscard]] bool takes_whole(const VolumeTask& task, const light::Operator& light);
+
 /// All calls of the task's functions come from the calling thread. Throws Fault::data when a slice has part outside
 /// the circle, and when the state to go on from is of another job; Fault::usage when a blur is to be made up for by a
 /// method that does not keep doses to scale.

@@ -101,6 +101,50 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("neglect the blur"), vam::Error);
 }
 
+TEST_CASE("a part that goes on beyond a pass of whole slabs has no surface where the pass ends") {
+  const std::vector<std::vector<float>> slices(
+      96, vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y - 8) < 6; }));
+  VolumeTask task;
+  task.blur_px = 4;  // passes of 48 and 64 slices, with 12 on either side that others keep
+  task.limits = {.iterations = 3, .until = {}, .patience = 0};
+  task.make = [](double) { return make_method("apg", {}); };
+  const auto whole = run(slices, task);
+  REQUIRE(whole.images.size() == 96);
+  const auto& below = whole.images[39].values;  // the last of the first pass, far from the part's ends
+  const auto& above = whole.images[40].values;
+  const float most = *std::max_element(below.begin(), below.end());
+  float step = 0;
+  for (std::size_t i = 0; i < below.size(); ++i) step = std::max(step, std::abs(above[i] - below[i]));
+  CHECK(most > 0);
+  CHECK(step < 0.05F * most);
+}
+
+TEST_CASE("a blur wider than passes overlap: a part that is its own mirror image gets mirrored projections") {
+  constexpr int count = 90;
+  std::vector<std::vector<float>> slices;
+  for (int k = 0; k < count; ++k) {
+    const double radius = 4 + 0.1 * std::min(k, count - 1 - k);
+    slices.push_back(vam::oracle::draw(size, [=](double x, double y) { return std::hypot(x, y - 8) < radius; }));
+  }
+  VolumeTask task;
+  task.blur_px = 9;
+  task.limits = {.iterations = 3, .until = {}, .patience = 0};
+  task.make = [](double) { return make_method("apg", {}); };
+  const auto whole = run(slices, task);
+  REQUIRE(whole.images.size() == count);
+  float most = 0;
+  float apart = 0;
+  for (int k = 0; k < count; ++k) {
+    const auto& one = whole.images[k].values;
+    const auto& other = whole.images[count - 1 - k].values;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      most = std::max(most, one[i]);
+      apart = std::max(apart, std::abs(one[i] - other[i]));
+    }
+  }
+  CHECK(apart < 1e-4 * most);  // sums of floats in another order
+}
+
 TEST_CASE("the same while the limit on intensity is raised") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size), vam::oracle::resolution_target(size)};
   VolumeTask task;
