@@ -9,10 +9,8 @@
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
-#include "optics/projector_frames.hpp"
 #include "plot/plot.hpp"
-#include "score/exposure.hpp"
-#include "score/exposure_plan.hpp"
+#include "vam-optimize/exposure.hpp"
 #include "vam-optimize/sink.hpp"
 
 namespace vam::optimize_tool {
@@ -36,16 +34,8 @@ using Plans = std::vector<std::optional<score::ExposurePlan>>;  // of each limit
 
 Plans plans_of(const std::vector<FrontPoint>& front, const model::Printer& printer, const model::StackInfo& info,
                const Options& options) {
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
-  Plans plans(front.size());
-  for (std::size_t i = 0; i < front.size(); ++i) {
-    const FrontPoint& point = front[i];
-    const double full_scale = options.full_scale.value_or(point.peak);
-    if (!per_radian || !model::repeat(info.poses) || !(full_scale > 0)) continue;
-    if (!(score::window_middle(point.metrics) > 0)) continue;
-    plans[i] = score::plan_exposure(point.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
-                                    options.demands.window.threshold());
-  }
+  Plans plans;
+  for (const FrontPoint& point : front) plans.push_back(exposure_of(point.metrics, point.peak, printer, info, options));
   return plans;
 }
 

@@ -21,10 +21,9 @@ namespace vam::optimize_tool {
 
 namespace {
 
-light::VialSetup light_of(model::Printer printer, const Scene& scene, const Options& options) {
-  if (!options.absorbs()) printer.resin.absorption_per_mm = 0;
-  light::VialSetup setup =
-      light::vial_setup(printer, scene.grid, scene.turn.angles, scene.circle.radius * scene.grid.voxel_mm);
+light::VialSetup light_of(const model::Printer& printer, const Scene& scene, const Options& options) {
+  light::VialSetup setup = light::vial_setup(modelled(printer, options), scene.grid, scene.turn.angles,
+                                             scene.circle.radius * scene.grid.voxel_mm);
   if (scene.poses.empty()) return setup;
   setup.poses = scene.poses;
   setup.turn.rows = scene.frames();
@@ -68,8 +67,7 @@ void place_poses(Scene& scene, const model::Grid& part) {
 light::Beam beam_of(const Scene& scene, const Options& options) {
   if (options.in_vial()) return light_of(scene.printer, scene, options);
   const double voxel_mm = scene.grid.voxel_mm;
-  model::Printer printer = scene.printer;
-  if (!options.absorbs()) printer.resin.absorption_per_mm = 0;
+  const model::Printer printer = modelled(scene.printer, options);
   return light::ParallelBeam{scene.turn, printer.resin.absorption_per_mm * voxel_mm,
                              model::resin_radius_mm(printer.vial) / voxel_mm,
                              options.absorption_model == "disc" ? light::Correction::disc : light::Correction::exact};
@@ -113,6 +111,11 @@ double constrained_mm(const io::SparseVolume& target, const model::Printer& prin
 }
 
 }  // namespace
+
+model::Printer modelled(model::Printer printer, const Options& options) {
+  if (options.absorption_model == "none") printer.resin.absorption_per_mm = 0;
+  return printer;
+}
 
 Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options) {
   const model::Grid& grid = target.grid();

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
 #include "io/vdb/vdb.hpp"
 #include "light/lit_grid.hpp"
 #include "light/operator.hpp"
@@ -30,12 +31,15 @@ struct Scene {
   double first_row_mm = 0;
 
   /// Rows of a sinogram.
-  [[nodiscard]] int frames() const { return poses.empty() ? turn.angles : static_cast<int>(poses.size()); }
+  [[nodiscard]] int frames() const { return poses.empty() ? turn.angles : count_of(poses); }
 };
 
 [[nodiscard]] Scene make_scene(const io::SparseVolume& target, const model::Printer& printer, const Options& options);
 /// Warns of a part beyond the writable radius, and of a wobble in the calibration records that the poses leave out.
 void warn_of(const Scene& scene, const io::SparseVolume& target, const Options& options);
+
+/// The printer as the light is computed: its resin is clear with --absorption-model none.
+[[nodiscard]] model::Printer modelled(model::Printer printer, const Options& options);
 
 /// Time during which the dose diffuses.
 [[nodiscard]] double diffusion_s(const Scene& scene, const Options& options);

@@ -58,7 +58,6 @@ struct Options {
   io::StackOptions stack;
 
   [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
-  [[nodiscard]] bool absorbs() const { return absorption_model != "none"; }
 };
 
 [[nodiscard]] cli::Manual manual();

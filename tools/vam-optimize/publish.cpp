@@ -15,11 +15,10 @@
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
 #include "model/magnification.hpp"
-#include "optics/projector_frames.hpp"
 #include "optimize/run/limited_by.hpp"
-#include "score/exposure.hpp"
 #include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
+#include "vam-optimize/exposure.hpp"
 #include "vam-optimize/faces.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -37,18 +36,6 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
        " iterations: voxel error rate " + format_number(m.ver, 2) + ", process window " + format_number(m.pw, 2) +
        "; more --iterations" +
        (limited ? ", or a --max-intensity above " + format_number(outcome.max_intensity, 3) + "," : "") + " may help");
-}
-
-/// Turns and seconds at full grey, of a resin that is known. Frames that are shown once have no number of turns to
-/// plan.
-std::optional<score::ExposurePlan> exposure(const optimize::VolumeOutcome& outcome, const model::Printer& printer,
-                                            const model::StackInfo& info, const Options& options) {
-  if (!model::repeat(info.poses)) return std::nullopt;
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
-  const double full_scale = options.full_scale.value_or(outcome.peak_intensity);
-  if (!per_radian || !(full_scale > 0) || !(score::window_middle(outcome.metrics) > 0)) return std::nullopt;
-  return score::plan_exposure(outcome.metrics, *per_radian / full_scale, printer, optics::turns_of(info),
-                              options.demands.window.threshold());
 }
 
 /// The weights of the proof, positive in the void, negative in the part, the largest 1 or -1.
@@ -91,7 +78,7 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
     const double voxel_mm = scene.grid.voxel_mm;
     report["surface"] = {{"mean_mm", outcome.surface->mean * voxel_mm}, {"rms_mm", outcome.surface->rms * voxel_mm}};
   }
-  const auto plan = exposure(outcome, printer, info, options);
+  const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
   if (!options.demands.grey) {
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt};

@@ -134,8 +134,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
 
 optimize::Trial make_trial(const Scene& scene, const model::StackInfo& info, const Options& options) {
   optimize::Trial trial;
-  trial.printer = scene.printer;
-  if (!options.absorbs()) trial.printer.resin.absorption_per_mm = 0;
+  trial.printer = modelled(scene.printer, options);
   trial.tolerances = *options.printer_tolerances;
   trial.info = info;
   trial.grid = scene.grid;

@@ -1,0 +1,20 @@
+// Exposure of the projections of vam-optimize.
+#pragma once
+
+#include <optional>
+
+#include "model/dose_metrics.hpp"
+#include "model/printer.hpp"
+#include "model/stack.hpp"
+#include "score/exposure_plan.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Turns and seconds for a dose with these metrics, where `peak` intensity (or --full-scale) is full grey. None where
+/// the resin's critical dose is not known, nothing is lit, no window is left, or frames are shown once.
+[[nodiscard]] std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
+                                                             const model::Printer& printer,
+                                                             const model::StackInfo& info, const Options& options);
+
+}  // namespace vam::optimize_tool
