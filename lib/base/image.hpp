@@ -17,9 +17,7 @@ struct Image {
       : width(columns), height(rows), values(static_cast<std::size_t>(columns) * rows, fill) {}
 
   [[nodiscard]] std::size_t size() const { return values.size(); }
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  }
+  [[nodiscard]] std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   float& operator()(int x, int y) { return values[index(x, y)]; }
   float operator()(int x, int y) const { return values[index(x, y)]; }
   float* row(int y) { return values.data() + index(0, y); }

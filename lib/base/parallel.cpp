@@ -10,6 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/index.hpp"
+
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -26,7 +28,7 @@ int threads_to_have(int wanted) {
   bool counted = false;
   std::vector<std::thread> made;
   try {
-    while (static_cast<int>(made.size()) < wanted) {
+    while (count_of(made) < wanted) {
       made.emplace_back([&] {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return counted; });
@@ -40,7 +42,7 @@ int threads_to_have(int wanted) {
   }
   changed.notify_all();
   for (std::thread& thread : made) thread.join();
-  return static_cast<int>(made.size());
+  return count_of(made);
 }
 
 // oneTBB ends the process when it is refused a thread; so it is not to ask for one that it will not get.
@@ -51,8 +53,7 @@ void ask_for_no_more_than_there_are() {
     const int had = threads_to_have(wanted);
     if (had == wanted) return;
     // Never destroyed: that would ask for the others again.
-    static auto* const possible =
-        new tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(had + 1));
+    static auto* const possible = new tbb::global_control(tbb::global_control::max_allowed_parallelism, had + 1);
     (void)possible;
   });
 }
@@ -87,8 +88,7 @@ void parallel_for(int count, const std::function<void(int)>& work) {
 void set_threads(int count) {
   limit.reset();
   if (count > 0) {
-    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                  static_cast<std::size_t>(count));
+    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
   }
 }
 

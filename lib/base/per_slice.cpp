@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace vam {
 
@@ -13,7 +14,7 @@ std::vector<Slab> slabs(std::size_t count, int width, int height) {
 
 std::vector<Slab> packed(std::span<const Image> slices, int width, int height) {
   std::vector<Slab> all = slabs((slices.size() + lanes - 1) / lanes, width, height);
-  parallel_for(static_cast<int>(slices.size()), [&](int k) {
+  parallel_for(count_of(slices), [&](int k) {
     const auto i = static_cast<std::size_t>(k);
     const Image& image = slices[i];
     if (image.width != width || image.height != height) throw Error{Fault::bug, "packed: a slice of another size"};

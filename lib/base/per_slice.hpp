@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/slab.hpp"
 
@@ -32,9 +33,9 @@ void for_values(std::span<const Slab> like, const Work& work) {
   if (like.empty()) return;
   const int rows = like[0].height;
   const std::size_t row = static_cast<std::size_t>(like[0].width) * lanes;
-  parallel_for(static_cast<int>(like.size()) * rows, [&](int i) {
+  parallel_for(count_of(like) * rows, [&](int i) {
     const std::size_t first = static_cast<std::size_t>(i % rows) * row;
-    work(static_cast<std::size_t>(i / rows), first, first + row);
+    work(i / rows, first, first + row);
   });
 }
 

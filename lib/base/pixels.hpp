@@ -19,9 +19,7 @@ struct GreyImage {
   GreyImage(int columns, int rows, int depth)
       : width(columns), height(rows), bits(depth), values(static_cast<std::size_t>(columns) * rows) {}
 
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  }
+  [[nodiscard]] std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   std::uint16_t& operator()(int x, int y) { return values[index(x, y)]; }
   std::uint16_t operator()(int x, int y) const { return values[index(x, y)]; }
   [[nodiscard]] int full() const { return (1 << bits) - 1; }
@@ -40,9 +38,7 @@ struct RgbImage {
   RgbImage(int columns, int rows, Rgb fill = {0, 0, 0})
       : width(columns), height(rows), values(static_cast<std::size_t>(columns) * rows, fill) {}
 
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  }
+  [[nodiscard]] std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * width + x; }
   Rgb& operator()(int x, int y) { return values[index(x, y)]; }
   const Rgb& operator()(int x, int y) const { return values[index(x, y)]; }
 };

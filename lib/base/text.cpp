@@ -81,7 +81,7 @@ std::string join(const std::vector<std::string>& parts, std::string_view separat
 }
 
 std::string wrap(std::string_view text, int width, int indent) {
-  const std::string margin(static_cast<std::size_t>(indent), ' ');
+  const std::string margin(indent, ' ');
   std::string lines;
   std::string line;
   for (const auto& word : split(text, ' ')) {

@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace vam {
 
@@ -38,7 +39,7 @@ double parse_utc(const std::string& text, const std::string& subject) {
   parts.tm_year -= 1900;
   parts.tm_mon -= 1;
   const double utc_s = static_cast<double>(timegm(&parts)) + 1e-3 * ms;
-  if (fields != 7 || read != static_cast<int>(text.size()) || utc_text(utc_s) != text) {  // there is no day 99
+  if (fields != 7 || read != count_of(text) || utc_text(utc_s) != text) {  // there is no day 99
     throw Error{Fault::data, subject + ": '" + text + "' is not a time like 2026-11-21T16:58:00.123Z"};
   }
   return utc_s;

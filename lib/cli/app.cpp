@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "cli/private/app_state.hpp"
 #include "cli/private/values.hpp"
@@ -112,7 +113,7 @@ App& App::option(const std::string& flag, const std::string& value_name, std::ve
       {flag, value_name, help, join(defaults, ","), "", {}},
       [&target, flag, count](const std::string& text) {
         const auto parts = split(text, ',');
-        if (count > 0 && static_cast<int>(parts.size()) != count) {
+        if (count > 0 && count_of(parts) != count) {
           throw Error{Fault::usage, flag + ": '" + text + "' has " + std::to_string(parts.size()) + " numbers; give " +
                                         std::to_string(count) + ", separated by commas"};
         }

@@ -28,7 +28,7 @@ std::string escape(const std::string& text) {
     }
     std::uint32_t code = lead & (0x3FU >> extra);
     for (int k = 1; k <= extra && i + static_cast<std::size_t>(k) < text.size(); ++k) {
-      code = (code << 6U) | (static_cast<unsigned char>(text[i + static_cast<std::size_t>(k)]) & 0x3FU);
+      code = (code << 6U) | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
     }
     char name[16];
     std::snprintf(name, sizeof name, "\\[u%04X]", code);

@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "base/index.hpp"
+
 namespace vam::light {
 
 /// Weights {middle, first neighbours, ...} of the discrete Gaussian e^{-t} I_n(t), t = sigma^2 in pixels: the heat
@@ -22,9 +24,9 @@ class GaussianBlur {
   explicit GaussianBlur(double sigma_px);
 
   /// Neighbours on either side that count.
-  [[nodiscard]] int half_width() const { return static_cast<int>(weights_.size()) - 1; }
+  [[nodiscard]] int half_width() const { return count_of(weights_) - 1; }
   /// Of the n-th neighbour, 0 the middle.
-  [[nodiscard]] float weight(int n) const { return weights_[static_cast<std::size_t>(n)]; }
+  [[nodiscard]] float weight(int n) const { return weights_[n]; }
 
   /// `count` sums over values `stride` floats apart, about from[0] and those that follow it; half_width() strides are
   /// known on both sides.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
 #include "optics/skew_ray.hpp"
@@ -26,7 +27,7 @@ Margin lit_margin(const model::Printer& printer, const model::Grid& grid, double
   Margin margin;
   const double rim =
       0.5 * grid.voxel_mm + std::min({-grid.x_mm(0), -grid.y_mm(0), grid.x_mm(grid.nx - 1), grid.y_mm(grid.ny - 1)});
-  const auto voxels = [&](double mm) { return std::max(0, static_cast<int>(std::ceil(mm / grid.voxel_mm - 1e-6))); };
+  const auto voxels = [&](double mm) { return std::max(0, ceil_int(mm / grid.voxel_mm - 1e-6)); };
   margin.side = voxels(radius_mm - rim);
   const double ratio = climb_ratio(printer, radius_mm);
   const model::LiftRange lift = model::lift_mm(poses);

@@ -4,6 +4,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
@@ -44,7 +45,7 @@ model::Poses helix_poses(const model::Printer& printer, const model::Grid& grid,
                                   " can be computed: give at least " +
                                   format_number((part_mm + image_mm) * angles / most_frames, 3)};
   }
-  const auto frames = static_cast<int>(std::lround(turns * angles));
+  const auto frames = round_int(turns * angles);
   model::Poses poses;
   for (int k = 0; k < frames; ++k) {
     const double turned = (k + 0.5) / angles - 0.5 * turns;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
 #include "light/insert.hpp"
@@ -85,8 +86,7 @@ void Simulation::dose(std::span<const Image> sinograms, std::span<Image> doses, 
   std::vector<Slab> out = slabs((doses.size() + lanes - 1) / lanes, state.grid.nx, state.grid.ny);
   light.adjoint(rows, out);
   for (std::size_t s = 0; s < bodies.size(); ++s) darken(bodies[s], out[s]);
-  parallel_for(static_cast<int>(doses.size()),
-               [&](int k) { doses[k] = state.in_resin(out[k / lanes], static_cast<std::size_t>(k % lanes)); });
+  parallel_for(count_of(doses), [&](int k) { doses[k] = state.in_resin(out[k / lanes], k % lanes); });
 }
 
 }  // namespace vam::light

@@ -203,8 +203,7 @@ void TileLight::each_piece(int angle, const Window<SlabType>& sinograms, const V
   const int end = std::min(row_ + rows_, lit_end_);
   for (int row = first; row < end;) {
     const int next = std::min(end, (row / lanes + 1) * lanes);
-    visit(sinograms[row / lanes].at(column, angle) + row % lanes,
-          product(dark, rows_) + static_cast<std::size_t>(row - row_), count, next - row);
+    visit(sinograms[row / lanes].at(column, angle) + row % lanes, product(dark, rows_) + row - row_, count, next - row);
     row = next;
   }
 }

@@ -7,6 +7,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"
@@ -70,7 +71,7 @@ void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& 
                                  mm_text(setup.highest_mm) + "; check projector.axis_row and the table"};
   }
   setup.poses = poses;
-  setup.turn.rows = static_cast<int>(poses.size());
+  setup.turn.rows = count_of(poses);
   setup.rows = static_cast<int>(last - first) + 1;
   setup.first_row_mm = setup.grid.z_mm(first);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/index.hpp"
 #include "optics/chief_ray.hpp"
 
 namespace vam::optics {
@@ -16,13 +17,13 @@ class Directions {
  public:
   void light(double from_rad, double to_rad) {
     const auto [first, last] = std::minmax({place(from_rad), place(to_rad)});
-    for (int i = first; i <= last; ++i) lit_[static_cast<std::size_t>((i % count + count) % count)] = true;
+    for (int i = first; i <= last; ++i) lit_[(i % count + count) % count] = true;
   }
   [[nodiscard]] double fraction() const { return static_cast<double>(lit_.count()) / count; }
 
  private:
   static constexpr int count = 7200;
-  static int place(double rad) { return static_cast<int>(std::floor(rad / (2 * std::numbers::pi) * count)); }
+  static int place(double rad) { return floor_int(rad / (2 * std::numbers::pi) * count); }
   std::bitset<count> lit_;
 };
 

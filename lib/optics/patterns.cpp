@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::optics {
@@ -31,7 +32,7 @@ bool on_grid(int pixel, double origin, const PatternPlan& plan) {
 // Alternating sectors, 2 * spokes of them: the finest visible circle indicates the blur.
 bool on_spoke(int x, int y, const GreyImage& image) {
   const double angle = std::atan2(y - 0.5 * (image.height - 1), x - 0.5 * (image.width - 1));
-  return static_cast<int>(std::floor((angle / std::numbers::pi + 1) * spokes)) % 2 == 0;
+  return floor_int((angle / std::numbers::pi + 1) * spokes) % 2 == 0;
 }
 
 template <class Lit>

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/simd.hpp"
 #include "optics/private/resample_kernel.hpp"
@@ -30,7 +31,7 @@ ResampleKernels kernels() { return {VAM_KERNEL(mix_columns, simd_level()), VAM_K
 // Columns [first, last) of up to 16 images as [column][row][16]; missing lanes stay 0.
 void pack(std::span<const Image> images, int first, int last, std::vector<float>& packed) {
   const int rows = images.front().height;
-  packed.assign(static_cast<std::size_t>(Index{last - first} * rows * lanes), 0.0F);
+  packed.assign(Index{last - first} * rows * lanes, 0.0F);
   for (std::size_t s = 0; s < images.size(); ++s) {
     for (int r = 0; r < rows; ++r) {
       const float* from = images[s].row(r) + first;
@@ -68,8 +69,8 @@ void resample_tile(const ResamplePlan& plan, const ResampleKernels& kernel, int 
   thread_local std::vector<float> result;
   pack(in, low, high, packed);
   const Index stride = Index{plan.rows} * lanes;
-  column.resize(static_cast<std::size_t>(stride + Index{3} * lanes));
-  result.assign(static_cast<std::size_t>(stride * (last - first)), 0.0F);
+  column.resize(stride + Index{3} * lanes);
+  result.assign(stride * (last - first), 0.0F);
   for (int c = first; c < last; ++c) {
     const ColumnSource& source = plan.sources[c];
     if (source.count == 0) continue;
@@ -97,7 +98,7 @@ void resample(const ResamplePlan& plan, std::span<const Image> in, std::span<Ima
   }
   for (Image& image : out) image = Image(plan.columns_out, plan.rows);
   const ResampleKernels kernel = kernels();
-  const int slices = static_cast<int>(in.size());
+  const int slices = count_of(in);
   const int groups = (slices + lanes - 1) / lanes;
   const int tiles = (plan.columns_out + tile_columns - 1) / tile_columns;
   parallel_for(groups * tiles, [&](int item) {

@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "optics/writable_radius.hpp"
 
@@ -34,8 +35,7 @@ Detector projector_detector(const model::Printer& printer, const AxisAlignment& 
 Detector camera_detector(const model::Printer& printer, const AxisAlignment& alignment) {
   const View view = camera_view(printer);
   const double edge_mm = column_of(view, reach_mm(view) * (1 - 1e-12)).value_or(resin_radius_mm(view));
-  Detector camera =
-      centred_detector(2 * static_cast<int>(std::ceil(edge_mm / printer.camera.pixel_mm)) + 1, printer.camera.pixel_mm);
+  Detector camera = centred_detector(2 * ceil_int(edge_mm / printer.camera.pixel_mm) + 1, printer.camera.pixel_mm);
   camera.axis_column += alignment.column_offset;
   return camera;
 }
@@ -68,7 +68,7 @@ StackResampling stack_to_virtual(const model::Printer& printer, const AxisAlignm
   options = placed(options, printer, alignment);
   options.angle_offset_rad += printer.camera.azimuth_deg * rad_per_deg;
   const double pitch_mm = pixel_mm.value_or(in.row_mm > 0 ? in.row_mm : in.pixel_mm);
-  const int width = columns.value_or(static_cast<int>(std::ceil(2 * reach_mm(view) / pitch_mm)));
+  const int width = columns.value_or(ceil_int(2 * reach_mm(view) / pitch_mm));
   StackResampling result;
   result.plan = plan_to_virtual(view, camera, centred_detector(width, pitch_mm), turn_of(in), options);
   result.info = in;

@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "base/cubic.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "optics/resample.hpp"
 
@@ -70,8 +71,8 @@ void add_source(ResamplePlan& plan, Interpolation interpolation, double column, 
                 double weight) {
   ColumnSource source;
   const double half = (interpolation == Interpolation::linear ? 1.0 : 2.0) * width;
-  const int first = static_cast<int>(std::floor(column - half)) + 1;
-  const int last = static_cast<int>(std::ceil(column + half)) - 1;
+  const int first = floor_int(column - half) + 1;
+  const int last = ceil_int(column + half) - 1;
   const std::vector<double> taps = kernel_taps(interpolation, column, width, first, last);
   source.first = std::max(first, 0);
   source.count = std::max(0, std::min(last, plan.columns_in - 1) - source.first + 1);

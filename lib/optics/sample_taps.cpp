@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
+
 namespace vam::optics {
 
 namespace {
@@ -21,7 +23,7 @@ Taps interpolation(double position) {
 Taps mean(double position, double width) {
   const double low = position - 0.5 * width;
   const double high = position + 0.5 * width;
-  Taps taps{static_cast<int>(std::floor(low + 0.5 + on_grid)), {}};
+  Taps taps{floor_int(low + 0.5 + on_grid), {}};
   for (int k = taps.first; k - 0.5 < high - on_grid; ++k) {
     const double overlap = std::min(k + 0.5, high) - std::max(k - 0.5, low);
     taps.weights.push_back(static_cast<float>(overlap / width));

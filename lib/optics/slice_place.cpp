@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::optics {
@@ -21,8 +22,8 @@ SlicePlace::SlicePlace(const std::string& subject, const model::Projector& proje
   const bool whole = as_it_is(slice.width, slice.height);
   const double left = whole ? 0 : projector.axis_column - 0.5 * (slice.width - 1);
   const double top = whole ? 0 : projector.axis_row - 0.5 * (slice.height - 1);
-  left_ = static_cast<int>(std::lround(left + column_offset));
-  top_ = static_cast<int>(std::lround(top + row_offset));
+  left_ = round_int(left + column_offset);
+  top_ = round_int(top + row_offset);
   if (left_ < 0 || top_ < 0 || left_ + slice.width > columns_ || top_ + slice.height > rows_) {
     throw Error{Fault::data, subject + ": the part's " + std::to_string(slice.width) + " x " +
                                  std::to_string(slice.height) + " pixels from column " + std::to_string(left_) +

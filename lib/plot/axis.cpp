@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::plot {
@@ -15,8 +16,8 @@ double position(const Axis& axis, double value) {
 }
 
 std::vector<double> decades(double low, double high, int wanted) {
-  const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-9));
-  const int last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
+  const int first = ceil_int(std::log10(low) - 1e-9);
+  const int last = floor_int(std::log10(high) + 1e-9);
   const int stride = std::max(1, (last - first + wanted) / wanted);
   std::vector<double> values;
   for (int power = first; power <= last; power += stride) values.push_back(std::pow(10.0, power));

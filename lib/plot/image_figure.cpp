@@ -109,7 +109,7 @@ void cover(RgbImage& image, const Panel& panel) {
     const int row = std::min(y * panel.hatched.height / image.height, panel.hatched.height - 1);
     for (int x = 0; x < image.width; ++x) {
       const int column = std::min(x * panel.hatched.width / image.width, panel.hatched.width - 1);
-      Rgb& pixel = image.values[product(y, image.width) + static_cast<std::size_t>(x)];
+      Rgb& pixel = image.values[product(y, image.width) + x];
       if (panel.hatched(column, row) >= 0.5F) {
         pixel = (x + y) % period < stroke ? paint::black : paint::light_grey;
       } else {

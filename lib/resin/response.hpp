@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "base/index.hpp"
 #include "base/pixels.hpp"
 #include "model/printer.hpp"
 #include "model/response_table.hpp"
@@ -44,7 +45,7 @@ class GreyLevels {
   GreyLevels(const Response& response, int bits);
 
   [[nodiscard]] int bits() const { return bits_; }
-  [[nodiscard]] int count() const { return static_cast<int>(intensity_.size()); }
+  [[nodiscard]] int count() const { return count_of(intensity_); }
 
   /// The level whose intensity is nearest to the wanted one (fraction of full, clamped to what the projector can do):
   /// nearest in intensity, since that is what the resin counts. Of two equally near ones the lower.

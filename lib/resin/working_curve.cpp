@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/student.hpp"
 #include "base/text.hpp"
 
@@ -136,8 +137,8 @@ WorkingCurve fit_working_curve(std::span<const CuredSample> samples, double conf
   FittedLine line = fit(samples);
   WorkingCurve curve;
   curve.confidence = confidence;
-  curve.samples = static_cast<int>(samples.size());
-  curve.exposures = static_cast<int>(groups.size());
+  curve.samples = count_of(samples);
+  curve.exposures = count_of(groups);
   const auto count = static_cast<double>(samples.size());
 
   double residual_squares = 0;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -37,7 +38,7 @@ ExposurePlan plan_exposure(const model::DoseMetrics& doses, double mj_cm3, const
   }
   ExposurePlan plan;
   const double showings = std::max(1.0, std::ceil(critical / (middle + quarter) * (1 - rounding)));
-  plan.turns = static_cast<int>(std::lround(showings * turns_of_frames));
+  plan.turns = round_int(showings * turns_of_frames);
   plan.multiplier = std::min(1.0, critical / (aim * showings));
   plan.seconds = model::seconds_of(printer.stage, plan.turns);
   plan.peak_intensity_mw_cm2 = plan.multiplier * printer.projector.max_intensity_mw_cm2;

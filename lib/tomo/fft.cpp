@@ -38,7 +38,7 @@ int fft_length(int least) {
 }
 
 Fft::Fft(int length) : state_(std::make_unique<State>()) {
-  std::vector<std::complex<float>, CacheAligned<std::complex<float>>> example(static_cast<std::size_t>(length));
+  std::vector<std::complex<float>, CacheAligned<std::complex<float>>> example(length);
   const std::lock_guard<std::mutex> lock(planner());
   state_->forward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_FORWARD, FFTW_ESTIMATE);
   state_->backward = fftwf_plan_dft_1d(length, raw(example.data()), raw(example.data()), FFTW_BACKWARD, FFTW_ESTIMATE);

@@ -52,7 +52,7 @@ std::vector<double> make_gains(int length, const FilterSpec& spec) {
   const int half = length / 2;
   std::vector<double> lags(static_cast<std::size_t>(half) + 1);
   for (int n = 0; n <= half; ++n) lags[n] = kernel(n, low);
-  std::vector<double> cosines(static_cast<std::size_t>(length));
+  std::vector<double> cosines(length);
   for (int i = 0; i < length; ++i) cosines[i] = std::cos(2 * pi * i / length);
   std::vector<double> gains(static_cast<std::size_t>(half) + 1);
   parallel_for(half + 1, [&](int m) {
@@ -156,7 +156,7 @@ void Filter::apply(Slab& sinogram) const {
   constexpr int rows_an_item = 8;
   const int items = (sinogram.height + rows_an_item - 1) / rows_an_item;
   parallel_for(items, [&](int item) {
-    Row work(static_cast<std::size_t>(state_->length));
+    Row work(state_->length);
     const int last = std::min((item + 1) * rows_an_item, sinogram.height);
     for (int a = item * rows_an_item; a < last; ++a) state_->filter_row(sinogram.at(0, a), work);
   });

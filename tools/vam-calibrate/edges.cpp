@@ -70,7 +70,7 @@ Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
 metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, const Sweep& sweep) {
   metrology::SweepScan scan;
   scan.width_px = options.width_px;
-  scan.signal.resize(static_cast<std::size_t>(options.heights));
+  scan.signal.resize(options.heights);
   for (const auto& [shown, sum] : sweep) {
     scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
     for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);

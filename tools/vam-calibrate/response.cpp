@@ -6,6 +6,7 @@
 #include <map>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/image/view_source.hpp"
@@ -24,7 +25,7 @@ std::map<int, std::vector<double>> by_level(const ScanOptions& options, std::map
     throw Error{Fault::data, options.from + ": " + std::to_string(readings.size()) + " frames cannot be split into " +
                                  std::to_string(options.steps) + " levels of equal length; check --steps"};
   }
-  const int each = static_cast<int>(readings.size()) / options.steps;
+  const int each = count_of(readings) / options.steps;
   std::map<int, std::vector<double>> levels;
   for (const auto& [n, light] : readings) levels[n / each].push_back(light.front());
   return levels;

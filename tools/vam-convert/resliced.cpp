@@ -51,7 +51,7 @@ bool Resliced::next(Image& slice) {
   for (int i = 0; i < count_of(window_); ++i) {
     const auto share = static_cast<float>(weight(first_ + i, place));
     if (share == 0) continue;
-    const auto& from = window_[static_cast<std::size_t>(i)].values;
+    const auto& from = window_[i].values;
     for (std::size_t at = 0; at < from.size(); ++at) slice.values[at] += share * from[at];
   }
   ++done_;

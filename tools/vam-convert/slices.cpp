@@ -29,7 +29,7 @@ std::vector<float> intensities(const Options& options, const model::Printer& pri
 void respond(const std::vector<float>& table, Image& image) {
   if (table.empty()) return;
   for (float& value : image.values) {
-    value = table[static_cast<std::size_t>(std::lround(65535 * std::clamp(value, 0.0F, 1.0F)))];
+    value = table[std::lround(65535 * std::clamp(value, 0.0F, 1.0F))];
   }
 }
 
@@ -68,7 +68,7 @@ bool Slices::next(Image& slice) {
   if (done_ == size_.images) return false;
   slice = Image(size_.columns, size_.rows);
   for (int a = 0; a < size_.rows; ++a) {
-    const Lit& lit = lit_[product(a, size_.images) + static_cast<std::size_t>(done_)];
+    const Lit& lit = lit_[product(a, size_.images) + done_];
     std::copy(lit.values.begin(), lit.values.end(), slice.row(a) + lit.first);
   }
   ++done_;

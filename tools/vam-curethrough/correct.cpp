@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/parallel.hpp"
@@ -64,7 +65,7 @@ void write_mask(const std::string& path, const Image& mask) {
 }
 
 std::vector<model::ImageInfo> time_stamps(const Job& job) {
-  std::vector<model::ImageInfo> about(static_cast<std::size_t>(job.slices));
+  std::vector<model::ImageInfo> about(job.slices);
   for (std::size_t n = 0; n < about.size(); ++n) {
     about[n].time_s = static_cast<double>(n) / frames_per_s(job.print.process);
     about[n].has_time = true;
@@ -97,9 +98,9 @@ std::vector<GreyImage> all_levels(const CorrectOptions& options, const Job& job,
   GreyImage slice(job.part.columns().width(), job.part.columns().height(), job.print.printer.projector.bits);
   Progress progress("correcting", job.slices);
   const auto times = time_stamps(job);
-  std::vector<GreyImage> batch(static_cast<std::size_t>(2 * threads()));  // encoded together
+  std::vector<GreyImage> batch(2 * threads());  // encoded together
   for (int end = job.slices; end > 0;) {
-    const int count = std::min(end, static_cast<int>(batch.size()));
+    const int count = std::min(end, count_of(batch));
     for (int i = 0; i < count; ++i) {
       correction.previous(slice.values);
       batch[i] = frame.place(slice);

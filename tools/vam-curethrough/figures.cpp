@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 
@@ -23,7 +24,7 @@ std::vector<std::pair<Heights, resin::FeatureErrors>> grouped(const std::vector<
   const std::size_t each = std::max<std::size_t>(1, (sizes + 19) / 20);
   std::vector<std::pair<Heights, resin::FeatureErrors>> groups;
   std::size_t taken = 0;
-  for (int h = 0; h < static_cast<int>(by_height.size()); ++h) {
+  for (int h = 0; h < count_of(by_height); ++h) {
     const resin::FeatureErrors& e = by_height[h];
     if (!occurs(e)) continue;
     if (taken++ % each == 0) groups.push_back({{h, h}, {}});

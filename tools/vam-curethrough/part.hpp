@@ -37,7 +37,7 @@ class PartFile {
   void take_values(const io::VoxelBlock& block);
   void fill(const io::VoxelBlock& block);
   [[nodiscard]] std::size_t pixel(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid().nx) + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(grid().nx) + x;
   }
   [[nodiscard]] bool upside_down() const { return options_.platform == "top"; }
   PartOptions options_;

@@ -68,7 +68,7 @@ std::vector<double> shown_turns(const Options& options, const model::StackInfo& 
     throw Error{Fault::data, options.input + ": covers " + format_number(std::abs(rows.step_deg) * rows.count) +
                                  " degrees of stage angles; --shown requires one turn"};
   }
-  std::vector<double> turns(static_cast<std::size_t>(info.height));
+  std::vector<double> turns(info.height);
   const std::string sinogram = options.input == "-" ? "" : io::sha256_of(options.input);
   for (const std::string& run : options.shown) {
     require_unchanged(run);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "optics/flatland_movie.hpp"
@@ -52,7 +53,7 @@ Dithering dithering_of(const Options& options, double frames_per_turn, double tu
   if (n > 1 && std::abs(std::remainder(turns, n)) > 1e-6) {
     throw Error{Fault::usage, what + "does not divide the " + format_number(turns) + " turns; change one of them"};
   }
-  return {n, static_cast<int>(std::round(frames_per_turn))};
+  return {n, round_int(frames_per_turn)};
 }
 
 Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
@@ -45,7 +46,7 @@ Columns lit_columns(const std::vector<Image>& images) {
 
 /// Its columns first...last, with so many rows.
 Image square(const Image& image, int first, int last, double rows) {
-  Image made(last - first + 1, std::clamp(static_cast<int>(std::lround(rows)), 1, 4 * most_pixels));
+  Image made(last - first + 1, std::clamp(round_int(rows), 1, 4 * most_pixels));
   for (int y = 0; y < made.height; ++y) {
     const float* row = image.row(std::min(image.height - 1, y * image.height / made.height));
     std::copy(row + first, row + last + 1, made.row(y));

@@ -50,7 +50,7 @@ LightView::LightView(const std::string& sinogram, const model::Printer& printer)
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   absolute_ = per_radian.has_value();
   if (absolute_ && peak_ > 0) per_unit_ = *per_radian / static_cast<double>(peak_);
-  const Image turn = expose(std::vector<double>(static_cast<std::size_t>(info_.height), 1.0));
+  const Image turn = expose(std::vector<double>(info_.height, 1.0));
   full_dose_ = *std::max_element(turn.values.begin(), turn.values.end());
   if (absolute_ || full_dose_ <= 0) return;
   per_unit_ = 1 / full_dose_;

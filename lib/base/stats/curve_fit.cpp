@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace vam::stats {
 
@@ -186,7 +187,7 @@ CurveFit fit_curve(const Residuals& residuals, Vector start, const Vector& step,
   if (!normal.good()) throw Error{Fault::data, subject + ": the readings do not determine the curve; measure more"};
   CurveFit fit;
   fit.value = start;
-  fit.n = static_cast<int>(residual.size());
+  fit.n = count_of(residual);
   fit.rms = std::sqrt(square_sum(residual) / static_cast<double>(fit.n));
   fit.covariance = hc3(j, n, residual, normal);
   const double factor = few_readings_factor(fit.n - static_cast<int>(n));

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/text.hpp"
@@ -43,7 +44,7 @@ class KernelV4l2 final : public V4l2Driver {
   void unmap(void* start, std::size_t size) override { munmap(start, size); }
   int wait(double seconds) override {
     std::array<pollfd, 2> ready{pollfd{fd_, POLLIN, 0}, pollfd{interrupt_fd(), POLLIN, 0}};
-    if (poll(ready.data(), ready.size(), static_cast<int>(std::ceil(1e3 * seconds))) <= 0) return 0;
+    if (poll(ready.data(), ready.size(), ceil_int(1e3 * seconds)) <= 0) return 0;
     if ((ready[0].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) return -1;
     return (ready[0].revents & POLLIN) != 0 ? 1 : 0;
   }
@@ -209,7 +210,7 @@ class V4l2Camera final : public Camera {
       throw Error{Fault::usage, path_ + ": has no setting for " + what + "; omit it"};
     }
     if (!wanted) return value.value;
-    value.value = static_cast<int>(std::lround(*wanted));
+    value.value = round_int(*wanted);
     ask(VIDIOC_S_CTRL, &value, "rejects the " + what + " (VIDIOC_S_CTRL)");
     ask(VIDIOC_G_CTRL, &value, "does not report the " + what + " (VIDIOC_G_CTRL)");
     check(what, *wanted, value.value, 0.5);
@@ -250,7 +251,7 @@ class V4l2Camera final : public Camera {
       manual.id = V4L2_CID_EXPOSURE_AUTO;
       manual.value = V4L2_EXPOSURE_MANUAL;
       driver_->control(VIDIOC_S_CTRL, &manual);  // a camera without automatics does not have it
-      value.value = static_cast<int>(std::lround(*settings_.exposure_us / 100));
+      value.value = round_int(*settings_.exposure_us / 100);
       ask(VIDIOC_S_CTRL, &value, "rejects the exposure (VIDIOC_S_CTRL)");
     }
     if (driver_->control(VIDIOC_G_CTRL, &value) == 0) mode_.exposure_us = 100.0 * value.value;

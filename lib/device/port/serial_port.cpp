@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "device/os/clock.hpp"
@@ -70,7 +71,7 @@ class SerialPort final : public Port {
       }
       const int written = sp_nonblocking_write(port_.get(), bytes.data(), bytes.size());
       if (written < 0) throw unplugged();
-      bytes.remove_prefix(static_cast<std::size_t>(written));
+      bytes.remove_prefix(written);
     }
   }
 
@@ -93,7 +94,7 @@ class SerialPort final : public Port {
       check_interrupted();
       const double left_s = deadline_s - real_clock().now_s();
       std::array<pollfd, 2> watched{pollfd{handle_, what, 0}, pollfd{interrupt_fd(), POLLIN, 0}};
-      const int left_ms = left_s > 0 ? static_cast<int>(std::ceil(left_s * 1000)) : 0;
+      const int left_ms = left_s > 0 ? ceil_int(left_s * 1000) : 0;
       poll(watched.data(), watched.size(), left_ms);
       if ((watched[0].revents & what) != 0) return true;
       if ((watched[0].revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) throw unplugged();

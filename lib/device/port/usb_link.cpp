@@ -62,7 +62,7 @@ class LibusbLink final : public UsbLink {
   }
 
   std::string control_in(int request, int value, int index, int length) override {
-    std::string data(static_cast<std::size_t>(length), '\0');
+    std::string data(length, '\0');
     const int count = libusb_control_transfer(
         handle_.get(), vendor_request | LIBUSB_ENDPOINT_IN, static_cast<std::uint8_t>(request),
         static_cast<std::uint16_t>(value), static_cast<std::uint16_t>(index),

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "device/os/interrupt.hpp"
 #include "device/projector/display_backends.hpp"
@@ -69,7 +70,7 @@ class DrmDisplay final : public Display {
 
   int add(const GreyImage& levels) override {
     frames_.push_back(screen_bytes(levels, mode_));
-    return static_cast<int>(frames_.size()) - 1;
+    return count_of(frames_) - 1;
   }
 
   Flip present(int index) override {
@@ -100,7 +101,7 @@ class DrmDisplay final : public Display {
     return images_[0]->framebuffer();
   }
   void prepare(int next) {
-    if (next >= static_cast<int>(frames_.size())) next = 0;
+    if (next >= count_of(frames_)) next = 0;
     if (!frames_.empty() && held_[1] != next) hold_back(next);
   }
   void hold_back(int index) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "device/projector/display_backends.hpp"
 #include "device/projector/private/sdl_library.hpp"
@@ -83,7 +84,7 @@ class SdlDisplay final : public Display {
 
   int add(const GreyImage& levels) override {
     frames_.push_back(screen_bytes(levels, mode_));
-    return static_cast<int>(frames_.size()) - 1;
+    return count_of(frames_) - 1;
   }
 
   Flip present(int index) override {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "device/os/clock.hpp"
@@ -100,7 +101,7 @@ class DlpLight final : public LightEngine {
     }
     if (settings_.current_percent) {
       link_.set(led_polarity, {normal_polarity}, "LED polarity");
-      const int steps = static_cast<int>(std::floor(*settings_.current_percent / 100 * full_current));
+      const int steps = floor_int(*settings_.current_percent / 100 * full_current);
       link_.set(led_current, DlpBytes(3, dlpc900() ? steps : full_current - steps), "LED current");
     }
     require_capped(currents_percent());

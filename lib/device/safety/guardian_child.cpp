@@ -53,7 +53,7 @@ Packet receive(int socket) {
   if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {
     std::memcpy(&packet.handle, CMSG_DATA(header), sizeof(int));
   }
-  const std::string all(bytes.data(), static_cast<std::size_t>(size));
+  const std::string all(bytes.data(), size);
   const std::size_t blank = all.find(' ');
   packet.kind = all[0];
   packet.id = std::atoi(all.substr(1, blank - 1).c_str());

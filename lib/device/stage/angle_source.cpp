@@ -61,7 +61,7 @@ class FollowedAngle final : public AngleSource {
       const ssize_t count = read(fd_, bytes.data(), bytes.size());
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) throw Error{Fault::busy, "stage angles: input ended" + so_far() + "; see the error of vam-stage"};
-      buffer_.append(bytes.data(), static_cast<std::size_t>(count));
+      buffer_.append(bytes.data(), count);
       take_lines();
     }
     if (lines_ > 0 && clock_.now_s() - heard_s_ > stale_s) {

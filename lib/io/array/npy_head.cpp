@@ -42,7 +42,7 @@ class Literals {
     const auto [end, problem] = std::from_chars(left_.data(), left_.data() + left_.size(), value);
     if (problem == std::errc::result_out_of_range) throw std::runtime_error("its sizes exceed all memory");
     if (problem != std::errc{}) damaged();
-    left_.remove_prefix(static_cast<std::size_t>(end - left_.data()));
+    left_.remove_prefix(end - left_.data());
     takes("L");  // of Python 2
     return value;
   }

@@ -43,8 +43,8 @@ Parser::Parser(Read read, std::string name, std::array<int, 3> axes) : read_(std
   }
   const std::array<std::size_t, 3> own = strides(head_);
   for (std::size_t i = 0; i < 3; ++i) {
-    size_[i] = head_.shape[static_cast<std::size_t>(axes[i])];
-    stride_[i] = own[static_cast<std::size_t>(axes[i])];
+    size_[i] = head_.shape[axes[i]];
+    stride_[i] = own[axes[i]];
   }
   if (size_[1] * size_[2] > most_image) fail("has images of more than 2^28 values");
   streams_ = stride_[2] == 1 && stride_[1] == size_[2] && (stride_[0] == size_[1] * size_[2] || size_[0] == 1);

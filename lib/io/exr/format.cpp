@@ -142,7 +142,7 @@ std::string take_header(const std::function<void(char*, std::size_t)>& take) {
     take_bytes(sizeof(std::int32_t));
     const auto size = number_at<std::int32_t>(bytes, bytes.size() - sizeof(std::int32_t));
     if (size < 0) throw std::runtime_error("its header has an attribute of negative size");
-    take_bytes(static_cast<std::size_t>(size));
+    take_bytes(size);
   }
   if (bytes.size() == 1) bytes.clear();
   return bytes;

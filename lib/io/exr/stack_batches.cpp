@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "base/index.hpp"
+
 namespace vam::io {
 
 ReadAhead::ReadAhead(StackReader& reader, int batch) : reader_(reader), batch_(batch) { start(); }
@@ -16,7 +18,7 @@ void ReadAhead::start() {
     std::vector<Image> images;
     Image image;
     model::ImageInfo about;
-    while (static_cast<int>(images.size()) < batch_ && reader_.next(image, about)) images.push_back(std::move(image));
+    while (count_of(images) < batch_ && reader_.next(image, about)) images.push_back(std::move(image));
     return images;
   });
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "io/image/frame_folder.hpp"
@@ -28,9 +29,8 @@ class FolderSink : public FrameSink {
       : folder_(path), fps_(format_number(options.fps, 9)), history_(join(options.info.history, "\n")) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
-    const int first = static_cast<int>(shown_.size());
-    parallel_for(static_cast<int>(frames.size()),
-                 [&](int i) { folder_.write(first + i, frames[i].levels, text(frames[i])); });
+    const int first = count_of(shown_);
+    parallel_for(count_of(frames), [&](int i) { folder_.write(first + i, frames[i].levels, text(frames[i])); });
     for (const auto& frame : frames) shown_.push_back(about(frame));
   }
   void commit() override { folder_.commit(shown_); }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/pixels.hpp"
 
 namespace vam::io {
@@ -37,7 +38,7 @@ class ImageFolder {
   /// Throws Error: no_input (no such folder), data (no image in it, a number missing or twice).
   explicit ImageFolder(const std::string& folder);
 
-  [[nodiscard]] int count() const { return static_cast<int>(paths_.size()); }
+  [[nodiscard]] int count() const { return count_of(paths_); }
   [[nodiscard]] const std::string& path(int index) const { return paths_[index]; }
 
   /// Throws as read_image does, and Fault::data when the image has not the size of the first one. One thread at a

@@ -85,7 +85,7 @@ Bytes packed_rows(const GreyImage& image, std::size_t row_bytes) {
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
       const int shift = 8 - image.bits * (x % per_byte + 1);
-      char& byte = rows[static_cast<std::size_t>(y) * row_bytes + static_cast<std::size_t>(x / per_byte)];
+      char& byte = rows[static_cast<std::size_t>(y) * row_bytes + x / per_byte];
       byte = static_cast<char>(byte | image(x, y) << shift);
     }
   }

@@ -41,7 +41,7 @@ struct EncoderSink {
   static int on_write(void* self, std::uint8_t* bytes, int size) {
     auto& sink = *static_cast<EncoderSink*>(self);
     try {
-      sink.put(bytes, static_cast<std::size_t>(size));
+      sink.put(bytes, size);
       return size;
     } catch (...) {
       sink.failure = std::current_exception();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/index.hpp"
+
 namespace vam::io {
 
 namespace {
@@ -60,7 +62,7 @@ bool ViewQueue::next(CameraFrame& frame) {
 
 int ViewQueue::waiting() {
   const std::lock_guard lock(mutex_);
-  return static_cast<int>(frames_.size());
+  return count_of(frames_);
 }
 
 }  // namespace vam::io

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "base/index.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/mesh/private/model_part.hpp"
 #include "io/mesh/private/zip_archive.hpp"
@@ -105,8 +106,8 @@ class Package {
     if (made_of.support) return;
     const ComponentPlacement placement = instance.placement.then(outer);
     const bool mirrored = placement.mirrors();  // 3MF core specification, 4.1: the outside stays outside
-    const int first = static_cast<int>(soup_.points.size());
-    const int last = static_cast<int>(made_of.points.size());
+    const int first = count_of(soup_.points);
+    const int last = count_of(made_of.points);
     for (const auto& point : made_of.points) soup_.points.push_back(placement(point));
     for (auto [a, b, c] : made_of.triangles) {
       for (const int corner : {a, b, c}) {

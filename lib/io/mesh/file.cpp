@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/apart.hpp"
@@ -70,7 +71,7 @@ void check_points(const PolygonSoup& soup) {
 // A fan per polygon. For a concave one the fan folds over itself, yet every fold cancels in a signed volume.
 model::TriangleSoup triangulated(PolygonSoup&& soup) {
   model::TriangleSoup mesh;
-  const int points = static_cast<int>(soup.points.size());
+  const int points = count_of(soup.points);
   mesh.triangles.reserve(soup.faces.size());
   for (std::size_t f = 0; f < soup.faces.size(); ++f) {
     const auto& face = soup.faces[f];
@@ -121,7 +122,7 @@ model::TriangleSoup received(Receiver& in) {
 
 // Once more, as what a child sends is not believed.
 void check_indices(const model::TriangleSoup& mesh, const std::string& name) {
-  const int points = static_cast<int>(mesh.points.size());
+  const int points = count_of(mesh.points);
   for (const auto& triangle : mesh.triangles) {
     for (const int corner : triangle) {
       if (corner < 0 || corner >= points) throw Error{Fault::data, name + ": is damaged: its reader failed"};

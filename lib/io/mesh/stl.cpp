@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/index.hpp"
 #include "io/mesh/file.hpp"
 #include "io/mesh/private/formats.hpp"
 #include "io/stream/stream.hpp"
@@ -64,7 +65,7 @@ PolygonSoup parse_binary_stl(const std::string& bytes) {
   for (std::size_t t = 0; t < count; ++t) {
     float corner[9];
     std::memcpy(corner, bytes.data() + header_bytes + triangle_bytes * t + 12, sizeof corner);
-    const int first = static_cast<int>(soup.points.size());
+    const int first = count_of(soup.points);
     for (int c = 0; c < 9; c += 3) soup.points.push_back({corner[c], corner[c + 1], corner[c + 2]});
     soup.faces.push_back({first, first + 1, first + 2});
   }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "base/index.hpp"
 #include "io/mesh/private/formats.hpp"
 
 namespace vam::io {
@@ -84,7 +85,7 @@ void parse_xml(const ByteFeed& feed, const XmlEvents& events) {
   XML_SetStartNamespaceDeclHandler(parser.get(), on_namespace);
   XML_SetStartDoctypeDeclHandler(parser.get(), on_doctype);
   const auto parse = [&](std::string_view bytes, bool last) {
-    const auto status = XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), last ? 1 : 0);
+    const auto status = XML_Parse(parser.get(), bytes.data(), count_of(bytes), last ? 1 : 0);
     if (parsing.problem) std::rethrow_exception(parsing.problem);
     if (status == XML_STATUS_OK) return;
     throw MeshProblem{"its XML is wrong in line " + std::to_string(XML_GetCurrentLineNumber(parser.get())) + ": " +

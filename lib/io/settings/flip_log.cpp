@@ -80,11 +80,11 @@ std::string armed_sinogram(const std::string& run) {
 }
 
 std::vector<double> turns_shown(const std::vector<ShownImage>& shown, const StageRows& rows, double speed_deg_s) {
-  std::vector<double> turns(static_cast<std::size_t>(rows.count));
+  std::vector<double> turns(rows.count);
   const double row_s = 360.0 / rows.count / speed_deg_s;
   for (const ShownImage& image : shown) {
     const long nearest = std::lround((image.angle_deg - rows.start_deg) / rows.step_deg) % rows.count;
-    turns[static_cast<std::size_t>(nearest < 0 ? nearest + rows.count : nearest)] += image.seconds / row_s;
+    turns[nearest < 0 ? nearest + rows.count : nearest] += image.seconds / row_s;
   }
   return turns;
 }

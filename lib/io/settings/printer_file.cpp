@@ -230,7 +230,7 @@ std::string slurp(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(most_bytes + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  text.resize(stream.gcount());
   if (!stream.is_open() || stream.bad()) {
     throw Error{Fault::no_input, file + ": cannot open: " + std::strerror(errno)};
   }

@@ -33,7 +33,7 @@ std::string followed(const std::string& path) {
   // The link dangles: what it points to is to be created.
   const ssize_t length = readlink(path.c_str(), real.data(), real.size());
   if (length <= 0) return path;
-  const std::string to(real.data(), static_cast<std::size_t>(length));
+  const std::string to(real.data(), length);
   return to.front() == '/' ? to : path.substr(0, path.rfind('/') + 1) + to;
 }
 

@@ -5,7 +5,7 @@
 namespace vam::io {
 
 void InputBuffer::give_back() {
-  file_.skip(static_cast<std::size_t>(gptr() - eback()));
+  file_.skip(gptr() - eback());
   setg(nullptr, nullptr, nullptr);
 }
 
@@ -57,7 +57,7 @@ OutputBuffer::int_type OutputBuffer::overflow(int_type byte) {
 std::streamsize OutputBuffer::xsputn(const char* bytes, std::streamsize count) {
   if (count > epptr() - pptr()) sync();
   if (count > epptr() - pptr()) {
-    put(bytes, static_cast<std::size_t>(count));
+    put(bytes, count);
   } else {
     std::copy(bytes, bytes + count, pptr());
     pbump(static_cast<int>(count));

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/index.hpp"
 #include "io/stream/seal.hpp"
 
 namespace vam::io {
@@ -85,7 +86,7 @@ CoordBBox with_void(CoordBBox box, const model::Grid& grid) {
   const double reach_mm =
       std::hypot(std::max(std::abs(low_x), std::abs(high_x)), std::max(std::abs(low_y), std::abs(high_y)));
   if (2 * reach_mm > max_void * grid.voxel_mm) return box;  // nowhere near the axis
-  const auto voxels = [&](double mm) { return static_cast<int>(std::ceil(mm / grid.voxel_mm)); };
+  const auto voxels = [&](double mm) { return ceil_int(mm / grid.voxel_mm); };
   box.min() -= Coord(voxels(low_x + reach_mm), voxels(low_y + reach_mm), 0);
   box.max() += Coord(voxels(reach_mm - high_x), voxels(reach_mm - high_y), 0);
   return box;

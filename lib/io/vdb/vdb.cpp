@@ -68,10 +68,8 @@ void for_rows(const CoordBBox& part, const CoordBBox& slab, const Row& row) {
   const auto height = static_cast<std::size_t>(slab.dim().y());
   for (int z = part.min().z(); z <= part.max().z(); ++z) {
     for (int y = part.min().y(); y <= part.max().y(); ++y) {
-      const std::size_t at =
-          (static_cast<std::size_t>(z - slab.min().z()) * height + static_cast<std::size_t>(y - slab.min().y())) *
-              width +
-          static_cast<std::size_t>(part.min().x() - slab.min().x());
+      const std::size_t at = (static_cast<std::size_t>(z - slab.min().z()) * height + y - slab.min().y()) * width +
+                             static_cast<std::size_t>(part.min().x() - slab.min().x());
       row(part.min().x(), y, z, part.dim().x(), at);
     }
   }

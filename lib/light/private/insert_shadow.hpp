@@ -58,7 +58,7 @@ class InsertShadow {
   };
   struct Body;
   [[nodiscard]] std::size_t at(int column, int angle) const {
-    return static_cast<std::size_t>(column) * angles_ + static_cast<std::size_t>(angle);
+    return static_cast<std::size_t>(column) * angles_ + angle;
   }
   void note_hindered(int columns);
   [[nodiscard]] float follow(const Body& body, const PixelRay& ray, double part_angle_rad) const;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/index.hpp"
 #include "light/private/posed_rays.hpp"
 #include "light/private/ray_table.hpp"
 #include "light/vial_setup.hpp"
@@ -32,7 +33,7 @@ class VialRays {
   [[nodiscard]] bool climbs() const { return table_.climbs() || posed(); }
   /// The columns that light voxels: columns() from first_column() of the projector on.
   [[nodiscard]] int first_column() const { return first_; }
-  [[nodiscard]] int columns() const { return static_cast<int>(transmitted_.size()); }
+  [[nodiscard]] int columns() const { return count_of(transmitted_); }
   /// T e^{-mu sqrt(R^2 - t^2)} of a column: the fraction that reaches the plane of the axis.
   [[nodiscard]] double transmitted(int column) const { return transmitted_[column]; }
   /// Slices that may share the rays of voxel columns up to that radius: 64, 32 or 16, so that these drift by less than

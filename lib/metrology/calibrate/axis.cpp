@@ -5,6 +5,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
@@ -76,7 +77,7 @@ CameraAxis find_camera_axis(const TurnScan& scan) {
     throw Error{Fault::data, "axis: at no height is there a single bright object in three quarters of " +
                                  std::to_string(scan.angle_deg.size()) + " frames"};
   }
-  out.bands = static_cast<int>(column.size());
+  out.bands = count_of(column);
   out.column = column.front();
   if (out.bands > 1) {
     const stats::WeightedLine line = stats::weighted_line(row, column);

@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/stats/normal.hpp"
 #include "base/text.hpp"
@@ -100,7 +101,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
                                  " degrees to the beam; planes are resolved only at 90 (camera.azimuth_deg)"};
   }
   const auto [inside, plane_mm] = middle_columns(view, image.width, printer);
-  const int count = std::min(planes, static_cast<int>(inside.size()) / least_columns);
+  const int count = std::min(planes, count_of(inside) / least_columns);
   if (count < 4) {
     throw Error{Fault::data, "beam: the resin's middle is " + std::to_string(inside.size()) +
                                  " columns wide; at least " + std::to_string(4 * least_columns) +
@@ -111,7 +112,7 @@ BeamWidths side_widths(const Image& image, const SideView& view, const model::Pr
   for (int p = 0; p < count; ++p) {
     const auto first = inside.size() * static_cast<std::size_t>(p) / static_cast<std::size_t>(count);
     const auto last = inside.size() * (static_cast<std::size_t>(p) + 1) / static_cast<std::size_t>(count);
-    std::vector<double> profile(static_cast<std::size_t>(image.height));
+    std::vector<double> profile(image.height);
     double sum_mm = 0;
     for (std::size_t i = first; i < last; ++i) {
       for (int r = 0; r < image.height; ++r) profile[r] += image(inside[i], r);

@@ -81,7 +81,7 @@ std::optional<Extent> half_maximum(const std::vector<double>& profile) {
 }
 
 std::vector<double> column_profile(const Image& image, int first, int last) {
-  std::vector<double> profile(static_cast<std::size_t>(image.width));
+  std::vector<double> profile(image.width);
   for (int y = first; y < last; ++y) {
     for (int x = 0; x < image.width; ++x) profile[x] += image(x, y);
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/text.hpp"
 
 namespace vam::metrology {
@@ -37,8 +38,7 @@ stats::Measured mean_of(const std::vector<double>& readings) {
   double square = 0;
   for (const double reading : readings) square += (reading - mean) * (reading - mean);
   const double error = std::sqrt(square / (n - 1) / n);
-  return {mean, error * stats::few_readings_factor(static_cast<int>(readings.size()) - 1),
-          static_cast<int>(readings.size())};
+  return {mean, error * stats::few_readings_factor(count_of(readings) - 1), count_of(readings)};
 }
 
 // Neighbours that fall become their mean, again and again [AYER55]: the nearest curve that never falls.

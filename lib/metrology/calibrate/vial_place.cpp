@@ -93,7 +93,7 @@ std::vector<double> band_means(const Image& frame, int bands) {
                                  std::to_string(bands) + " heights"};
   }
   const int rows = frame.height / bands;
-  std::vector<double> means(static_cast<std::size_t>(bands));
+  std::vector<double> means(bands);
   for (int b = 0; b < bands; ++b) {
     double sum = 0;
     for (int y = b * rows; y < (b + 1) * rows; ++y) {

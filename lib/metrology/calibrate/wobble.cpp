@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
+#include "base/index.hpp"
 #include "base/stats/curve_fit.hpp"
 #include "base/text.hpp"
 
@@ -70,7 +71,7 @@ Wobble find_wobble(const std::vector<double>& angle_deg, const std::vector<stats
   }
   const auto freedom = static_cast<double>(values.size() - unknowns);
   const double wider = freedom > 0 ? std::sqrt(std::max(chi_square / freedom, 1.0)) : 1;
-  const auto n = static_cast<int>(values.size());
+  const auto n = count_of(values);
   const auto measured = [&](std::size_t k) { return stats::Measured{fitted[k], wider * std::sqrt(variance[k]), n}; };
   return wobble_of(measured(0), measured(1), measured(2));
 }

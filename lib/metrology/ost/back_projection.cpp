@@ -43,7 +43,7 @@ class DetectorStretch {
  public:
   DetectorStretch(const ClimbingRays& rays, const std::vector<Slab>& filtered, int first, int heights)
       : columns_(rays.columns), length_((heights + 2 * spare + lanes - 1) / lanes * lanes) {
-    values_.resize(static_cast<std::size_t>(start(rays.angles, -beside)));
+    values_.resize(start(rays.angles, -beside));
     parallel_for(rays.angles, [&](int a) {
       const int begin = std::max(first - spare, 0);
       const int end = std::min(first - spare + length_, count_of(filtered) * lanes);
@@ -51,7 +51,7 @@ class DetectorStretch {
         float* to = values_.data() + start(a, t) - (first - spare);
         for (int k = begin; k < end;) {
           const int part = std::min(end - k, lanes - k % lanes);
-          std::copy_n(filtered[static_cast<std::size_t>(k / lanes)].at(t, a) + k % lanes, part, to + k);
+          std::copy_n(filtered[k / lanes].at(t, a) + k % lanes, part, to + k);
           k += part;
         }
       }

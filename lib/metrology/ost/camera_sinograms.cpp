@@ -1,5 +1,6 @@
 #include "metrology/ost/private/camera_sinograms.hpp"
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::metrology {
@@ -7,7 +8,7 @@ namespace vam::metrology {
 std::vector<Image> camera_sinograms(std::span<const CameraView> views, const AngleGrid& turn, const AxisPose& axis,
                                     const LevelRows& rows, std::size_t heights) {
   std::vector<Image> level(views.size());
-  parallel_for(static_cast<int>(views.size()), [&](int i) {
+  parallel_for(count_of(views), [&](int i) {
     const auto v = static_cast<std::size_t>(i);
     level[v] = rows.of(views[v].image, axis);
   });

@@ -65,7 +65,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& tar
                                        [](double sum, float v) { return sum + (v >= 0.5F ? 1 : 0); });
   if (whole == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   const model::Grid& g = scatter.grid;
-  std::vector<std::array<long, 3>> counts(static_cast<std::size_t>(g.nz), {0, 0, 0});  // both, only print, only design
+  std::vector<std::array<long, 3>> counts(g.nz, {0, 0, 0});  // both, only print, only design
   parallel_for(g.nz, [&](int k) {
     auto& count = counts[k];
     const float* in = scatter.slice(k);

@@ -82,7 +82,7 @@ std::vector<model::DoseStatistics> counted(std::span<const Slab> dose, const Pro
     const auto offset = static_cast<std::size_t>(first % lanes);
     for (std::size_t i = offset; i < dose[s].values.size(); i += lanes) {
       for (std::size_t lane = 0; lane < static_cast<std::size_t>(used); ++lane) {
-        slices[static_cast<std::size_t>(first) + lane].add(dose[s].values[i + lane], label(s, i + lane));
+        slices[first + lane].add(dose[s].values[i + lane], label(s, i + lane));
       }
     }
   });

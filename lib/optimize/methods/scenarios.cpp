@@ -59,7 +59,7 @@ void Scenarios::forward(int scenario, std::span<const Slab> objects, std::span<S
 
 std::pair<int, int> Scenarios::drawn(int iteration) const {
   const int pairs = count() / 2;
-  std::vector<int> order(static_cast<std::size_t>(pairs));
+  std::vector<int> order(pairs);
   std::iota(order.begin(), order.end(), 0);
   const auto round = static_cast<std::uint64_t>(iteration / pairs);
   std::uint64_t state = scrambled(round);

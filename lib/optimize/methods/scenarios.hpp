@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/index.hpp"
 #include "light/operator.hpp"
 
 namespace vam::optimize {
@@ -25,7 +26,7 @@ class Scenarios {
   Scenarios(const Scenarios&) = delete;
   Scenarios& operator=(const Scenarios&) = delete;
 
-  [[nodiscard]] int count() const { return static_cast<int>(bank_.size()); }
+  [[nodiscard]] int count() const { return count_of(bank_); }
   /// Dose of the nominal's sinograms in the light of that scenario.
   void adjoint(int scenario, std::span<const Slab> sinograms, std::span<Slab> objects) const;
   /// Its transpose.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 
 namespace vam::optimize {
@@ -15,7 +16,7 @@ constexpr double spare = 1.05;
 /// The slice with most voxels that light reaches, the first of several; an insert may fill others.
 std::size_t fullest_slice(const Problem& problem) {
   std::vector<std::int64_t> voxels(problem.labels.size() * lanes, 0);
-  parallel_for(static_cast<int>(problem.labels.size()), [&](int s) {
+  parallel_for(count_of(problem.labels), [&](int s) {
     const auto& labels = problem.labels[s];
     for (std::size_t i = 0; i < labels.size(); ++i)
       voxels[static_cast<std::size_t>(s) * lanes + i % lanes] += labels[i] != Label::outside ? 1 : 0;

@@ -7,8 +7,7 @@
 namespace vam::optimize {
 
 EvenDose even_dose(const light::Operator& light, const model::Circle& circle, int slices) {
-  const std::vector<Slab> dose =
-      light::dose_of_even_light(light, static_cast<std::size_t>((slices + lanes - 1) / lanes));
+  const std::vector<Slab> dose = light::dose_of_even_light(light, (slices + lanes - 1) / lanes);
   EvenDose result;
   double sum = 0;
   std::int64_t voxels = 0;

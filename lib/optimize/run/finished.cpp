@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace vam::optimize {
 
@@ -16,7 +17,7 @@ void Finished::take(std::vector<Image> images) {
                                  " and those optimised with it are not finite; check the values of target and weights"};
   }
   for (Image& image : images) held_.emplace(jobs_++, std::move(image));
-  for (; slices_ < static_cast<int>(schedule_.job_of_slice.size()); ++slices_) {
+  for (; slices_ < count_of(schedule_.job_of_slice); ++slices_) {
     const int job = schedule_.job_of_slice[slices_];
     if (job >= jobs_) return;
     const auto found = held_.find(job);

@@ -1,6 +1,7 @@
 #include "optimize/run/interruption.hpp"
 
 #include "base/error.hpp"
+#include "base/index.hpp"
 
 namespace vam::optimize {
 
@@ -37,7 +38,7 @@ void exchange(Archive& archive, const RunMark& mark) {
 
 void keep_finished(Archive& to, std::vector<Image>& images) {
   begin(to, RecordTag::finished);
-  auto count = static_cast<int>(images.size());
+  auto count = count_of(images);
   to(count);
   for (Image& image : images) to(image.values);
 }
@@ -51,7 +52,7 @@ std::optional<std::vector<Image>> next_finished(Archive& from, light::Shape imag
   int count = 0;
   from(count);
   if (tag != static_cast<int>(RecordTag::finished) || count < 1 || count > most) damaged(from);
-  std::vector<Image> images(static_cast<std::size_t>(count), Image(image.width, image.height));
+  std::vector<Image> images(count, Image(image.width, image.height));
   for (Image& each : images) {
     const std::size_t pixels = each.size();
     from(each.values);

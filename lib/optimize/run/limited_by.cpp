@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/stats/median.hpp"
 #include "base/text.hpp"
@@ -31,7 +32,7 @@ Json limited_by(std::span<const SliceDemand> asked, const std::function<double(i
   for (const Limitation& kind : kinds) {
     std::vector<double> values;
     int at = -1;
-    for (int k = 0; k < static_cast<int>(asked.size()); ++k) {
+    for (int k = 0; k < count_of(asked); ++k) {
       const double value = asked[k].*kind.value;
       if (value < 0 || (kind.value == &SliceDemand::peak && value == 0)) continue;
       values.push_back(value);

@@ -12,7 +12,7 @@ void for_each_voxel(std::span<const Slab> dose, const Problem& problem, const Vi
   parallel_for(problem.slices, [&](int slice) {
     const auto s = static_cast<std::size_t>(slice) / lanes;
     for (std::size_t i = static_cast<std::size_t>(slice) % lanes; i < dose[s].values.size(); i += lanes) {
-      visit(static_cast<std::size_t>(slice), i / lanes, dose[s].values[i], problem.labels[s][i]);
+      visit(slice, i / lanes, dose[s].values[i], problem.labels[s][i]);
     }
   });
 }
@@ -35,7 +35,7 @@ OutsideSlices outside_part(std::span<const Slab> dose, const Problem& problem, c
 }
 
 std::vector<std::int64_t> wrong_voxels(std::span<const Slab> dose, const Problem& problem) {
-  std::vector<std::int64_t> slices(static_cast<std::size_t>(problem.slices), 0);
+  std::vector<std::int64_t> slices(problem.slices, 0);
   const auto threshold = static_cast<float>(problem.demands.window.threshold());
   for_each_voxel(dose, problem, [&](std::size_t slice, std::size_t, float value, Label label) {
     if (is_constrained(label) && (value >= threshold) != (label == Label::part)) ++slices[slice];

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.hpp"
+
 namespace vam::optimize {
 
 Prolongation::Prolongation(std::vector<Image> coarse, const StackSamples& from, const StackSamples& to)
@@ -14,7 +16,7 @@ Prolongation::Prolongation(std::vector<Image> coarse, const StackSamples& from, 
 
 std::vector<Prolongation::Between> Prolongation::between(const Samples& from, const Samples& to, bool periodic) {
   std::vector<Between> all;
-  all.reserve(static_cast<std::size_t>(to.count));
+  all.reserve(to.count);
   for (int n = 0; n < to.count; ++n) {
     const double at = (to.first + n * to.step - from.first) / from.step;
     const double below = std::floor(at);
@@ -28,11 +30,11 @@ std::vector<Prolongation::Between> Prolongation::between(const Samples& from, co
 }
 
 Image Prolongation::operator()(int k) const {
-  const Between& slice = slices_[static_cast<std::size_t>(k)];
-  const Image& below = coarse_[static_cast<std::size_t>(slice.first)];
-  const Image& above = coarse_[static_cast<std::size_t>(slice.second)];
-  Image image(static_cast<int>(columns_.size()), static_cast<int>(angles_.size()));
-  std::vector<float> row(static_cast<std::size_t>(below.width));
+  const Between& slice = slices_[k];
+  const Image& below = coarse_[slice.first];
+  const Image& above = coarse_[slice.second];
+  Image image(count_of(columns_), count_of(angles_));
+  std::vector<float> row(below.width);
   float* to = image.values.data();
   for (const Between& angle : angles_) {
     const auto mixed = [](float a, float b, float weight) { return a + weight * (b - a); };
@@ -42,8 +44,7 @@ Image Prolongation::operator()(int k) const {
       row[c] = mixed(first, second, angle.weight);
     }
     for (const Between& column : columns_) {
-      *to++ = mixed(row[static_cast<std::size_t>(column.first)], row[static_cast<std::size_t>(column.second)],
-                    column.weight);
+      *to++ = mixed(row[column.first], row[column.second], column.weight);
     }
   }
   return image;

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "light/gaussian_blur.hpp"
@@ -48,7 +49,7 @@ class Bench {
     light::VialSetup setup = light::vial_setup(off.printer, alignment, trial_.info, trial_.grid);
     setup.z_scale = model::vertical_magnification(trial_.printer);  // of which the part was sliced
     const light::Simulation simulation(setup);
-    std::vector<Image> doses(static_cast<std::size_t>(trial_.grid.nz));
+    std::vector<Image> doses(trial_.grid.nz);
     simulation.dose(frames_, doses, inserts_);
     const model::Resin& resin = off.printer.resin;
     const double blur_mm = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, trial_.seconds);
@@ -67,7 +68,7 @@ class Bench {
     const auto unit = static_cast<float>(intensity / trial_.threshold);
     std::vector<model::DoseStatistics> slices;
     for (std::size_t k = 0; k < doses.size(); ++k) slices.emplace_back(1.0);
-    parallel_for(static_cast<int>(doses.size()), [&](int k) {
+    parallel_for(count_of(doses), [&](int k) {
       const Label* labels = input_.problem.labels[k / lanes].data() + k % lanes;
       const std::vector<float>& values = doses[k].values;
       for (std::size_t i = 0; i < values.size(); ++i) slices[k].add(unit * values[i], labels[i * lanes]);

@@ -78,7 +78,7 @@ void settle(Problem& problem, int first) {
   std::vector<char> whole(static_cast<std::size_t>(problem.slices) + 1, 0);
   parallel_for(problem.slices - first, [&](int n) {
     const int k = first + n;
-    whole[k] = has_part(problem.labels[k / lanes], static_cast<std::size_t>(k % lanes)) ? 1 : 0;
+    whole[k] = has_part(problem.labels[k / lanes], k % lanes) ? 1 : 0;
   });
   const bool ends_are_known = problem.stacked && asks_surface(problem.demands);
   parallel_for(problem.slices - first, [&](int n) {

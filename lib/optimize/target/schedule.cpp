@@ -4,6 +4,8 @@
 #include <cstring>
 #include <map>
 
+#include "base/index.hpp"
+
 namespace vam::optimize {
 
 SliceDigest digest(std::span<const float> slice, SliceDigest seed) {
@@ -26,7 +28,7 @@ Schedule make_schedule(std::span<const SliceDigest> slices, int keep) {
   Schedule schedule;
   std::map<SliceDigest, Known> known;
   for (std::size_t k = 0; k < slices.size(); ++k) {
-    const int jobs = static_cast<int>(schedule.slice_of_job.size());
+    const int jobs = count_of(schedule.slice_of_job);
     const auto found = known.find(slices[k]);
     int job = jobs;
     if (found != known.end() && jobs - found->second.jobs_then <= keep) {
@@ -36,7 +38,7 @@ Schedule make_schedule(std::span<const SliceDigest> slices, int keep) {
       schedule.slice_of_job.push_back(static_cast<int>(k));
       schedule.last_slice.push_back(static_cast<int>(k));
     }
-    known[slices[k]] = {job, static_cast<int>(schedule.slice_of_job.size())};
+    known[slices[k]] = {job, count_of(schedule.slice_of_job)};
     schedule.job_of_slice.push_back(job);
   }
   return schedule;

@@ -93,7 +93,7 @@ SliceReader::SliceReader(const VolumeSource& source, light::Shape shape)
 }
 
 std::vector<SliceData> SliceReader::read(int k, int count) const {
-  std::vector<SliceData> slices(static_cast<std::size_t>(count));
+  std::vector<SliceData> slices(count);
   std::vector<float> buffer;
   const auto take = [&](const VolumeSource::Read& from, std::vector<float> SliceData::*to) {
     if (!from) return;

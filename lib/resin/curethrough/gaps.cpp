@@ -91,7 +91,7 @@ GapReport judge_gaps(const PartColumns& part, const CureLimits& limits, double c
   }
   GapReport report;
   report.mask = Image(part.width(), part.height());
-  std::vector<GapReport> rows(static_cast<std::size_t>(part.height()));
+  std::vector<GapReport> rows(part.height());
   parallel_for(part.height(), [&](int y) {
     for (int x = 0; x < part.width(); ++x) {
       report.mask(x, y) = judge_column(part, report.mask.index(x, y), least, clear, rows[y]);

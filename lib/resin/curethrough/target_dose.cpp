@@ -88,7 +88,7 @@ TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int sli
   values_.resize(sections * static_cast<std::size_t>(slices + 1));
   for (int d = 0; d <= slices; ++d) {
     const double power = std::pow(limits.q, d);
-    const auto put = [&](Stretch s, double value) { values_[static_cast<std::size_t>(section(s)) + d] = value; };
+    const auto put = [&](Stretch s, double value) { values_[section(s) + d] = value; };
     const double drained = (1 - lowest * (1 - power)) / power;  // may overflow to inf: no limit
     const double filled = std::max(1.0, highest * (1 - power) + power);
     put(fill, std::min(filled, omega_max));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 
@@ -99,7 +100,7 @@ SimMoment SimWorld::at(double t_s) {
 std::vector<SimMoment> SimWorld::during(double from_s, double to_s) {
   read_logs();
   const double turn_deg = std::abs(angle_deg(to_s) - angle_deg(from_s));
-  const int parts = std::clamp(static_cast<int>(std::ceil(turn_deg / finest_turn_deg)), 1, most_parts);
+  const int parts = std::clamp(ceil_int(turn_deg / finest_turn_deg), 1, most_parts);
   std::vector<double> cuts;
   for (int i = 0; i <= parts; ++i) cuts.push_back(from_s + (to_s - from_s) * i / parts);
   for (const Shown& flip : flips_) {

@@ -62,7 +62,7 @@ class SimDlp final : public device::UsbLink {
     const int length = at(2) | at(3) << 8;
     const bool reading = (at(0) & 0x80) != 0;
     bool done = registers_.contains(command) && command != settings_.refuse && length >= 2 && !spoils("error");
-    if (done && !reading) done = write(command, report.substr(6, static_cast<std::size_t>(length - 2)));
+    if (done && !reading) done = write(command, report.substr(6, length - 2));
     if ((at(0) & 0x40) == 0) return;
     const std::string data = done && reading ? read(command) : "";
     answer_ += static_cast<char>((reading ? 0x80 : 0) | (done ? 0 : 0x20));

@@ -94,7 +94,7 @@ void serve(Pty& pty, SimDevice& device, std::optional<int> baud) {
       // After the bytes were read: a user opens before he writes.
       if (pty.take_opened()) device.opened(clock.now_s());
       if (count > 0) {
-        const std::string text(bytes.data(), static_cast<std::size_t>(count));
+        const std::string text(bytes.data(), count);
         device.receive(right_rate ? text : garbled(text), clock.now_s());
       }
     }

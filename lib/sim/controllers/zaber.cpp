@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "sim/controllers/private/controller.hpp"
@@ -129,7 +130,7 @@ class SimZaber final : public SimController {
 
   // Manual, "warnings": the number of flags, then the flags; "clear" clears those that do not last.
   std::string list_warnings(bool clear) {
-    std::string text = two_digits(static_cast<int>(warnings_.size()));
+    std::string text = two_digits(count_of(warnings_));
     for (const auto& flag : warnings_) text += " " + flag;
     if (clear) std::erase_if(warnings_, [](const std::string& flag) { return flag != "WR"; });
     return text;

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "solid/mesh/private/align_starts.hpp"
 
@@ -173,7 +174,7 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   }
   // Fewer and fewer starts are refined more and more.
   const auto keep = [&](std::size_t count, const auto& rms_of) {
-    parallel_for(static_cast<int>(starts.size()), [&](int i) {
+    parallel_for(count_of(starts), [&](int i) {
       Start& start = starts[i];
       start.rms = rms_of(start.pose);
     });

@@ -21,7 +21,7 @@ struct TriangleKey {
 std::vector<TriangleKey> sorted_keys(const model::TriangleSoup& mesh) {
   // Counting sort by the lowest corner, then each short bucket by the others.
   std::vector<std::size_t> first(mesh.points.size() + 1);
-  for (const Triangle& t : mesh.triangles) ++first[static_cast<std::size_t>(std::min({t[0], t[1], t[2]})) + 1];
+  for (const Triangle& t : mesh.triangles) ++first[std::min({t[0], t[1], t[2]}) + 1];
   for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
   std::vector<std::size_t> next(first.begin(), first.end() - 1);
   std::vector<TriangleKey> keys(mesh.triangles.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/index.hpp"
+
 namespace vam::solid {
 
 namespace {
@@ -17,7 +19,7 @@ class TreeBuilder {
     std::iota(order_.begin(), order_.end(), 0);
     for (const TriangleCorners& t : soup) centroids_.push_back((1.0 / 3.0) * (t[0] + t[1] + t[2]));
     nodes_.reserve(soup.size());
-    if (!soup.empty()) build(0, static_cast<int>(soup.size()));
+    if (!soup.empty()) build(0, count_of(soup));
   }
   [[nodiscard]] const std::vector<int>& order() const { return order_; }
 
@@ -37,7 +39,7 @@ class TreeBuilder {
     }
     const int middle = split(begin, end);
     build(begin, middle);
-    node.right = static_cast<int>(nodes_.size());
+    node.right = count_of(nodes_);
     build(middle, end);
     for (const std::size_t child : {index + 1, static_cast<std::size_t>(node.right)}) {
       grow(node.low, node.high, nodes_[child].low);
@@ -113,7 +115,7 @@ Nearest TriangleTree::nearest(const Vector3& point, int start) const {
       for (int i = node.begin; i < node.end; ++i) look(i);
       continue;
     }
-    Waiting near{next.node + 1, distance2(nodes[static_cast<std::size_t>(next.node) + 1], point)};
+    Waiting near{next.node + 1, distance2(nodes[next.node + 1], point)};
     Waiting far{node.right, distance2(nodes[node.right], point)};
     if (far.distance2 < near.distance2) std::swap(near, far);
     if (far.distance2 < best.distance2) stack[waiting++] = far;

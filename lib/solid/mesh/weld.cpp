@@ -6,6 +6,7 @@
 #include <numeric>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/vector3.hpp"
 #include "solid/mesh/private/topology.hpp"
 
@@ -34,7 +35,7 @@ void renumber(model::TriangleSoup& mesh, std::vector<int>& target) {
     for (int& corner : triangle) {
       const auto old = static_cast<std::size_t>(target[corner]);
       if (number[old] < 0) {
-        number[old] = static_cast<int>(points.size());
+        number[old] = count_of(points);
         points.push_back(mesh.points[old]);
       }
       corner = number[old];

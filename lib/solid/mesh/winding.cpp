@@ -107,7 +107,7 @@ double WindingNumber::solid_angle(std::size_t index, const Vector3& point) const
     return (dot(cluster.area, r) + trace - 3 * along / distance2) / cubed;
   }
   const TriangleNode& node = tree_->nodes[index];
-  if (node.right != 0) return solid_angle(index + 1, point) + solid_angle(static_cast<std::size_t>(node.right), point);
+  if (node.right != 0) return solid_angle(index + 1, point) + solid_angle(node.right, point);
   return triangle_angles(tree_->triangles.data() + node.begin, tree_->triangles.data() + node.end, point);
 }
 

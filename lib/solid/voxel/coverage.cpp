@@ -65,7 +65,7 @@ Bins::Bins(const std::vector<TriangleCorners>& triangles, std::size_t axis, int 
     const double low = std::min({t[0][axis], t[1][axis], t[2][axis]});
     const double high = std::max({t[0][axis], t[1][axis], t[2][axis]});
     spans.push_back(span_of(low, high, layers));
-    for (int k = spans.back().first; k <= spans.back().last; ++k) ++first_[static_cast<std::size_t>(k) + 1];
+    for (int k = spans.back().first; k <= spans.back().last; ++k) ++first_[k + 1];
   }
   for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
@@ -89,7 +89,7 @@ Moment moment(const Polygon& piece, std::size_t axis) {
   Moment result;
   for (int i = 1; i + 1 < piece.count; ++i) {
     const Vector3& b = piece.corners[i];
-    const Vector3& c = piece.corners[static_cast<std::size_t>(i) + 1];
+    const Vector3& c = piece.corners[i + 1];
     const double area = 0.5 * ((b[u] - a[u]) * (c[v] - a[v]) - (b[v] - a[v]) * (c[u] - a[u]));
     result.area += area;
     result.first += area * (a[axis] + b[axis] + c[axis]) / 3;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/index.hpp"
 #include "base/json_fwd.hpp"
 #include "model/grid.hpp"
 #include "solid/voxel/part.hpp"
@@ -41,7 +42,7 @@ class InsertFit {
  public:
   /// They touch across a clearance, too.
   InsertFit(const model::Grid& grid, double clearance_mm)
-      : grid_(grid), reach_(1 + static_cast<int>(std::ceil(clearance_mm / grid.voxel_mm))) {}
+      : grid_(grid), reach_(1 + ceil_int(clearance_mm / grid.voxel_mm)) {}
   void add(const float* part, const float* insert);
   /// The insert touches the part: a voxel of it is in, beside or above one of the part.
   [[nodiscard]] bool meets() const { return contact_ > 0; }

@@ -104,7 +104,7 @@ Affine upright(const std::string& axis) {
 
 Affine mirrored(const std::string& axis) {
   Point sign{1, 1, 1};
-  sign[static_cast<std::size_t>(axis.at(0) - 'x')] = -1;
+  sign[axis.at(0) - 'x'] = -1;
   return scaling(sign);
 }
 

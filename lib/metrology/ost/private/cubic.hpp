@@ -15,8 +15,7 @@ inline float cubic_down(const Image& image, int x, double y) {
   const auto weights = cubic_weights(static_cast<float>(y - whole));
   float sum = 0;
   for (int j = 0; j < 4; ++j)
-    sum += weights[static_cast<std::size_t>(j)] *
-           image(x, std::clamp(static_cast<int>(whole) + j - 1, 0, image.height - 1));
+    sum += weights[j] * image(x, std::clamp(static_cast<int>(whole) + j - 1, 0, image.height - 1));
   return sum;
 }
 
@@ -27,7 +26,7 @@ inline float cubic_at(const Image& image, double x, double y) {
   float sum = 0;
   for (int i = 0; i < 4; ++i) {
     const int column = std::clamp(static_cast<int>(whole) + i - 1, 0, image.width - 1);
-    sum += weights[static_cast<std::size_t>(i)] * cubic_down(image, column, y);
+    sum += weights[i] * cubic_down(image, column, y);
   }
   return sum;
 }

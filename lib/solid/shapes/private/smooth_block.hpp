@@ -28,7 +28,7 @@ class SmoothBlock {
   static constexpr std::size_t cubed(std::size_t n) { return n * n * n; }
   template <int edge>
   static std::size_t index(int i, int j, int k) {
-    return (static_cast<std::size_t>(k) * edge + static_cast<std::size_t>(j)) * edge + static_cast<std::size_t>(i);
+    return (static_cast<std::size_t>(k) * edge + j) * edge + i;
   }
 
   double clear_mm_;

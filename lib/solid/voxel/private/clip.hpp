@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/index.hpp"
 #include "base/vector3.hpp"
 
 namespace vam::solid {
@@ -57,8 +58,8 @@ struct Span {
   int last;
 };
 [[nodiscard]] inline Span span_of(double low, double high, int size) {
-  const int first = std::clamp(static_cast<int>(std::floor(low)), 0, size - 1);
-  const int last = std::clamp(static_cast<int>(std::ceil(high)) - 1, first, size - 1);
+  const int first = std::clamp(floor_int(low), 0, size - 1);
+  const int last = std::clamp(ceil_int(high) - 1, first, size - 1);
   return {first, last};
 }
 [[nodiscard]] inline Span span_of(const Polygon& polygon, std::size_t axis, int size) {
