@@ -156,3 +156,12 @@ TEST_CASE("a figure of merit is found by its name, any other is none") {
   CHECK(figure(metrics, "pw") == -0.5);
   CHECK(std::isnan(figure(metrics, "no figure")));
 }
+
+TEST_CASE("part and void that a bin does not tell apart are told apart by their extremes") {
+  const float low = 1.0001F;
+  const float high = 1.0002F;  // a bin reaches from 1 to 1 + 2^-12
+  const auto m = gathered({{high, 2}, {low, 0.5}}).metrics();
+  CHECK(m.ver == 0);
+  CHECK(m.iou == 1);
+  CHECK(m.iou_threshold == doctest::Approx(1.00015).epsilon(1e-6));
+}

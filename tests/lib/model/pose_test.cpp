@@ -46,3 +46,17 @@ TEST_CASE("between two poses, and beyond the ends") {
   CHECK(pose_between(wobble, 3.5).dx_mm == 0.5);
   CHECK(pose_between(wobble, -1).dx_mm == -1);
 }
+
+TEST_CASE("poses repeat where the last is at most two steps from the first, in any direction") {
+  for (double Pose::*along : {&Pose::dx_mm, &Pose::dy_mm, &Pose::dz_mm}) {
+    const auto repeats = [&](double last_mm) {
+      Poses poses(4);
+      const double mm[] = {5, 6, 7, last_mm};  // steps of 1 mm
+      for (std::size_t k = 0; k < 4; ++k) poses[k].*along = mm[k];
+      return repeat(poses);
+    };
+    CHECK(repeats(7));
+    CHECK_FALSE(repeats(7.01));
+    CHECK_FALSE(repeats(7.9));
+  }
+}

@@ -27,3 +27,16 @@ TEST_CASE("vertical magnification follows [OST22 eq S5] and is 1 for a telecentr
   CHECK(vertical_magnification(printer) == doctest::Approx(1 - shortened / 119.808));
   CHECK(1 / vertical_magnification(printer) == doctest::Approx(1.0572).epsilon(1e-4));
 }
+
+TEST_CASE("a camera magnifies by the way that glass and resin shorten, a telecentric one by none") {
+  Printer printer;
+  printer.vial.wall_mm = 1.2;
+  printer.vial.index_glass = 1.47;
+  printer.camera.telecentric = false;
+  printer.camera.distance_mm = 200;
+  printer.camera.index_resin = 1.5;
+  const double shortened = 12.7 * (1 - 1 / 1.47) + 11.5 * (1 / 1.47 - 1 / 1.5);
+  CHECK(camera_magnification(printer) == doctest::Approx(1 / (1 - shortened / 200)).epsilon(1e-12));
+  printer.camera.telecentric = true;
+  CHECK(camera_magnification(printer) == 1);
+}

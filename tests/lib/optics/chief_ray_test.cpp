@@ -183,3 +183,22 @@ TEST_CASE("impossible geometries are refused") {
   printer.projector.telecentric_columns = true;  // its rows diverge in front of the window
   CHECK_THROWS_AS(static_cast<void>(projector_view(printer)), Error);
 }
+
+TEST_CASE("the window of a bath is between the vial and the lens") {
+  model::Printer printer;
+  printer.bath.index = 1.5;
+  printer.projector.lens_distance_mm = 60;
+  const auto stands = [&](double window_mm) {
+    printer.bath.window_mm = window_mm;
+    try {
+      static_cast<void>(projector_view(printer));
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  };
+  CHECK(stands(printer.vial.radius_mm));  // a vial that touches it
+  CHECK_FALSE(stands(std::nextafter(printer.vial.radius_mm, 0)));
+  CHECK(stands(std::nextafter(60.0, 0)));
+  CHECK_FALSE(stands(60));
+}

@@ -70,3 +70,12 @@ TEST_CASE("few columns light the rim from some angles") {
   CHECK(optics::lit_fraction(printer, 2 * half_mm) ==
         doctest::Approx(2 * std::asin(0.5) / std::numbers::pi).epsilon(1e-3));
 }
+
+TEST_CASE("columns from half the radius to beyond it light a point from a third of all angles") {
+  model::Printer printer;
+  printer.projector.telecentric = true;
+  printer.bath = {1.53, 20};  // straight rays
+  printer.projector.columns = 101;
+  printer.projector.axis_column = -0.5 - 3 / printer.projector.pixel_mm;  // from 3 mm on one side of the axis
+  CHECK(optics::lit_fraction(printer, 6) == doctest::Approx(1.0 / 3).epsilon(1e-3));  // acos(3 / 6) / pi
+}

@@ -283,3 +283,20 @@ TEST_CASE("flatland takes the slice nearest to z; a z outside the stack is an er
   CHECK(frame(3, 4) == doctest::Approx(labelled(info, 1)(15, 3)));
   CHECK(has(error_of([&] { fed(0.16).check(); }, vam::Fault::data), "z = 0.16 mm; its slices lie from -0.1 to 0.1 mm"));
 }
+
+TEST_CASE("slices may end with the projector's rows and no more than a hundredth beyond") {
+  // Two slices of two rows each, from 1 row above to 1 row below z = 0: row of z is axis_row - z / 0.1.
+  const StackInfo info = sinograms(20, 4, 2, 0.1, 0.2, -0.1);
+  const auto fits = [&](double axis_row) {
+    try {
+      static_cast<void>(composed(info, {20, 9, 0.1, axis_row, 0}));
+    } catch (const vam::Error&) {
+      return false;
+    }
+    return true;
+  };
+  CHECK(fits(1.495));  // the upper slice from row -0.505
+  CHECK_FALSE(fits(1.485));
+  CHECK(fits(6.505));  // the lower one to row 8.505
+  CHECK_FALSE(fits(6.515));
+}

@@ -143,3 +143,30 @@ TEST_CASE("impossible processes are refused with their numbers") {
   process.absorbance_height_um = std::nan("");
   CHECK(message(process).find("absorbance height") == 0);
 }
+
+TEST_CASE("within a slice: the dose half way, and where it crosses the threshold, by Beer's law") {
+  resin::Process process;
+  process.slice_um = 400;
+  process.absorbance_height_um = 1000;
+  const double q = std::pow(10, -0.4);
+  resin::CureLimits limits = resin::limits_of(process);
+  CHECK(limits.q == doctest::Approx(q).epsilon(1e-14));
+  CHECK(limits.gain == doctest::Approx(1 - q).epsilon(1e-14));
+  CHECK(limits.settled(1.7) == doctest::Approx(1.7).epsilon(1e-14));
+  CHECK(resin::full_cure_intensity_mw_cm2(process) == doctest::Approx(100.0 / 3600 * 576).epsilon(1e-14));
+  // Towards the far side the dose tends from that of the node to the light's: 2 + (0.3 - 2) q^u.
+  CHECK(resin::dose_at_centre(2, 0.3, limits) == doctest::Approx(2 - 1.7 * std::pow(q, 0.5)).epsilon(1e-14));
+  const double crossing = std::log((0.8 - 2) / (0.3 - 2)) / std::log(q);
+  CHECK(resin::cured_fraction(2, 0.3, 0.8, limits) == doctest::Approx(1 - crossing).epsilon(1e-12));
+  CHECK(resin::cured_fraction(0, 1.6, 0.8, limits) == doctest::Approx(std::log(0.5) / std::log(q)).epsilon(1e-12));
+  CHECK(resin::cured_fraction(2, 0.8, 0.8, limits) == 1);
+  CHECK(resin::cured_fraction(0, 0.8, 0.8, limits) == 0);
+
+  process.exposure = ExposureMode::layered;
+  limits = resin::limits_of(process);
+  CHECK(limits.gain == doctest::Approx(q).epsilon(1e-14));
+  CHECK(resin::full_cure_intensity_mw_cm2(process) ==
+        doctest::Approx(100.0 / 3600 * 576 / (std::log(10.0) * 0.4)).epsilon(1e-14));
+  CHECK(resin::dose_at_centre(2, 0.3, limits) == doctest::Approx(2.3 * std::pow(q, 0.5)).epsilon(1e-14));
+  CHECK(resin::cured_fraction(1.3, 0.3, 0.8, limits) == doctest::Approx(std::log(0.5) / std::log(q)).epsilon(1e-12));
+}

@@ -79,3 +79,30 @@ TEST_CASE("readings that determine no response are errors") {
   CHECK(message({{1, 1}, {100, 20}, {255, 50}}, 0).find("the lowest grey is 1") != std::string::npos);
   CHECK(message({{0, 1}, {100, 2}, {255, 3}}, 10).find("zero intensity") != std::string::npos);
 }
+
+TEST_CASE("a fall of three standard errors of the difference is noise, and no more") {
+  // Readings 1 above and 1 below their mean: 2, 8 and 2 of them have a pooled variance of 12 / 9, and the difference of
+  // neighbouring means has that times 1 / 8 + 1 / 2.
+  const double error = std::sqrt(12.0 / 9 * (1.0 / 8 + 1.0 / 2));
+  const auto accepted = [](double first, double second, bool long_first) {
+    std::vector<PhotodiodeReading> readings{{0, -1}, {0, 1}};
+    for (int i = 0; i < (long_first ? 4 : 1); ++i) {
+      readings.push_back({1, first - 1});
+      readings.push_back({1, first + 1});
+    }
+    for (int i = 0; i < (long_first ? 1 : 4); ++i) {
+      readings.push_back({2, second - 1});
+      readings.push_back({2, second + 1});
+    }
+    try {
+      static_cast<void>(resin::fit_response(readings, 0, "d"));
+    } catch (const Error&) {
+      return false;
+    }
+    return true;
+  };
+  for (const bool long_first : {false, true}) {
+    CHECK(accepted(20, 20 - 2.99 * error, long_first));
+    CHECK_FALSE(accepted(20, 20 - 3.01 * error, long_first));
+  }
+}

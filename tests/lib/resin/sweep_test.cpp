@@ -116,3 +116,20 @@ TEST_CASE("faster means wider gaps, up to the speed limit") {
   process.speed_mm_h = 1.01 * resin::speed_limit_mm_h(process);
   CHECK(resin::narrowest_gap(resin::limits_of(process), 0.5) == 0);
 }
+
+TEST_CASE("a full-cure dose is printable between the least and the largest intensity") {
+  resin::Study study;
+  study.process.speed_mm_h = 3600;  // 0.1 cm/s: the intensity is a tenth of the dose
+  study.process.min_intensity_mw_cm2 = 5;
+  study.process.max_intensity_mw_cm2 = 110;
+  study.process.full_cure_dose_mj_cm3 = 100;
+  study.gel_dose_mj_cm3 = 100;
+  study.dose_factors = {0.49, 0.51, 10.9, 11.1};
+  study.omega_max = {1};
+  const auto points = resin::run_study({0, 1, 0}, study);
+  REQUIRE(points.size() == 4);
+  CHECK_FALSE(points[0].printable);  // dark pixels cure, too
+  CHECK(points[1].printable);
+  CHECK(points[2].printable);
+  CHECK_FALSE(points[3].printable);  // full light never does
+}

@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "lib/meshes.hpp"
 #include "solid/mesh/private/winding.hpp"
 #include "solid/mesh/surface.hpp"
@@ -154,4 +157,28 @@ TEST_CASE("shrinkage is measured with the scale") {
   solid::AlignOptions options;
   options.with_scale = true;
   CHECK(solid::align(print, reference, surface, options).transform.scale == doctest::Approx(1 / 0.97).epsilon(1e-4));
+}
+
+TEST_CASE("debris pulls with constant force from 2.5 times the deviation on [HUB64]") {
+  // A cube of 10 mm and a plate of 2.5 x 2.5 mm that floats 2 mm before its face x = 5: the share p of the points that
+  // is the plate's pulls the cube by t along x, where both forces are in balance. Each force is the area times the
+  // distance times the weight min(1, bound / distance).
+  TriangleSoup cube;
+  test::add_box({-5, -5, -5}, {5, 5, 5}, cube);
+  TriangleSoup print = cube;
+  for (const auto& [y, z] : {std::pair{-1.25, -1.25}, {1.25, -1.25}, {1.25, 1.25}, {-1.25, 1.25}})
+    print.points.push_back({7, y, z});
+  print.triangles.push_back({8, 9, 10});
+  print.triangles.push_back({8, 10, 11});
+  const double plate = 6.25 / 606.25;
+  const double across = 200 / 606.25;  // both faces across x
+  double t = 0;
+  for (int step = 0; step < 100; ++step) {
+    const double distance = 2 - t;
+    const double bound = 2.5 * std::sqrt(plate * distance * distance + across * t * t);
+    t = plate * std::min(distance, bound) / across;
+  }
+  const auto found = solid::refine(print, solid::Surface(cube), {});
+  CHECK(-found.transform.shift_mm[0] == doctest::Approx(t).epsilon(0.015));
+  CHECK(std::abs(found.transform.shift_mm[1]) < 0.01 * t);
 }

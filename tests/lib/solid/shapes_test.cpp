@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -252,4 +253,31 @@ TEST_CASE("errors of shapes state the valid range") {
   CHECK(usage_error("octet:across=1.5").find("whole number") != std::string::npos);
   CHECK(usage_error("hollow-cylinder:inner=10").find("inner must be below outer") != std::string::npos);
   CHECK(usage_error("").find("unknown") != std::string::npos);
+}
+
+TEST_CASE("a box under any map is bounded by its mapped corners") {
+  Field field;
+  field.value = [](const Point& p) { return std::max({1 - p[0], p[0] - 2, -3 - p[1], p[1], 4 - p[2], p[2] - 9}); };
+  field.box = {{1, -3, 4}, {2, 0, 9}};
+  field.radius_mm = field.ball_mm = 1e3;  // neither bounds the corners
+  const Affine map{{{{0.9, -0.3, 0.2}, {0.5, 1.1, -0.4}, {-0.2, 0.6, 0.8}}}, {3, -7, 1}};
+  Bounds want{{1e9, 1e9, 1e9}, {-1e9, -1e9, -1e9}};
+  double radius_mm = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Point at =
+        map({(corner & 1) != 0 ? 2.0 : 1.0, (corner & 2) != 0 ? 0.0 : -3.0, (corner & 4) != 0 ? 9.0 : 4.0});
+    radius_mm = std::max(radius_mm, std::hypot(at[0], at[1]));
+    for (std::size_t a = 0; a < 3; ++a) {
+      want.low[a] = std::min(want.low[a], at[a]);
+      want.high[a] = std::max(want.high[a], at[a]);
+    }
+  }
+  const Field moved = transformed(field, map);
+  for (std::size_t a = 0; a < 3; ++a) {
+    CHECK(moved.box.low[a] == doctest::Approx(want.low[a]));
+    CHECK(moved.box.high[a] == doctest::Approx(want.high[a]));
+  }
+  CHECK(moved.radius_mm == doctest::Approx(radius_mm).epsilon(2e-5));  // directions half a degree apart
+  CHECK(moved.value(map({1.5, -1, 5})) == doctest::Approx(-0.5));      // half a millimetre inside the nearest face
+  CHECK(moved.value(map({1.5, -1, 9.25})) == doctest::Approx(0.25));
 }

@@ -296,3 +296,22 @@ TEST_CASE("the same bytes for any number of threads") {
     CHECK(one == voxels(mesh, grid).values);
   }
 }
+
+TEST_CASE("an axis that sees a face on one side only says half, and more than a half is undecided") {
+  // A bar of 6 x 1 x 6 voxels, less than a voxel thick: both faces across x are missing, and the upper one across z.
+  const model::Grid grid = cube_grid(12);
+  for (const double thickness : {0.4, 0.45, 0.55, 0.8}) {
+    TriangleSoup bar = vam::oracle::box({-3, 0.1, -3}, {3, 0.1 + thickness, 3});
+    std::erase_if(bar.triangles, [&](const auto& t) {
+      const auto all_at = [&](std::size_t axis, double mm) {
+        return bar.points[t[0]][axis] == mm && bar.points[t[1]][axis] == mm && bar.points[t[2]][axis] == mm;
+      };
+      return all_at(0, -3) || all_at(0, 3) || all_at(2, 3);
+    });
+    REQUIRE(bar.triangles.size() == 6);
+    const Result found = voxels(bar, grid);
+    CAPTURE(thickness);
+    CHECK(found.vote.undecided == (thickness > 0.5 ? 36 : 0));
+    if (thickness < 0.5) CHECK(found.sum() == doctest::Approx(36 * 0.5 * thickness).epsilon(1e-5));
+  }
+}

@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "tomo/private/fft.hpp"
 
 using namespace vam;
 using namespace vam::tomo;
@@ -126,4 +127,32 @@ TEST_CASE("a ceiling caps the gain; members given by position keep their meaning
   CHECK(gains[gains.size() / 4] == doctest::Approx(0.125).epsilon(0.02));  // below it the ramp
   spec.floor = 0.5;
   CHECK_THROWS_AS(vam::tomo::Filter(64, spec), vam::Error);
+}
+
+TEST_CASE("windows have their shape between half the cutoff and their edges") {
+  const Filter ramp(500, {});
+  for (const double fraction : {0.125, 0.375, 0.75, 0.875}) {
+    CAPTURE(fraction);
+    const auto ratio = [&](FilterWindow window) {
+      return gain(Filter(500, {window, 1, 0, 0}), fraction) / gain(ramp, fraction);
+    };
+    CHECK(ratio(FilterWindow::hamming) == doctest::Approx(0.54 + 0.46 * std::cos(pi * fraction)).epsilon(1e-5));
+    CHECK(ratio(FilterWindow::hann) == doctest::Approx(0.5 + 0.5 * std::cos(pi * fraction)).epsilon(1e-3));
+    CHECK(ratio(FilterWindow::cosine) == doctest::Approx(std::cos(pi * fraction / 2)).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a transform is the shortest of 2^n, 3 2^n and 5 2^n that is long enough") {
+  CHECK(fft_length(1) == 1);
+  CHECK(fft_length(2) == 2);
+  CHECK(fft_length(3) == 3);
+  CHECK(fft_length(4) == 4);
+  CHECK(fft_length(5) == 5);
+  CHECK(fft_length(7) == 8);
+  CHECK(fft_length(9) == 10);
+  CHECK(fft_length(11) == 12);
+  CHECK(fft_length(13) == 16);
+  CHECK(fft_length(17) == 20);
+  CHECK(fft_length(21) == 24);
+  CHECK(fft_length(25) == 32);
 }

@@ -47,3 +47,17 @@ TEST_CASE("negative light is raised by what is given, then clipped") {
   raise_and_clip(slab, 0.5F, 0);
   for (int i = 0; i < 3 * lanes; ++i) CHECK(slab.at(0, 0)[i] == (i % 3 == 0 ? 0.0F : static_cast<float>(i % 3) - 0.5F));
 }
+
+TEST_CASE("as many slabs a pass as the budget holds, one at least and four at most") {
+  ParallelGeometry geometry;
+  geometry.nx = 10;
+  geometry.ny = 20;
+  geometry.columns = 30;
+  geometry.angles = 40;
+  const std::size_t slab = (2 * 10 * 20 + 3 * 30 * 40) * lanes * sizeof(float);
+  CHECK(slabs_a_pass(geometry, 0) == 1);
+  CHECK(slabs_a_pass(geometry, 2 * slab - 1) == 1);
+  CHECK(slabs_a_pass(geometry, 2 * slab) == 2);
+  CHECK(slabs_a_pass(geometry, 4 * slab) == 4);
+  CHECK(slabs_a_pass(geometry, 100 * slab) == 4);
+}
