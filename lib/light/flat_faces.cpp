@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/index.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -52,7 +53,8 @@ FlatFaceFinder::FlatFaceFinder(const model::Grid& grid) : grid_(grid), below_(gr
 void FlatFaceFinder::add(int count, const float* slices) {
   Mask above(grid_.slice_size());
   for (int n = 0; n < count; ++n, slices += grid_.slice_size()) {
-    std::transform(slices, slices + grid_.slice_size(), above.begin(), [](float f) { return f >= 0.5F ? 1 : 0; });
+    std::transform(slices, slices + grid_.slice_size(), above.begin(),
+                   [](float f) { return model::half_covered(f) ? 1 : 0; });
     compare(above);
     below_.swap(above);
   }

@@ -3,10 +3,12 @@
 
 #include <cstddef>
 
+#include "model/dose_metrics.hpp"
+
 namespace vam::light {
 
 /// A voxel is opaque if an insert covers at least half of it.
-[[nodiscard]] constexpr bool opaque(float coverage) { return coverage >= 0.5F; }
+[[nodiscard]] constexpr bool opaque(float coverage) { return model::half_covered(coverage); }
 
 /// A voxel is in shadow if even light gives it at most 1 % of the largest dose, with which nothing prints.
 [[nodiscard]] constexpr bool in_shadow(float even_dose, float largest) { return !(even_dose > 0.01F * largest); }

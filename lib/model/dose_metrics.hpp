@@ -16,6 +16,9 @@ enum class Label : std::uint8_t { outside = 0, part = 1, void_ = 2, surface = 3 
 /// Coverage within this distance of 0 or 1 is rounding, not surface.
 inline constexpr float coverage_rounding = 1e-3F;
 
+/// A voxel is of a body that covers at least half of it.
+[[nodiscard]] constexpr bool half_covered(float coverage) { return coverage >= 0.5F; }
+
 [[nodiscard]] constexpr Label label_of(float coverage) {
   if (coverage >= 1.0F - coverage_rounding) return Label::part;
   return coverage <= coverage_rounding ? Label::void_ : Label::surface;

@@ -9,6 +9,7 @@
 #include "base/json.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "model/dose_metrics.hpp"
 #include "model/figures.hpp"
 #include "score/exposure_plan.hpp"
 
@@ -88,7 +89,7 @@ void Score::add(const float* dose, const float* target, int count) {
       if (!inside_[i] && label == model::Label::void_) continue;
       if (label == model::Label::surface) {
         ++surface[s];
-        cut[s].add(d, f >= 0.5F ? model::Label::part : model::Label::void_);
+        cut[s].add(d, model::half_covered(f) ? model::Label::part : model::Label::void_);
       }
       slices[s].add(d, label);
       if (options_.part && label == model::Label::void_ && !in_box(i, slices_ + s)) outside[s].add(d);

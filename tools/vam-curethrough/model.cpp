@@ -12,6 +12,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
+#include "model/dose_metrics.hpp"
 #include "resin/curethrough/cure_map.hpp"
 #include "resin/curethrough/stack_dose.hpp"
 #include "vam-curethrough/figures.hpp"
@@ -149,7 +150,7 @@ class Judge {
   void keep_plane(int n, const float* light, const float* below, const float* solid) {
     for (int x = 0; x < grid_.nx; ++x) {
       const double omega = centre(light[x], below[x]);
-      const bool in_part = map_ && solid[x] >= 0.5F;
+      const bool in_part = map_ && model::half_covered(solid[x]);
       plane_.light(x, n) = light[x];
       plane_.solid(x, n) = in_part ? 1.0F : 0.0F;
       const resin::Cure cure = resin::cure_of(omega, in_part);

@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/parallel.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::metrology {
 
@@ -62,7 +63,7 @@ float value_at(const model::Volume& volume, double x_mm, double y_mm, double z_m
 
 Cured cured(const model::Volume& scatter, double level, const model::Volume& target) {
   const double whole = std::accumulate(target.values.begin(), target.values.end(), 0.0,
-                                       [](double sum, float v) { return sum + (v >= 0.5F ? 1 : 0); });
+                                       [](double sum, float v) { return sum + (model::half_covered(v) ? 1 : 0); });
   if (whole == 0) throw Error{Fault::data, "target: no voxel is covered by a half or more"};
   const model::Grid& g = scatter.grid;
   std::vector<std::array<long, 3>> counts(g.nz, {0, 0, 0});  // both, only print, only design
@@ -72,7 +73,7 @@ Cured cured(const model::Volume& scatter, double level, const model::Volume& tar
     for (int j = 0; j < g.ny; ++j) {
       for (int i = 0; i < g.nx; ++i) {
         const bool print = static_cast<double>(in[j * g.nx + i]) >= level;
-        const bool design = value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)) >= 0.5F;
+        const bool design = model::half_covered(value_at(target, g.x_mm(i), g.y_mm(j), g.z_mm(k)));
         count[0] += print && design ? 1 : 0;
         count[1] += print && !design ? 1 : 0;
         count[2] += !print && design ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/index.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::optimize {
 
@@ -98,7 +99,7 @@ std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const 
 std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem) {
   return counted(dose, problem, [&](std::size_t s, std::size_t i) {
     if (problem.labels[s][i] != Label::surface) return Label::outside;
-    return problem.target[s].values[i] >= 0.5F ? Label::part : Label::void_;
+    return model::half_covered(problem.target[s].values[i]) ? Label::part : Label::void_;
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
+#include "model/dose_metrics.hpp"
 
 namespace vam::optimize {
 
@@ -37,7 +38,7 @@ void settle_thin(Problem& problem, int slice) {
 Label label_of(float value, const Demands& demands) {
   const Label label = model::label_of(value);
   if (demands.grey) return label == Label::surface ? Label::part : label;
-  if (demands.surface && label == Label::surface) return value >= 0.5F ? Label::part : Label::void_;
+  if (demands.surface && label == Label::surface) return model::half_covered(value) ? Label::part : Label::void_;
   return label;
 }
 
