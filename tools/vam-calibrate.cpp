@@ -18,7 +18,8 @@ cli::Manual manual() {
       {"Each scan command reads frames recorded by vam-capture, most of them while vam-project shows a test pattern, "
        "measures one property of the instrument and writes a calibration record. --flips is the log of vam-project, "
        "which states "
-       "which pattern frame was on and when. check reports the records in force. vam-calibrate-all(1) shows the "
+       "which pattern frame was on and when. check reports the records in force. vam-calibrate all, which is "
+       "vam-calibrate-all(1), shows the "
        "patterns, captures the frames and runs lag, latency, response, axis and edges in this order; flat and beam on "
        "request.",
        "lag determines the delay of the camera's time stamps from a bead that turns with the stage at known angles, in "
@@ -158,10 +159,11 @@ void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
   auto& resin = app.subcommand("resin", "gelation threshold, from a printed standard cylinder", command);
   resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
   resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
-  resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.");
+  resin.option("--diameter", "MM", o.diameter_mm, cli::positive,
+               "Known diameter of the standard. Required without --profile.");
   resin
       .option("--profile", "FILE.png", o.profile,
-              "Height image of the standard from a profilometer, to measure its diameter.")
+              "Height image of the standard from a profilometer, to measure its diameter. Required without --diameter.")
       .reads();
   resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
 }
@@ -187,6 +189,8 @@ int main(int argc, char** argv) {
   const int moved = tool::follow_moved(
       argc, argv, {"--screen", "--light", "--scans", "--home", "--sweep-exposure", "--keep"}, "vam-calibrate-all");
   if (moved >= 0) return moved;
+  const int all = tool::follow_script(argc, argv, "all", "vam-calibrate-all");
+  if (all >= 0) return all;
   cli::App app(manual());
   ScanOptions scan;
   ResinOptions resin;

@@ -164,7 +164,7 @@ void declare(cli::App& app, Options& o) {
   declare_faults(app, o);
   app.group("Program");
   app.option("--seed", "N", o.camera.bench.seed, {0, 1e9}, "Seed of the random numbers.");
-  app.option("--log", "FILE", o.log, "Append one JSON line per event.");
+  app.option("--log", "FILE", o.log, "Append one JSON line per event; - is standard error.");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");
   cli::add_printer(app, o.printer);
 }

@@ -114,7 +114,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--fault", "FAULT", options.faults, "Inject a fault, as KIND@COMMAND[:N].");
   app.group("Program");
   app.option("--seed", "N", options.seed, {0, 1e9}, "Seed of the random numbers.");
-  app.option("--log", "FILE", options.log, "Append one JSON line per event.");
+  app.option("--log", "FILE", options.log, "Append one JSON line per event; - is standard error.");
   app.option("--link", "FILE", options.link, "Symbolic link to the pseudo-terminal, removed at the end.");
   app.flag("--shim", options.shim, "Print the path of the library to preload and exit.");
   app.flag("--die-with-parent", options.with_parent, "Exit when the parent process exits.");

@@ -100,9 +100,9 @@ void admit(std::size_t bytes) {
 
 OutOfMemory::OutOfMemory(std::uint64_t wanted, std::uint64_t has, std::uint64_t most) noexcept {
   const auto of = [](std::uint64_t bytes) { return static_cast<double>(bytes) / bytes_per_gib; };
-  std::snprintf(text_.data(), text_.size(), "needs %.3g GiB of memory beside the %.3g GiB that it has; %s%s %.3g GiB%s",
-                of(wanted), of(has), chosen ? bound_name : "the machine had", chosen ? " allows" : "", of(most),
-                chosen ? "" : " free");
+  std::snprintf(text_.data(), text_.size(),
+                "needs %.3g GiB of memory in addition to the %.3g GiB in use; %s%s %.3g GiB%s", of(wanted), of(has),
+                chosen ? bound_name : "the machine had", chosen ? " allows" : "", of(most), chosen ? "" : " free");
 }
 
 void bound_memory(std::uint64_t bytes, const char* name) {

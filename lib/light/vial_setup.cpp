@@ -68,7 +68,7 @@ void place_rows(VialSetup& setup, const model::Poses& poses, const model::Grid& 
     throw Error{Fault::data, "poses: the slices are at z = " + mm_text(slices.z_mm(0) + lift.least / setup.z_scale) +
                                  " ... " + mm_text(slices.z_mm(slices.nz - 1) + lift.most / setup.z_scale) +
                                  ", but the projector's rows cover " + mm_text(setup.lowest_mm) + " ... " +
-                                 mm_text(setup.highest_mm) + "; check projector.axis_row and the table"};
+                                 mm_text(setup.highest_mm) + "; check projector.axis_row and the poses"};
   }
   setup.poses = poses;
   setup.turn.rows = count_of(poses);

@@ -71,7 +71,7 @@ void FlatlandSlice::check() const {
   const float least = *std::min_element(nearest_.values.begin(), nearest_.values.end());
   if (least < 0) {
     throw Error{Fault::data, subject_ + ": has a value of " + format_number(least) + " at " + z +
-                                 "; light cannot be negative: clip or offset it in vam-sinogram"};
+                                 "; intensity cannot be negative: clip or offset it in vam-sinogram"};
   }
   if (!(peak() > 0)) throw Error{Fault::data, subject_ + ": is dark at " + z + "; nothing to project"};
 }

@@ -95,7 +95,7 @@ void FrameComposer::add(const Image& sinogram, double z_mm) {
   if (lit.least < 0) {
     throw Error{Fault::data, subject_ + ": has a value of " + format_number(lit.least) +
                                  " at z = " + format_number(z_mm) +
-                                 " mm; light cannot be negative: clip or offset it in vam-sinogram"};
+                                 " mm; intensity cannot be negative: clip or offset it in vam-sinogram"};
   }
   Slice& slice = slices_.emplace_back();
   slice.z_mm = z_mm;

@@ -13,7 +13,6 @@ namespace vam::tomo {
 
 namespace {
 
-// Below this flank a trapezoid is a box to float precision; it keeps 1 / flank finite when rays run along the pixels.
 constexpr double largest_exponent = 80;  // e^88 is the largest float
 
 void check_shapes(std::span<const Slab> slabs, int width, int height, const char* what) {

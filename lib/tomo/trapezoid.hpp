@@ -14,7 +14,8 @@ struct Trapezoid {
 
   /// The footprint of `total` area whose sides are `wide` >= `narrow` >= 0, in any unit of which a voxel has about one.
   [[gnu::always_inline]] static Trapezoid of(float wide, float narrow, float total) {
-    const float flank = narrow > 1e-6F ? narrow : 1e-6F;  // no quotient of nothing
+    const float flank =
+        narrow > 1e-6F ? narrow : 1e-6F;  // narrower it is a box to float precision; 1 / flank stays finite
     const float curve = total / (2.0F * flank * wide);
     return {0.5F * (wide + flank), 0.5F * (wide - flank), 2.0F * flank * curve, curve};
   }

@@ -1,7 +1,8 @@
 // Runs a program on a machine with a simulated USB device: libusb in it is the real one, umockdev stands for the kernel
 // and the simulators of lib/device for the hardware. usage: umockdev-wrapper usb_host DEVICE LOG PROGRAM ARGS...
-// DEVICE: tic:, dlpc350: or dlpc900:, the last two with what is wrong with them (sim_dlp.hpp): dlpc900:?fault=silent.
-// Exit status: the program's. The device lives on for 120 ms after the program: its guardian is late after 100.
+// DEVICE: tic:, dlpc350: or dlpc900:, the last two with what is wrong with them (lib/sim/controllers/dlp.hpp):
+// dlpc900:?fault=silent. Exit status: the program's. The device lives on for 120 ms after the program: its guardian is
+// late after 100.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 #include <sys/wait.h>

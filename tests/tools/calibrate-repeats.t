@@ -52,6 +52,11 @@ answers() { name=$1; shift; printf '%s\n' "$@" >"$name.answers"; }
 
 calibrate latency
 is 'nothing is repeated without a reason' "$status$(repeated)" 0
+vam-calibrate-all --display null: --light sim: --scans latency --log - 2>errors
+is 'vam-calibrate all is this script' "$("$VAM_BUILD/bin/vam-calibrate" all --help)" "$(vam-calibrate-all --help)"
+is '--log -: events on standard error, and no file of that name' \
+  "$(grep -c '"event":"[a-z]*","scan":"latency"' errors) $(ls ./- 2>&1 | grep -c 'No such')" "$(grep -c '"scan":"latency"' events) 1"
+rm -f ./*.answers
 # Its first answer is that of identify.
 answers vam-capture 0 '75 2 of 150 frames were lost'
 calibrate latency

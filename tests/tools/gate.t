@@ -24,7 +24,7 @@ fails 65 'coverage, 0 to 1' vam-dose light.exr --like minus.vdb -o x.vdb
 fails 65 'coverage, 0 to 1' vam-sinogram minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-curethrough correct minus.vdb -o x.exr
 fails 65 'coverage, 0 to 1' vam-score part.vdb --grid target --target minus.vdb
-fails 65 "stdin: grid 'target' is there twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
+fails 65 "stdin: grid 'target' occurs twice" sh -c 'cat part.vdb part.vdb | vam-optimize - -o x.exr'
 ok 'vam-view still shows it' vam-view minus.vdb -o x.png
 
 done_testing

@@ -52,6 +52,6 @@ mv part.vdb free.vdb
 quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
 same 'the bound is of no consequence, not even for the history' free.vdb part.vdb
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
-sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory beside the [0-9.e-]+ GiB that it has; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
+sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 
 done_testing

@@ -165,8 +165,8 @@ void warn_of_negative(const Options& options, float least) {
 
 void warn_of_light(const Options& options, double left_out) {
   if (left_out < 1e-3) return;
-  warn(io::input_name(options.input) + ": " + format_number(100 * left_out, 3) +
-       " % of the light lies above or below " + options.like + " and is left out; check --axis-row");
+  warn(io::input_name(options.input) + ": " + format_number(100 * left_out, 3) + " % of the light is above or below " +
+       options.like + " and is left out; check --axis-row");
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ void declare(cli::App& app, Options& options) {
              std::string("Optimisation method. auto: ") + optimize::automatic_method +
                  " from coarse to fine, at least " + std::to_string(optimize::automatic_refinements) +
                  " iterations at full resolution (" + std::to_string(optimize::early_refinements) +
-                 " where the print's surface is true by then), until " + optimize::automatic_until + ".");
+                 " where the print's surface is within tolerance by then), until " + optimize::automatic_until + ".");
   app.choice("--geometry", options.geometry, {"vial", "parallel"},
              "Beam model: refracted chief rays of the projector, which gives a projector sinogram, or ideal parallel "
              "beam, which gives a virtual sinogram for vam-resample in a third of the time.");

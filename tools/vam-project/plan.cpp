@@ -80,8 +80,8 @@ void print_plan(const Options& options, const model::Printer& printer) {
   say("exposure", std::to_string(turns) + (turns == 1 ? " turn at " : " turns at ") +
                       format_number(printer.stage.speed_deg_s) +
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
-  say("light", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
-                   format_number(full_scale, 4));
+  say("intensity", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
+                       format_number(full_scale, 4));
   say("dose", dose_text(info, printer, turns, full_scale));
   print_devices(options, printer);
 }

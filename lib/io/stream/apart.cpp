@@ -92,7 +92,7 @@ void send_verdict(int socket, int fault, const std::string& line) {
     line = error.what();
   } catch (const std::bad_alloc&) {
     fault = static_cast<int>(Fault::data);
-    line = source.name + ": asks for more than " + gib(bounds.memory_bytes) + " of memory; it is damaged";
+    line = source.name + ": requires more than " + gib(bounds.memory_bytes) + " of memory; it is damaged";
   } catch (const std::exception& error) {
     fault = static_cast<int>(Fault::data);
     line = source.name + ": is damaged: " + error.what();

@@ -125,7 +125,7 @@ void require_usable(const std::string& path, const std::vector<SparseVolume>& vo
   std::set<std::string> names;
   for (const SparseVolume& volume : volumes) {
     if (promise_of(volume.name(), target) && !names.insert(volume.name()).second) {
-      refuse(path, volume.name(), "is there twice; keep the one that is meant, or give it another name");
+      refuse(path, volume.name(), "occurs twice; keep one of them, or rename it");
     }
     require_usable(path, volume, target);
   }

@@ -35,7 +35,7 @@ class Walk {
   void sized(std::size_t limit) {
     const auto size = number<std::uint32_t>();
     if (size > limit) {
-      throw std::runtime_error("is damaged: byte " + std::to_string(at_) + " asks for " + std::to_string(size) +
+      throw std::runtime_error("is damaged: byte " + std::to_string(at_) + " requires " + std::to_string(size) +
                                " bytes");
     }
     skip(size);

@@ -102,7 +102,7 @@ class SimGrbl final : public SimController {
     if (line.empty()) return answer("ok\r\n");
     const std::string command = line.substr(0, line.rfind("$J=", 0) == 0 ? 2 : line.size());
     if (command == "$I")
-      return reply(line, command, "[VER:1.1h.20190830:table 3 (simulated)]\r\n[OPT:V,15,128]\r\nok\r\n");
+      return reply(line, command, "[VER:1.1h.20190830:stage 3 (simulated)]\r\n[OPT:V,15,128]\r\nok\r\n");
     if (command == "$$") return reply(line, command, settings_text());
     if (command == "$X") {
       alarm_ = false;

@@ -66,7 +66,7 @@ TEST_CASE("a large allocation beyond the bound throws before it is made") {
     FAIL("4 GiB were given");
   } catch (const OutOfMemory& refused) {
     const std::string line = refused.what();
-    CHECK(line.starts_with("needs 4 GiB of memory beside the 0."));
+    CHECK(line.starts_with("needs 4 GiB of memory in addition to the 0."));
     CHECK(line.ends_with("--memory allows 1 GiB"));
   }
   CHECK_THROWS_AS(std::make_unique<char[]>(std::size_t{1} << 62), OutOfMemory);

@@ -133,7 +133,7 @@ TEST_CASE("A GRBL board homes, moves and prints like any other stage") {
   GrblLab lab;
   lab.open();
   CHECK(describe(*lab.stage)["model"] == "Grbl 1.1h.20190830");
-  CHECK(describe(*lab.stage)["serial"] == "table 3 (simulated)");
+  CHECK(describe(*lab.stage)["serial"] == "stage 3 (simulated)");
   CHECK(describe(*lab.stage)["firmware"] == "1.1h.20190830");
   CHECK(lab.stage->caps().max_speed_deg_s == 90);
   home(*lab.stage, lab.clock, 60);

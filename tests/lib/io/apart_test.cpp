@@ -73,7 +73,7 @@ TEST_CASE("a child that crashes is one line, and this process goes on") {
               std::vector<std::string> much;
               while (true) much.emplace_back(std::size_t{64} << 20, 'x');
             }),
-            "asks for more than 0.25 GiB of memory"));
+            "requires more than 0.25 GiB of memory"));
 #endif
 }
 

@@ -98,7 +98,7 @@ TEST_CASE("level sets, solid backgrounds, metres and micrometres, two grids of o
   two.push_back(one_voxel("insert", 1));
   require_usable("-", two);
   two.push_back(one_voxel("target", 0.5F));
-  CHECK(has(error_of([&] { require_usable("-", two); }, Fault::data), "stdin: grid 'target' is there twice"));
+  CHECK(has(error_of([&] { require_usable("-", two); }, Fault::data), "stdin: grid 'target' occurs twice"));
 }
 
 TEST_CASE("what is read in passing is held to the same") {

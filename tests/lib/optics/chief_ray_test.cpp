@@ -103,7 +103,7 @@ TEST_CASE("chief rays agree with a vector ray tracer for random lenses, baths an
 
 TEST_CASE("the tracer and the closed form agree on which rays miss") {
   const View view = ray21();
-  const double edge = 213.794;  // the tangent column [physics §2]
+  const double edge = 213.794;  // the tangent column [physics §12]
   CHECK(chief_ray(view, edge - 0.01).hits);
   CHECK(vam::oracle::trace(bench_of(view), edge - 0.01).has_value());
   CHECK_FALSE(chief_ray(view, edge + 0.01).hits);
@@ -123,7 +123,7 @@ TEST_CASE("column_of inverts chief_ray") {
 }
 
 TEST_CASE("the tangent column gives the radius of the vial") {
-  CHECK(std::abs(impact_mm(ray21(), 213.794) - 212.37) < 5e-4);  // digits [physics §2]
+  CHECK(std::abs(impact_mm(ray21(), 213.794) - 212.37) < 5e-4);  // digits [physics §12]
 }
 
 TEST_CASE("matched glass, resin and bath leave a telecentric beam alone") {

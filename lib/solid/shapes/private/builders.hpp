@@ -9,7 +9,7 @@ namespace vam::solid::build {
 
 using Values = std::span<const double>;
 
-// shape_basic.cpp
+// basic.cpp
 Field sphere(Values v);
 Field cylinder(Values v);
 Field half_cylinder(Values v);
@@ -19,17 +19,17 @@ Field cone(Values v);
 Field torus(Values v);
 Field egg_shell(Values v);
 
-// shape_lattice.cpp
+// lattice.cpp
 Field gyroid(Values v);
 Field octet(Values v);
 Field ball_in_cage(Values v);
 
-// shape_target.cpp
+// target.cpp
 Field disc_grid(Values v);
 Field ladder(Values v);
 Field resolution(Values v);
 
-// shape_boat.cpp
+// boat.cpp
 Field boat(Values v);
 Field screwdriver(Values v);
 Field handle(Values v);
