@@ -45,7 +45,7 @@ inline constexpr Range any{-1e300, 1e300};
 inline constexpr Range positive{0, 1e300, true};
 inline constexpr Range non_negative{0, 1e300};
 
-struct Option;  // cli/declaration.hpp
+struct Option;  // cli/private/declaration.hpp
 struct Declaration;
 
 /// Options are bound to variables whose values are the defaults shown to the user. Value names carry the unit (MM,

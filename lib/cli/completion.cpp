@@ -2,7 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "cli/declaration.hpp"
+#include "cli/private/declaration.hpp"
 #include "cli/private/words.hpp"
 
 namespace vam::cli {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/text.hpp"
-#include "cli/declaration.hpp"
+#include "cli/private/declaration.hpp"
 
 namespace vam::cli {
 

@@ -1,4 +1,4 @@
-#include "plot/insert_sections.hpp"
+#include "plot/private/insert_sections.hpp"
 
 #include <algorithm>
 #include <cmath>

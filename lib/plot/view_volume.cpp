@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "base/error.hpp"
-#include "plot/insert_sections.hpp"
+#include "plot/private/insert_sections.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 

@@ -4,10 +4,11 @@ but not defined, one a line, and fails if there is any.
 [physics §n] and [devices §n] are numbered sections, [devices guarantee n] a guarantee, [formats: heading] a heading,
 [RAY21 eq 8] a paper under REFERENCES of vam-physics.7 and an equation that stands in that page; figures, sections and
 the like stand in the paper's entry. Whatever is in brackets and begins like one of these must be one, and nothing of
-the kind is cited in another form. vam:name is an attribute of vam-formats.7. Keys of the printer file, schemas of reports and every literal key of the JSON that the tools
-write are defined in vam-formats.7. Every equation that the pages take from a paper is cited somewhere in lib, every
-paper of the references is cited, and comments cite papers in no other form. Source paths in these pages and in
-CONTRIBUTING.md exist, the changes that its recipes show apply, and its diagram has every folder of lib/layers.txt."""
+the kind is cited in another form. vam:name is an attribute of vam-formats.7. Keys of the printer file, schemas of
+reports and every literal key of the JSON that the tools write are defined in vam-formats.7. Every equation that the
+pages take from a paper is cited somewhere in lib, every paper of the references is cited, and comments cite papers in
+no other form. Source paths in these pages and in CONTRIBUTING.md exist, and source files that comments name; the
+changes that its recipes show apply, and its diagram has every folder of lib/layers.txt."""
 import pathlib
 import re
 import sys
@@ -185,6 +186,13 @@ for change in re.findall(r'^```diff\n(.*?)^```', (root / 'CONTRIBUTING.md').read
                 for sign in ' -+'}
         for line in lost[' '] or (lost['-'] and lost['+']):  # it may have been applied
             faults.append(f'CONTRIBUTING.md: a recipe changes "{line}", which is not in {name}')
+sources = [f for top in ('lib', 'tools', 'tests') for f in (root / top).rglob('*') if f.suffix in ('.cpp', '.hpp', '.cc')]
+names = {f.name for f in sources}
+for file in sources:
+    for comment in re.findall(r'//.*', file.read_text()):
+        for name in re.findall(r'(?<![\w*-])[\w-]+\.(?:cpp|hpp|cc)\b', comment):
+            if name not in names:
+                faults.append(f'{file.relative_to(root)}: a comment names {name}, which does not exist')
 for folder in re.findall(r'^([\w/]+):', (root / 'lib/layers.txt').read_text(), re.M):
     if not re.search(rf'(?<![\w/]){folder}(?![\w/])', guide):
         faults.append(f'CONTRIBUTING.md: the diagram of the layers lacks {folder}')

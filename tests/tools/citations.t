@@ -27,6 +27,7 @@ finds_in_page() {  # finds_in_page REGEX TEXT: the only fault is the manual's
   check tree >faults && report 1 "found: $2"
   is "found: $2" "$(wc -l <faults):$(grep -Ec "$1" faults)" 1:1
 }
+finds 'names lost_ray.cpp, which does not exist' '// as in lost_ray.cpp'
 finds 'vam-physics.7. has no section 99' '// along the ray [physics §2, §99]'
 finds '"physics section 4" is to be written' '// the dose of physics section 4'
 finds '"vam-physics.7. section 4" is to be written' '// the dose, see vam-physics(7) section 4'

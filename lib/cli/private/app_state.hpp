@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/declaration.hpp"
+#include "cli/private/declaration.hpp"
 
 namespace CLI {
 class App;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/declaration.hpp"
+#include "cli/private/declaration.hpp"
 
 namespace vam::cli {
 

@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "device/stage/ripple_fit.hpp"
+#include "device/stage/private/ripple_fit.hpp"
 
 namespace vam::device {
 

@@ -11,8 +11,8 @@
 #include "optimize/methods/private/safeguard.hpp"
 #include "optimize/methods/private/step_length.hpp"
 #include "optimize/methods/private/surface_points.hpp"
+#include "optimize/methods/private/tolerant.hpp"
 #include "optimize/methods/private/two_metric.hpp"
-#include "optimize/methods/tolerant.hpp"
 
 namespace vam::optimize {
 

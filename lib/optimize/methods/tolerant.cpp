@@ -1,4 +1,4 @@
-#include "optimize/methods/tolerant.hpp"
+#include "optimize/methods/private/tolerant.hpp"
 
 #include <algorithm>
 #include <cmath>

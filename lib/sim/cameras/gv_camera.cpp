@@ -16,8 +16,8 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
-#include "sim/cameras/gv_clock.hpp"
 #include "sim/cameras/makers.hpp"
+#include "sim/cameras/private/gv_clock.hpp"
 
 namespace vam::sim {
 

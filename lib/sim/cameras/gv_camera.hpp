@@ -12,7 +12,7 @@ namespace vam::sim {
 /// Serves from the constructor to the destructor, in a thread of its own. The bench's columns and rows are the sensor;
 /// region, binning, exposure, frame rate and pixel format (Mono8, Mono16) are the client's. Frames count from the first
 /// one sent. A time stamp is the start, middle or end of the exposure plus lag_s, by the camera's own clock
-/// (gv_clock.hpp).
+/// (private/gv_clock.hpp).
 class SimGvCamera {
  public:
   /// Throws Fault::busy when the address has a camera already, Fault::usage when it is none of this machine.

@@ -1,4 +1,4 @@
-#include "sim/cameras/gv_clock.hpp"
+#include "sim/cameras/private/gv_clock.hpp"
 
 #include <chrono>
 #include <cmath>

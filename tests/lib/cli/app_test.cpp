@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "base/error.hpp"
-#include "cli/declaration.hpp"
+#include "cli/private/declaration.hpp"
 #include "lib/cli/demo.hpp"
 
 using namespace vam;

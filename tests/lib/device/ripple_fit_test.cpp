@@ -1,4 +1,4 @@
-#include "device/stage/ripple_fit.hpp"
+#include "device/stage/private/ripple_fit.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 #include "light/make_operator.hpp"
 #include "light/simulation.hpp"
 #include "model/tolerances.hpp"
-#include "optimize/methods/tolerant.hpp"
+#include "optimize/methods/private/tolerant.hpp"
 #include "optimize/run/yield.hpp"
 
 using namespace vam;

@@ -14,7 +14,7 @@
 #include "io/image/image_file.hpp"
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
-#include "plot/insert_sections.hpp"
+#include "plot/private/insert_sections.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;
