@@ -190,7 +190,7 @@ sources = [f for top in ('lib', 'tools', 'tests') for f in (root / top).rglob('*
 names = {f.name for f in sources}
 for file in sources:
     for comment in re.findall(r'//.*', file.read_text()):
-        for name in re.findall(r'(?<![\w*-])[\w-]+\.(?:cpp|hpp|cc)\b', comment):
+        for name in re.findall(r'(?<![\w*>-])[\w-]+\.(?:cpp|hpp|cc)\b', comment):
             if name not in names:
                 faults.append(f'{file.relative_to(root)}: a comment names {name}, which does not exist')
 for folder in re.findall(r'^([\w/]+):', (root / 'lib/layers.txt').read_text(), re.M):

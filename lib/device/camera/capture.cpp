@@ -10,9 +10,9 @@ namespace vam::device {
 
 namespace {
 
-class Series {
+class FrameSeries {
  public:
-  Series(AngleSource* angles, const CapturePlan& plan, const CaptureSink& sink)
+  FrameSeries(AngleSource* angles, const CapturePlan& plan, const CaptureSink& sink)
       : angles_(angles), plan_(plan), sink_(sink) {}
 
   // False when the last place has had its time.
@@ -45,7 +45,7 @@ class Series {
 };
 
 // The place of the frame; nothing when it has none.
-std::optional<long> Series::place_of(const Shot& shot) {
+std::optional<long> FrameSeries::place_of(const Shot& shot) {
   if (plan_.every_deg) {
     if (!shot.angle && angles_ == nullptr) {
       throw Error{Fault::usage, "--view-step: the frames have no angles; give --follow or --speed"};
@@ -59,7 +59,7 @@ std::optional<long> Series::place_of(const Shot& shot) {
   return plan_.by_number ? shot.frame.number - *origin_ : received_++;
 }
 
-bool Series::take(CapturedFrame&& frame) {
+bool FrameSeries::take(CapturedFrame&& frame) {
   if (last_number_ && frame.number > *last_number_ + 1) {
     tally_.dropped += frame.number - *last_number_ - 1;
     sink_.dropped(*last_number_ + 1, frame.number - 1);
@@ -87,7 +87,7 @@ bool Series::take(CapturedFrame&& frame) {
   return !last;
 }
 
-void Series::flush() {
+void FrameSeries::flush() {
   if (!waiting_) return;
   Shot shot = std::move(*waiting_);
   waiting_.reset();
@@ -96,7 +96,7 @@ void Series::flush() {
   sink_.keep(std::move(shot));
 }
 
-CaptureTally Series::finish() {
+CaptureTally FrameSeries::finish() {
   flush();
   for (long place = 0; place < plan_.frames; ++place) {
     if (sink_.wanted(place)) ++tally_.missing;
@@ -114,7 +114,7 @@ Json to_json(const CaptureTally& tally) {
 }
 
 CaptureTally capture(Camera& camera, AngleSource* angles, const CapturePlan& plan, const CaptureSink& sink) {
-  Series series(angles, plan, sink);
+  FrameSeries series(angles, plan, sink);
   if (angles != nullptr) angles->update();
   camera.start();
   for (;;) {

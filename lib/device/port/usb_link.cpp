@@ -115,14 +115,14 @@ class LibusbLink final : public UsbLink {
   std::string name_;
 };
 
-struct Found {
+struct Listed {
   Handle handle;
   Json about;
 };
 
 // All devices of these ids that can be opened; `closed` counts those that refuse.
-std::vector<Found> search(libusb_context* context, const UsbId& id, int& closed) {
-  std::vector<Found> found;
+std::vector<Listed> search(libusb_context* context, const UsbId& id, int& closed) {
+  std::vector<Listed> found;
   libusb_device** list = nullptr;
   const ssize_t count = libusb_get_device_list(context, &list);
   for (ssize_t i = 0; i < count; ++i) {

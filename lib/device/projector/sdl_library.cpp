@@ -6,9 +6,9 @@ namespace vam::device::sdl {
 
 namespace {
 
-Api load() {
+SdlApi load() {
   const SharedLibrary library("sdl", "libSDL2-2.0.so.0", "libsdl2-2.0-0");
-  Api found{};
+  SdlApi found{};
 #define VAM_FIND(name) library.find(found.name, #name);
   VAM_SDL_FUNCTIONS(VAM_FIND)
 #undef VAM_FIND
@@ -17,8 +17,8 @@ Api load() {
 
 }  // namespace
 
-const Api& api() {
-  static const Api loaded = load();
+const SdlApi& api() {
+  static const SdlApi loaded = load();
   return loaded;
 }
 

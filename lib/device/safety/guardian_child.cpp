@@ -30,14 +30,14 @@ struct Action {
   int handle = -1;
 };
 
-struct Packet {
+struct Request {
   char kind = 0;  // 0: the parent's end is closed
   int id = 0;
   std::string text;
   int handle = -1;
 };
 
-Packet receive(int socket) {
+Request receive(int socket) {
   std::array<char, 65536> bytes{};
   alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> control{};
   iovec part{bytes.data(), bytes.size()};
@@ -48,17 +48,17 @@ Packet receive(int socket) {
   message.msg_controllen = control.size();
   const ssize_t size = recvmsg(socket, &message, MSG_CMSG_CLOEXEC);
   if (size <= 0) return {};
-  Packet packet;
+  Request request;
   const cmsghdr* header = CMSG_FIRSTHDR(&message);
   if (header != nullptr && header->cmsg_type == SCM_RIGHTS) {
-    std::memcpy(&packet.handle, CMSG_DATA(header), sizeof(int));
+    std::memcpy(&request.handle, CMSG_DATA(header), sizeof(int));
   }
   const std::string all(bytes.data(), size);
   const std::size_t blank = all.find(' ');
-  packet.kind = all[0];
-  packet.id = std::atoi(all.substr(1, blank - 1).c_str());
-  packet.text = all.substr(blank + 1);
-  return packet;
+  request.kind = all[0];
+  request.id = std::atoi(all.substr(1, blank - 1).c_str());
+  request.text = all.substr(blank + 1);
+  return request;
 }
 
 // Terminal signals reach the whole group, and a closing terminal the whole session: leave both, and ignore the rest.
@@ -115,15 +115,15 @@ void guard(int socket, int parent, double stall_s) {
       reason = "stopped responding and was killed";
       break;
     }
-    Packet packet = receive(socket);
-    if (packet.kind == 0) break;
+    Request request = receive(socket);
+    if (request.kind == 0) break;
     last_beat_s = real_clock().now_s();
-    if (packet.kind == 'a') actions[packet.id] = {Json::parse(packet.text, nullptr, false), packet.handle};
-    if (packet.kind == 'f' && actions.contains(packet.id)) {
-      close(actions[packet.id].handle);
-      actions.erase(packet.id);
+    if (request.kind == 'a') actions[request.id] = {Json::parse(request.text, nullptr, false), request.handle};
+    if (request.kind == 'f' && actions.contains(request.id)) {
+      close(actions[request.id].handle);
+      actions.erase(request.id);
     }
-    if (packet.kind == 'q') {
+    if (request.kind == 'q') {
       quietly = true;
       break;
     }

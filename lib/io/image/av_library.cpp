@@ -14,11 +14,11 @@ SharedLibrary release(const std::string& stem, int major) {
   return {"video", stem + ".so." + number, stem + number};
 }
 
-Api load() {
+AvApi load() {
   const SharedLibrary util = release("libavutil", LIBAVUTIL_VERSION_MAJOR);
   const SharedLibrary codec = release("libavcodec", LIBAVCODEC_VERSION_MAJOR);
   const SharedLibrary format = release("libavformat", LIBAVFORMAT_VERSION_MAJOR);
-  Api found{};
+  AvApi found{};
 #define VAM_FIND(name) util.find(found.name, #name);
   VAM_AVUTIL_FUNCTIONS(VAM_FIND)
 #undef VAM_FIND
@@ -33,8 +33,8 @@ Api load() {
 
 }  // namespace
 
-const Api& api() {
-  static const Api loaded = load();
+const AvApi& api() {
+  static const AvApi loaded = load();
   return loaded;
 }
 

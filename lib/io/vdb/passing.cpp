@@ -121,9 +121,9 @@ class PassingGrid : public FloatGrid {
 };
 
 // The grids of one archive after the other.
-class Archive : public openvdb::io::Archive {
+class PassingArchive : public openvdb::io::Archive {
  public:
-  Archive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
+  PassingArchive(const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept)
       : wanted_(wanted), out_(out), kept_(kept) {}
 
   void pass(std::istream& stream) {
@@ -192,7 +192,7 @@ class Archive : public openvdb::io::Archive {
 }  // namespace
 
 void pass_archives(InputFile& file, const WantedGrids& wanted, Sender& out, std::vector<std::shared_ptr<void>>& kept) {
-  Archive archive(wanted, out, kept);
+  PassingArchive archive(wanted, out, kept);
   for_archives(file, [&](std::istream& stream) { archive.pass(stream); });
   out.put(Record::end);
 }

@@ -18,13 +18,13 @@
 
 namespace vam::device::sdl {
 
-struct Api {
+struct SdlApi {
 #define VAM_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): it is declared here
   VAM_SDL_FUNCTIONS(VAM_POINTER)
 #undef VAM_POINTER
 };
 
 /// Throws Fault::absent when the machine does not have it.
-const Api& api();
+const SdlApi& api();
 
 }  // namespace vam::device::sdl

@@ -30,7 +30,7 @@ extern "C" {
 
 namespace vam::io::av {
 
-struct Api {
+struct AvApi {
 #define VAM_POINTER(name) decltype(&::name) name;  // NOLINT(bugprone-macro-parentheses): it is declared here
   VAM_AVUTIL_FUNCTIONS(VAM_POINTER)
   VAM_AVCODEC_FUNCTIONS(VAM_POINTER)
@@ -39,6 +39,6 @@ struct Api {
 };
 
 /// The one of this process. Throws Fault::absent when the machine does not have the release that this was built with.
-const Api& api();
+const AvApi& api();
 
 }  // namespace vam::io::av
