@@ -42,6 +42,14 @@ void for_values(std::span<const Slab> like, const Work& work) {
 /// `value` for every slice of so many slabs.
 [[nodiscard]] PerSlice filled(std::size_t slabs, float value);
 
+/// work(slab, lane) for each slice.
+template <class Work>
+void for_slices(const PerSlice& like, const Work& work) {
+  for (std::size_t s = 0; s < like.size(); ++s) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) work(s, lane);
+  }
+}
+
 /// The sums of fold_rows() of each slab, added in order, in double.
 [[nodiscard]] PerSlice sum_of_rows(const PerSlice& rows, std::size_t slabs);
 

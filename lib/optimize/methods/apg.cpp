@@ -124,13 +124,11 @@ class Apg final : public Method {
   /// t_{k+1} = (1 + sqrt(1 + 4 t_k^2)) / 2, beta = (t_k - 1) / t_{k+1}.
   PerSlice advance() {
     PerSlice beta(momentum_.size());
-    for (std::size_t s = 0; s < beta.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        const float t = momentum_[s][lane];
-        momentum_[s][lane] = 0.5F * (1.0F + std::sqrt(1.0F + 4.0F * t * t));
-        beta[s][lane] = (t - 1.0F) / momentum_[s][lane];
-      }
-    }
+    for_slices(beta, [&](std::size_t s, std::size_t lane) {
+      const float t = momentum_[s][lane];
+      momentum_[s][lane] = 0.5F * (1.0F + std::sqrt(1.0F + 4.0F * t * t));
+      beta[s][lane] = (t - 1.0F) / momentum_[s][lane];
+    });
     return beta;
   }
 
@@ -156,13 +154,11 @@ class Apg final : public Method {
   /// A slice whose loss went up goes on with a shorter step, without momentum.
   void safeguard(const Problem& problem, const light::Operator& light, Iterate& iterate) {
     const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate));
-    for (std::size_t s = 0; s < back.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) {
-        if (back[s][lane] == 0.0F) continue;
-        momentum_[s][lane] = 1.0F;
-        length_[s][lane] *= shorter;
-      }
-    }
+    for_slices(back, [&](std::size_t s, std::size_t lane) {
+      if (back[s][lane] == 0.0F) return;
+      momentum_[s][lane] = 1.0F;
+      length_[s][lane] *= shorter;
+    });
     widen(problem, light, iterate);
   }
 
@@ -180,9 +176,7 @@ class Apg final : public Method {
   [[nodiscard]] PerSlice losses(const Problem& problem, const light::Operator& light, const Iterate& iterate) const {
     PerSlice sum = voxel_losses(problem, light, iterate);
     const PerSlice surface = pooled(surface_->losses(surface_->misses(iterate.dose), sum.size()), light);
-    for (std::size_t s = 0; s < sum.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) sum[s][lane] += surface[s][lane];
-    }
+    for_slices(sum, [&](std::size_t s, std::size_t lane) { sum[s][lane] += surface[s][lane]; });
     return sum;
   }
 
@@ -200,16 +194,14 @@ class Apg final : public Method {
     for (bool any = true; any; widened = widened || any) {
       any = false;
       const PerSlice losses_now = voxel_losses(problem, light, iterate);
-      for (std::size_t s = 0; s < half_width_.size(); ++s) {
-        for (std::size_t lane = 0; lane < lanes; ++lane) {
-          float& half = half_width_[s][lane];
-          // One voxel that misses by a fifth of the half width costs so much.
-          const bool close = losses_now[s][lane] <= 0.5F * close_enough * close_enough * half * half;
-          if (!close || half * wider > widest) continue;
-          half *= wider;
-          any = true;
-        }
-      }
+      for_slices(half_width_, [&](std::size_t s, std::size_t lane) {
+        float& half = half_width_[s][lane];
+        // One voxel that misses by a fifth of the half width costs so much.
+        const bool close = losses_now[s][lane] <= 0.5F * close_enough * close_enough * half * half;
+        if (!close || half * wider > widest) return;
+        half *= wider;
+        any = true;
+      });
     }
     if (widened) loss_ = losses(problem, light, iterate);
   }

@@ -56,9 +56,8 @@ class Cal final : public Method {
     std::swap(iterate.dose, before_.dose);
     light.adjoint(iterate.g, iterate.dose);
     const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate));
-    for (std::size_t s = 0; s < back.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) length_[s][lane] *= back[s][lane] != 0.0F ? shorter : longer;
-    }
+    for_slices(back,
+               [&](std::size_t s, std::size_t lane) { length_[s][lane] *= back[s][lane] != 0.0F ? shorter : longer; });
   }
 
   void exchange(Archive& archive) override {

@@ -16,11 +16,9 @@ PerSlice squares(const std::vector<Slab>& a) {
 /// above / below for each slice; `otherwise` where that is no length.
 PerSlice ratio(const PerSlice& above, const PerSlice& below, const PerSlice& otherwise) {
   PerSlice result = otherwise;
-  for (std::size_t s = 0; s < above.size(); ++s) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (below[s][lane] > 0) result[s][lane] = above[s][lane] / below[s][lane];
-    }
-  }
+  for_slices(above, [&](std::size_t s, std::size_t lane) {
+    if (below[s][lane] > 0) result[s][lane] = above[s][lane] / below[s][lane];
+  });
   return result;
 }
 
@@ -98,11 +96,9 @@ void Descent::judge(const Problem& problem, const light::Operator& light, Iterat
   });
   const PerSlice next = ratio(pooled(moved, light), pooled(bent, light), length_);
   const PerSlice back = go_back(iterate, before_, loss_, losses(problem, light, iterate.dose));
-  for (std::size_t s = 0; s < back.size(); ++s) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      length_[s][lane] = back[s][lane] != 0.0F ? length_[s][lane] * shorter : next[s][lane];
-    }
-  }
+  for_slices(back, [&](std::size_t s, std::size_t lane) {
+    length_[s][lane] = back[s][lane] != 0.0F ? length_[s][lane] * shorter : next[s][lane];
+  });
 }
 
 }  // namespace vam::optimize

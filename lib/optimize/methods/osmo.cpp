@@ -75,9 +75,7 @@ class Osmo final : public Method {
 
   /// The scale of limited light never grows: with that of clipped light the limit would fall, and clip more.
   static PerSlice smaller(PerSlice a, const PerSlice& b) {
-    for (std::size_t s = 0; s < a.size(); ++s) {
-      for (std::size_t lane = 0; lane < lanes; ++lane) a[s][lane] = std::min(a[s][lane], b[s][lane]);
-    }
+    for_slices(a, [&](std::size_t s, std::size_t lane) { a[s][lane] = std::min(a[s][lane], b[s][lane]); });
     return a;
   }
 

@@ -9,16 +9,14 @@ namespace vam::optimize {
 PerSlice go_back(Iterate& now, const Iterate& before, PerSlice& loss, const PerSlice& loss_now) {
   PerSlice back = filled(loss.size(), 0.0F);
   bool any = false;
-  for (std::size_t s = 0; s < loss.size(); ++s) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (loss_now[s][lane] <= loss[s][lane]) {
-        loss[s][lane] = loss_now[s][lane];
-      } else {
-        back[s][lane] = 1.0F;
-        any = true;
-      }
+  for_slices(loss, [&](std::size_t s, std::size_t lane) {
+    if (loss_now[s][lane] <= loss[s][lane]) {
+      loss[s][lane] = loss_now[s][lane];
+    } else {
+      back[s][lane] = 1.0F;
+      any = true;
     }
-  }
+  });
   if (any) {
     restore(now.g, before.g, back);
     restore(now.dose, before.dose, back);

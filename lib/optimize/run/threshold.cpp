@@ -58,11 +58,9 @@ void keep_below(double max_intensity, const light::Operator& light, Together tog
   PerSlice brightest = largest(state.g);
   if (together == Together::pass) brightest = largest_of_all(brightest);
   const auto most = static_cast<float>(max_intensity * light.row_angle_rad());
-  for (std::size_t s = 0; s < factor.size(); ++s) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
-    }
-  }
+  for_slices(factor, [&](std::size_t s, std::size_t lane) {
+    if (brightest[s][lane] > 0) factor[s][lane] = std::min(factor[s][lane], most / brightest[s][lane]);
+  });
 }
 
 }  // namespace
