@@ -19,7 +19,7 @@
 namespace vam::tool {
 
 /// The circle that is judged, the threshold that the light was made for, and for a dose in mJ/cm3 of a resin with a
-/// critical dose that threshold and the exposure.
+/// critical dose the exposure, with that threshold where it is the dose of a whole print.
 inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
                             const model::Printer& printer) {
   const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
@@ -27,9 +27,8 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
   how.aimed_at = threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
-  if (!how.threshold) how.threshold = printer.resin.critical_dose_mj_cm3;
-  const auto turns = stated_number(dose.metadata, "vam:full_intensity_turns");  // of vam-dose --exposure-plan
-  how.exposure = {printer, turns.value_or(1.0)};
+  how.exposure = {printer, stated_number(dose.metadata, "vam:full_intensity_turns")};
+  if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
 }
 
 /// Both on the same grid.

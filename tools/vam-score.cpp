@@ -34,7 +34,7 @@ void require_known(const std::vector<model::Condition>& conditions, const Option
   const score::ScoreOptions& how = options.how;
   for (const model::Condition& condition : conditions) {
     const std::string subject = "--require " + condition.name + ": ";
-    if (condition.name.starts_with("cured_") && !how.threshold) {
+    if (condition.name.starts_with("cured_") && !how.threshold && !how.exposure) {
       throw Error{Fault::usage, subject +
                                     "the critical dose is not known; give --critical-dose, or set "
                                     "resin.critical_dose_mj_cm3 and score a dose in mJ/cm3"};

@@ -109,12 +109,23 @@ DoseMetrics DoseStatistics::trimmed(double alpha, bool relative) const {
 
 std::optional<ThresholdMetrics> DoseStatistics::at_threshold() const {
   if (!threshold_) return std::nullopt;
+  return cured(*threshold_, part_cured_, void_cured_);
+}
+
+ThresholdMetrics DoseStatistics::at(double threshold) const {
+  const bool all_part = static_cast<double>(min_part_) >= threshold;
+  const bool no_void = static_cast<double>(max_void_) < threshold;
+  return cured(threshold, all_part ? part_ : part_histogram_.count_from(threshold),
+               no_void ? 0 : void_histogram_.count_from(threshold));
+}
+
+ThresholdMetrics DoseStatistics::cured(double threshold, std::int64_t part, std::int64_t void_cured) const {
   ThresholdMetrics m;
-  m.threshold = *threshold_;
-  m.part_cured = ratio(part_cured_, part_);
-  m.void_cured = ratio(void_cured_, void_);
-  m.iou = ratio(part_cured_, part_ + void_cured_);
-  m.wrong = ratio(part_ - part_cured_ + void_cured_, part_ + void_);
+  m.threshold = threshold;
+  m.part_cured = ratio(part, part_);
+  m.void_cured = ratio(void_cured, void_);
+  m.iou = ratio(part, part_ + void_cured);
+  m.wrong = ratio(part_ - part + void_cured, part_ + void_);
   return m;
 }
 

@@ -82,11 +82,14 @@ class DoseStatistics {
   [[nodiscard]] DoseMetrics trimmed(double alpha, bool relative = true) const;
   /// At the threshold given to the constructor (exact), if any.
   [[nodiscard]] std::optional<ThresholdMetrics> at_threshold() const;
+  /// At any threshold: counts resolve the dose to 2^-12 of it unless the extremes prove otherwise.
+  [[nodiscard]] ThresholdMetrics at(double threshold) const;
 
  private:
   void add_part(float dose);
   void add_void(float dose);
   void fill(DoseMetrics& m, bool relative) const;
+  [[nodiscard]] ThresholdMetrics cured(double threshold, std::int64_t part, std::int64_t void_cured) const;
 
   std::optional<double> threshold_;
   DoseHistogram part_histogram_, void_histogram_;

@@ -126,18 +126,16 @@ double Score::figure(const std::string& name) const {
   if (name == "trimmed_ver") return judged().trimmed(options_.trim, !options_.absolute).ver;
   if (name == "trimmed_pw") return judged().trimmed(options_.trim, !options_.absolute).pw;
   if (is_of_exposure(name)) {
-    if (!options_.exposure) return none;
-    const model::DoseMetrics doses = judged().metrics(false);
-    if (!(window_middle(doses) > 0)) return none;
-    const ExposurePlan plan = plan_exposure(doses, 1 / options_.exposure->full_intensity_turns,
-                                            options_.exposure->printer, 1, options_.aimed_at);
-    if (name == "turns") return plan.turns;
-    if (name == "duration_s") return plan.seconds;
-    return name == "multiplier" ? plan.multiplier : plan.peak_intensity_mw_cm2;
+    const auto plan = this->plan();
+    if (!plan) return none;
+    if (name == "turns") return plan->turns;
+    if (name == "duration_s") return plan->seconds;
+    return name == "multiplier" ? plan->multiplier : plan->peak_intensity_mw_cm2;
   }
   if (name.starts_with("outside_")) return outside(name);
   if (name.starts_with("cured_")) {
-    const auto at = judged().at_threshold();
+    auto at = judged().at_threshold();
+    if (!at && options_.exposure) at = judged().at(print_threshold());
     if (!at) return none;
     if (name == "cured_part") return at->part_cured;
     if (name == "cured_void") return at->void_cured;
@@ -146,8 +144,20 @@ double Score::figure(const std::string& name) const {
   return model::figure(judged().metrics(!options_.absolute), name);
 }
 
+std::optional<ExposurePlan> Score::plan() const {
+  if (!options_.exposure) return std::nullopt;
+  const model::DoseMetrics doses = judged().metrics(false);
+  if (!(window_middle(doses) > 0)) return std::nullopt;
+  return plan_exposure(doses, 1 / options_.exposure->full_intensity_turns.value_or(1), options_.exposure->printer, 1,
+                       options_.aimed_at);
+}
+
 double Score::print_threshold() const {
-  return options_.threshold ? *options_.threshold : aimed_dose(judged().metrics(false), options_.aimed_at);
+  if (options_.threshold) return *options_.threshold;
+  if (const auto plan = this->plan()) {
+    return *options_.exposure->printer.resin.critical_dose_mj_cm3 / (plan->turns * plan->multiplier);
+  }
+  return aimed_dose(judged().metrics(false), options_.aimed_at);
 }
 
 Json Score::figures() const {
@@ -166,6 +176,7 @@ Json Score::figures() const {
   add_to(json, verdict());
   json["trim"] = options_.trim;
   if (options_.threshold) json["critical_dose"] = *options_.threshold;
+  if (options_.exposure && !options_.threshold) json["critical_dose_per_turn"] = print_threshold();
   json["relative"] = !options_.absolute;
   return json;
 }

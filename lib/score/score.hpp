@@ -10,14 +10,15 @@
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "model/printer.hpp"
+#include "score/exposure_plan.hpp"
 #include "score/verdict.hpp"
 
 namespace vam::score {
 
 /// What the dose was given with.
 struct Exposure {
-  model::Printer printer;           // with a critical dose
-  double full_intensity_turns = 1;  // turns at full intensity that give the dose
+  model::Printer printer;                      // with a critical dose
+  std::optional<double> full_intensity_turns;  // that gave the dose of a print; none: the dose is that of one turn
 };
 
 struct ScoreOptions {
@@ -25,7 +26,7 @@ struct ScoreOptions {
   bool surface = false;                 // surface voxels count too: part when at least half covered, else void
   bool absolute = false;                // PW and IPDR in the dose's unit instead of fractions of the largest dose
   double trim = 0.02;                   // alpha: extremes are also given at the alpha/2 percentiles
-  std::optional<double> threshold;      // the resin's critical dose, in the dose's unit
+  std::optional<double> threshold;      // the critical dose, in the dose's unit; none: that of the planned exposure
   std::optional<double> aimed_at;       // the threshold that its light was made for, in the dose's unit
   std::optional<Exposure> exposure;     // known when the dose is in mJ/cm3
   std::optional<model::VoxelBox> part;  // its box; none: what lies outside it is not told
@@ -50,7 +51,8 @@ class Score {
   /// The figures by name (for --require), in the order of the table.
   [[nodiscard]] static const std::vector<std::string>& names();
   [[nodiscard]] double figure(const std::string& name) const;
-  /// The dose whose isosurface the print is: the critical dose, else score::aimed_dose.
+  /// The dose whose isosurface the print is: the critical dose, for the dose of one turn what the planned exposure
+  /// brings to it, else score::aimed_dose.
   [[nodiscard]] double print_threshold() const;
   /// Of the relative figures, whatever the options say.
   [[nodiscard]] Verdict verdict() const;
@@ -65,6 +67,8 @@ class Score {
     return options_.part->contains(static_cast<int>(pixel % width), static_cast<int>(pixel / width), slice);
   }
   [[nodiscard]] double outside(const std::string& name) const;
+  /// None where the exposure is not known, or nothing is lit.
+  [[nodiscard]] std::optional<ExposurePlan> plan() const;
 
   ScoreOptions options_;
   int width_;

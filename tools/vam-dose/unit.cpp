@@ -36,20 +36,21 @@ Unit unit_of(const Exposed& exposed, const Options& options, const model::Printe
              const model::StackInfo& light) {
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
-  Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, {}};
+  Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, exposed.shown_turns, {}};
   if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);
   return unit;
 }
 
 void convert(io::SparseVolume& volume, const Unit& unit) {
-  const double turns = unit.plan ? unit.plan->turns * unit.plan->multiplier : 1.0;  // of full light
+  const bool of_run = unit.shown_turns > 0;
+  const double turns = unit.plan ? unit.plan->turns * unit.plan->multiplier : of_run ? unit.shown_turns : 1.0;
   if (unit.absolute) {
-    scale(volume, unit.turn * turns);
+    scale(volume, unit.turn * (of_run ? 1.0 : turns));  // that of a run is of its turns already
     volume.units = "mJ/cm3";
     const auto threshold = tool::threshold_dose(volume.metadata);
     if (threshold) volume.metadata["vam:threshold_dose"] = format_number(*threshold * unit.turn * turns, 9);
   }
-  if (unit.plan) volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
+  if (unit.plan || of_run) volume.metadata["vam:full_intensity_turns"] = format_number(turns, 9);
 }
 
 Json figures(const Exposed& exposed, const Unit& unit, const Options& options, const model::Printer& printer,

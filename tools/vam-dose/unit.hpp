@@ -15,6 +15,7 @@ namespace vam::dose_tool {
 struct Unit {
   bool absolute = false;
   double turn = 1;                          // multiplies the dose of one turn
+  double shown_turns = 0;                   // of the run whose dose it is; 0: of none
   std::optional<score::ExposurePlan> plan;  // of the print
 };
 

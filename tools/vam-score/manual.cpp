@@ -18,7 +18,11 @@ std::vector<std::string> description() {
       "the ALPHA/2 and 1 - ALPHA/2 percentiles as extremes, which limits the influence of single voxels.",
       "A dose in mJ/cm3, of a turn at full intensity or of vam-dose --exposure-plan, and resin.critical_dose_mj_cm3 "
       "also determine the exposure: the minimum number of whole turns in which the critical dose lies in the middle "
-      "half of the process window, their duration, and the fraction of full intensity.",
+      "half of the process window, their duration, and the fraction of full intensity. The figures at the critical "
+      "dose "
+      "(cured_part and the like, outside_gelled_voxels) and --mesh are then those of the print: of that exposure for "
+      "the "
+      "dose of one turn, and of the dose as it is for one of vam-dose --exposure-plan or --shown.",
       "V ends at the writable radius, or at the edge of the resin for a part that extends beyond it (vam-slice "
       "--extent resin). Resin beyond the writable radius is lit from some stage angles only; --lit-fraction writes "
       "their fraction for every voxel.",

@@ -32,8 +32,8 @@ void declare(cli::App& app, Options& options) {
       "--require", "CONDITIONS", options.require,
       "Exit with status 1 unless all conditions hold, e.g. 'ver<=0.01,pw>=0'. The names are those of the table.");
   app.option("--critical-dose", "DOSE", options.how.threshold, cli::positive,
-             "Also score the print at this threshold.");
-  app.default_is("resin.critical_dose_mj_cm3 if the dose is in mJ/cm3");
+             "Threshold of the print, in the unit of the dose.");
+  app.default_is("as given by resin.critical_dose_mj_cm3 and the exposure, if the dose is in mJ/cm3");
   app.option("--trim", "ALPHA", options.how.trim, {0, 0.999}, "Fraction of voxels trimmed, both tails together.");
   app.flag("--surface", options.how.surface,
            "Score surface voxels, too: as part if at least half covered, else as void.");

@@ -75,6 +75,34 @@ TEST_CASE("a dose without light has no exposure: its figures are unknown, not an
   CHECK(lit.figure("multiplier") == doctest::Approx(1.0));
 }
 
+TEST_CASE(
+    "for the dose of one turn the print is that of the planned exposure, for the dose of a print that of the dose") {
+  auto o = options();
+  o.exposure = vam::score::Exposure{};
+  o.exposure->printer.resin.critical_dose_mj_cm3 = 0.08;  // a turn at full intensity would cure the void as well
+  Score turn(o, 3, 3);
+  turn.add(dose.data(), target.data(), 1);
+  // One turn at the multiplier that brings the middle of the window, 0.5, to 0.08.
+  CHECK(turn.figure("turns") == 1);
+  CHECK(turn.figure("multiplier") == doctest::Approx(0.16));
+  CHECK(turn.print_threshold() == doctest::Approx(0.5));
+  CHECK(turn.figure("cured_part") == 1);
+  CHECK(turn.figure("cured_void") == 0);
+  CHECK(turn.figure("cured_wrong") == 0);
+  o.exposure->printer.resin.critical_dose_mj_cm3 = 90;  // a turn cures nothing; 139 of them in full light do
+  Score faint(o, 3, 3);
+  faint.add(dose.data(), target.data(), 1);
+  CHECK(faint.print_threshold() == doctest::Approx(90.0 / 139));
+  CHECK(faint.figure("cured_part") == 1);
+  CHECK(faint.figure("cured_void") == 0);
+  o.exposure->full_intensity_turns = 1;  // that was all
+  o.threshold = 90;
+  Score whole(o, 3, 3);
+  whole.add(dose.data(), target.data(), 1);
+  CHECK(whole.print_threshold() == 90);
+  CHECK(whole.figure("cured_part") == 0);
+}
+
 TEST_CASE("empty parts and non-finite doses are errors") {
   Score empty(options(), 3, 3);
   const std::vector<float> nothing(9, 0.0F);
