@@ -4,7 +4,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 sanitized && { echo 'AddressSanitizer writes, too: no call can be counted'; exit 77; }
 strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may not trace here: nothing is tried'; exit 77; }
-inject() { fault=$1; shift; strace -f -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" "$@" 2>.log/err; }
+inject() { fault=$1; shift; strace -f $(stops "$fault") -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" "$@" 2>.log/err; }
 
 spoilt() {  # spoilt STATUS INJECTION TOOL...: the last argument is its output, of which there is an old one
   want=$1; what=$2; shift 2

@@ -88,7 +88,7 @@ while IFS='|' read -r outputs command; do
     [ $((place % every)) -eq 0 ] || continue
     tried=$((tried + 1))
     old
-    strace -f -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" $command >.log/out 2>.log/err </dev/null
+    strace -f $(stops "$fault") -qq -o .log/trace -e trace="${fault%%:*}" -e inject="$fault" $command >.log/out 2>.log/err </dev/null
     found=$(judge $? "${fault%%:*}")
     [ -z "$found" ] || problems="$problems
 # $fault: $found"

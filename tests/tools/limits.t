@@ -7,7 +7,7 @@ if sanitized || ! strace -f -o /dev/null true 2>/dev/null; then
   echo '# no threads are refused here: sanitized, or no strace'
 else
   # The library of OpenVDB that writes logs starts four threads before main(); without them it ends the process.
-  refused() { strace -f -o /dev/null -e trace=clone3 -e inject=clone3:error=EAGAIN:when=5+ "$@"; }
+  refused() { strace -f --seccomp-bpf -o /dev/null -e trace=clone3 -e inject=clone3:error=EAGAIN:when=5+ "$@"; }
   quiet 'one thread does, where the system gives no more' refused vam-slice box.off --voxel 0.2 -o alone.vdb
   ok 'and the part is the same' vam-score alone.vdb --grid target --target part.vdb --require 'iou>=1'
   quiet 'also for sinograms' refused vam-sinogram part.vdb --angles 8 -o alone.exr

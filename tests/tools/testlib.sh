@@ -116,6 +116,8 @@ camera_down() {  # at once: its library may wait for its threads for ever
   exec 9>&-
 }
 
+stops() { case $1 in *:error=*) echo --seccomp-bpf ;; esac; }  # of strace, for a fault: at its calls alone, which is quick
+
 box() (  # box X Y Z: an OFF mesh of that size, 12 triangles, the axis through its middle, standing on z = 0
   x=$(awk "BEGIN { print $1 / 2 }"); y=$(awk "BEGIN { print $2 / 2 }")
   printf 'OFF\n8 12 0\n'
