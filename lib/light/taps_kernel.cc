@@ -66,7 +66,8 @@ inline void weigh(Shadows& shadows, int e, const RayTaps& taps) {
     for (int i = 0; i < ray_block; ++i) {
       const tomo::Trapezoid shadow{shadows.half[i], shadows.flat[i], shadows.slope[i], shadows.curve[i]};
       const float up_to = shadow.area_up_to(shadows.first_edge[i] + static_cast<float>(k + 1));
-      weights[i] = up_to - shadows.before[i];
+      const float share = up_to - shadows.before[i];
+      weights[i] = share > 0.0F ? share : 0.0F;  // what rounding leaves beyond the shadow is no light
       shadows.before[i] = up_to;
     }
   }

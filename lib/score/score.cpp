@@ -165,6 +165,7 @@ Json Score::figures() const {
   if (m.part == 0) throw Error{Fault::data, "the target has no voxel wholly inside the part; use smaller voxels"};
   if (m.void_ == 0)
     throw Error{Fault::data, "the target has no void inside the writable circle; there is nothing to compare"};
+  if (m.max_dose == 0) throw Error{Fault::data, "the dose is 0 everywhere: the projections are dark, nothing prints"};
   Json json;
   json["part_voxels"] = m.part;
   json["void_voxels"] = m.void_;

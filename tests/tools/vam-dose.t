@@ -146,6 +146,13 @@ fails 64 size vam-dose frames.exr --size -5 -o x.vdb
 fails 64 full-scale vam-dose frames.exr --full-scale 0 -o x.vdb
 fails 64 radius vam-dose frames.exr --set vial.radius_mm=-3 -o x.vdb
 fails 64 'also the input' vam-dose frames.exr -o frames.exr
+# Light that is not negative gives no negative dose, not even by rounding.
+edge='--set projector.telecentric_rows=true --set projector.columns=333 --set projector.rows=255 --set projector.pixel_mm=0.15
+  --set bath.index=1.33 --set bath.window_mm=22 --set resin.absorption_per_mm=0.05'
+vam-slice --shape cone:bottom=3,height=3 --voxel 0.2 $edge -o cone.vdb
+vam-optimize --angles 60 --method fbp $edge cone.vdb -o cone.exr
+vam-dose cone.exr --like cone.vdb $edge -o cone-dose.vdb
+ok "the dose of every voxel is accepted" vam-score cone-dose.vdb --target cone.vdb $edge
 fails 73 nowhere vam-dose frames.exr -o nowhere/x.vdb
 fails 74 full vam-dose frames.exr -o /dev/full
 done_testing

@@ -40,7 +40,8 @@ quiet "the shortest" vam-optimize --angles 180 $resin --shortest --report shorte
 holds "the shortest print has less intensity than the usual one" \
   "$(value shortest.json peak_intensity) < 0.8 * $(value limited.json peak_intensity)"
 holds "the shortest print meets the same conditions" "$(value shortest.json ver) == 0 && $(value shortest.json pw) >= 0.055"
-fails 64 'requires --until' vam-optimize --method cal --shortest part.vdb -o out.exr
+fails 65 '^vam-optimize: --bits 1: the peak intensity of [0-9.e-]+ rounds to 0 at a full scale of 100; the frames would be dark; use' \
+  vam-optimize --method dose-norm --angles 24 --bits 1 --full-scale 100 part.vdb -o out.exr
 fails 64 'omit --max-intensity' vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr
 fails 64 'omit --max-intensity, --turns' vam-optimize --shortest --turns 2 part.vdb -o out.exr
 fails 64 'use a method with --max-intensity' vam-optimize --method fbp --until ver=0 --shortest part.vdb -o out.exr

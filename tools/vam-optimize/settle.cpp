@@ -145,9 +145,7 @@ void settle_raising(const cli::App& app, Options& options) {
                 "--shortest: sets the maximum intensity of prints; omit --max-intensity, --turns and --grey-target, "
                 "and use a method with --max-intensity"};
   }
-  if (options.shortest && options.until.empty()) {
-    throw Error{Fault::usage, "--shortest: requires --until, the conditions that the print must meet"};
-  }
+  if (options.shortest && options.until.empty()) options.until = optimize::automatic_until;
   if (options.limit.of_even <= 0 || options.until.empty()) return;
   options.raising = options.shortest ? optimize::shortest_raising : optimize::usual_raising;
   if (!options.shortest) return;

@@ -1,5 +1,7 @@
 #include "vam-optimize/sink.hpp"
 
+#include <algorithm>
+
 #include "response.hpp"
 
 namespace vam::optimize_tool {
@@ -19,6 +21,7 @@ Sink::Sink(const Options& options, const model::Printer& printer, const model::S
 
 void Sink::write(const Image& image) {
   out_.write(image);
+  most_ = std::max(most_, *std::max_element(image.values.begin(), image.values.end()));
   if (keep_) kept_.push_back(image);
 }
 

@@ -24,12 +24,15 @@ class Sink {
   /// After the last slice.
   void finish();
   void commit() { out_.commit(); }
+  /// Of all that was written.
+  [[nodiscard]] double largest() const { return static_cast<double>(most_); }
   /// All that was written, in order, if it was to be kept.
   [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }
 
  private:
   void write(const Image& image);
   bool keep_;
+  float most_ = 0;
   std::vector<Image> kept_;
   io::StackWriter out_;
   std::optional<optimize::Quantiser> levels_;

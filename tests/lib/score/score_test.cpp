@@ -59,7 +59,7 @@ TEST_CASE("absolute figures keep the dose's unit, and the critical dose is judge
   CHECK(score.table().find("cured_wrong") != std::string::npos);
 }
 
-TEST_CASE("a dose without light has no exposure: its figures are unknown, not an error") {
+TEST_CASE("a dose without light has no exposure: its figures are unknown, and there is no verdict") {
   auto o = options();
   o.exposure = vam::score::Exposure{};
   o.exposure->printer.resin.critical_dose_mj_cm3 = 90;
@@ -68,6 +68,7 @@ TEST_CASE("a dose without light has no exposure: its figures are unknown, not an
   dark.add(nothing.data(), target.data(), 1);
   for (const char* name : {"turns", "seconds", "multiplier", "peak_intensity_mw_cm2"})
     CHECK(std::isnan(dark.figure(name)));
+  CHECK_THROWS_WITH_AS((void)dark.figures(), doctest::Contains("0 everywhere"), vam::Error);
   Score lit(o, 3, 3);
   lit.add(dose.data(), target.data(), 1);
   // Doses of a turn: part 0.8 and 1, void 0.1 and 0.2; 90 / (middle 0.5 + quarter 0.15) = 138.5 turns.
