@@ -117,11 +117,8 @@ double scattered(const Body& body, const Place& point, const Place& d, double ab
   return body.density * (std::exp(-absorption * from) - std::exp(-absorption * to)) / absorption;
 }
 
-Place turned(const Place& v, double angle) {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
-}
+Place turned(const Place& v, double c, double s) { return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]}; }
+Place turned(const Place& v, double angle) { return turned(v, std::cos(angle), std::sin(angle)); }
 
 std::vector<Beam> all_beams(const ViewBench& bench, double dx, double dy) {
   std::vector<Beam> beams;
@@ -153,6 +150,8 @@ std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bod
     all.push_back(body);
   }
   const auto rays = static_cast<std::size_t>(bench.rays) * static_cast<std::size_t>(bench.rays);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
   std::vector<float> pixels;
   pixels.reserve(beams.size() / rays);
   for (std::size_t i = 0; i < beams.size(); i += rays) {
@@ -160,8 +159,8 @@ std::vector<float> one_view(const ViewBench& bench, const std::vector<Body>& bod
     for (std::size_t n = i; n < i + rays; ++n) {
       const Beam& beam = beams[n];
       if (!beam.there) continue;
-      const Place p = turned(beam.point, angle);
-      const Place d = turned(beam.direction, angle);
+      const Place p = turned(beam.point, c, s);
+      const Place d = turned(beam.direction, c, s);
       for (const Body& body : all) light += beam.passed * scattered(body, p, d, bench.absorption_per_mm);
     }
     pixels.push_back(static_cast<float>(light / static_cast<double>(rays)));

@@ -11,10 +11,23 @@ found() {  # found NAME REGEX: it is a fault, and the only one
   check tree >faults && report 1 "found: $1" && return
   is "found: $1" "$(wc -l <faults):$(grep -Ec "$2" faults)" 1:1
 }
-finds() {  # finds FILE INCLUDE REGEX: a file with this line
-  printf '%s\n' "$2" >"tree/$1"
-  found "$1: $2" "$3"
-  rm "tree/$1"
+number_of_file=0
+finds() {  # finds FILE INCLUDE REGEX: a file with this line has this fault and no other; judged by all_found
+  number_of_file=$((number_of_file + 1))
+  file=${1%.cpp}_$number_of_file.cpp
+  printf '%s\n' "$2" >"tree/$file"
+  echo "$file" >"file_$number_of_file"
+  printf '%s\n' "$3" >"wanted_$number_of_file"
+}
+all_found() {
+  check tree >faults && report 1 'the check finds faults'
+  for n in $(seq $number_of_file); do
+    file=$(cat "file_$n")
+    grep -F "$file:" faults >here
+    is "found: $file: $(cat "tree/$file")" "$(wc -l <here):$(grep -Ec -f "wanted_$n" here)" 1:1
+    rm "tree/$file"
+  done
+  is 'and nothing else' "$(wc -l <faults)" $number_of_file
 }
 finds tools/vam-score/new.cpp '#include "../vam-slice/part.hpp"' 'vam-score must not include tools/vam-slice/part.hpp'
 finds tools/vam-score/new.cpp '#include <vam-slice/part.hpp>' 'vam-score must not include tools/vam-slice/part.hpp'
@@ -33,6 +46,7 @@ finds lib/optics/new.cpp '#include HEADER' 'has no room'
 for header in boost/array.hpp libswscale/swscale.h drm.h SDL2/SDL.h; do
   finds lib/device/projector/new.cpp "#include <$header>" "<$header> (has no room|belongs to)"
 done
+all_found
 
 layer() {  # layer LINE REGEX: with this line at the top of the table
   { echo "$1"; cat "$VAM_SOURCE/lib/layers.txt"; } >tree/lib/layers.txt

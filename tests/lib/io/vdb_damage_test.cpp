@@ -61,10 +61,10 @@ TEST_CASE("a size that OpenVDB believes ends one line, not the process") {
   }
 }
 
-// Half of VAM_TRIALS bits, of a file and of a pipe.
-TEST_CASE("damage sweep: an archive truncated anywhere is status 65, and a flipped bit never crashes") {
+// VAM_TRIALS flips, 40 by default, and as many cuts; ctest --preset long has 2000 (long/damage).
+TEST_CASE("an archive truncated anywhere is status 65, and a flipped bit never crashes") {
   const char* given = std::getenv("VAM_TRIALS");
-  const int trials = (given != nullptr ? std::atoi(given) : 200) / 2;
+  const int trials = given != nullptr ? std::atoi(given) : 40;
   const scratch::Folder folder;
   const auto grid = model::centred_grid(30, 30, 30, 0.1);
   SparseVolume volume = filled("target", grid, ball(grid));
@@ -88,7 +88,9 @@ TEST_CASE("damage sweep: an archive truncated anywhere is status 65, and a flipp
       return whole_status;
     };
     CHECK(read(whole) == 0);
-    for (std::size_t length = 0; length < whole.size(); length += 1 + length / 30) {
+    // Most cuts are in the head, where every field is one.
+    const auto near = static_cast<std::size_t>(std::max(1, trials / 10));
+    for (std::size_t length = 0; length < whole.size(); length += 1 + length / near) {
       CAPTURE(length);
       CHECK(read(whole.substr(0, length)) == 65);
     }

@@ -109,7 +109,7 @@ TEST_CASE("flat end faces lie where they are, flat, at any distance of the camer
   // Far cameras leave a face sharp at the axis and blurred at the rim; the trilinear surface of a sharp step lies
   // within 0.1 voxels of it, whatever the camera.
   constexpr double dome_mm = 0.15 * 0.05;
-  for (const double lens_mm : {100.0, 200.0, 500.0}) {
+  for (const double lens_mm : {100.0, 500.0}) {  // 200: the cases below
     oracle::ViewBench bench;
     bench.rays = 2;
     bench.lens_mm = lens_mm;
@@ -187,18 +187,25 @@ TEST_CASE("scattered light that the resin absorbs is restored when its absorptio
   const Figures f = reconstructed(bench, views_of(bench, oracle::bench_views(bench, bodies, {}, 180)), bodies);
   say(0.1, f);
   CHECK(f.rms <= 10 * micrometres);
-  // MLEM, too, knows of it: it leaves the density as it is, not a map of the way out.
+  // MLEM, too, knows of it: it leaves the density as it is, not a map of the way out. Densities do not need the pixels
+  // that surfaces do.
+  bench.pixel_mm *= 2;
+  bench.columns /= 2;
+  bench.rows /= 2;
+  bench.axis_column = (bench.columns - 1) / 2.0;
+  bench.axis_row = (bench.rows - 1) / 2.0;
+  const auto views = views_of(bench, oracle::bench_views(bench, bodies, {}, 180));
   const OstReconstructor refined(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                                  {.mlem_iterations = 20, .axis_row = bench.axis_row});
-  const model::Volume sharp = refined.reconstruct(views_of(bench, oracle::bench_views(bench, bodies, {}, 180)));
+  const model::Volume sharp = refined.reconstruct(views);
   const auto density = [&](double x_mm, double y_mm) {
     const model::Grid& grid = sharp.grid;
     double sum = 0;
-    for (int j = -3; j <= 3; ++j) {
-      for (int i = -3; i <= 3; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      for (int i = -1; i <= 1; ++i) {
         const auto column = std::lround((x_mm - grid.x_mm(0)) / grid.voxel_mm) + i;
         const auto row = std::lround((y_mm - grid.y_mm(0)) / grid.voxel_mm) + j;
-        sum += sharp.slice(grid.nz / 2)[row * grid.nx + column] / 49;
+        sum += sharp.slice(grid.nz / 2)[row * grid.nx + column] / 9;
       }
     }
     return sum;
@@ -208,7 +215,8 @@ TEST_CASE("scattered light that the resin absorbs is restored when its absorptio
   // Unknown, it leaves a third of the density, of which a level made for clear resin cuts the inside.
   model::Printer clear = printer_of(bench);
   clear.camera.absorption_per_mm = 0;
-  const OstReconstructor rig(clear, bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0}, {});
-  model::Volume volume = rig.reconstruct(views_of(bench, oracle::bench_views(bench, bodies, {}, 180)));
+  const OstReconstructor rig(clear, bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
+                             {.axis_row = bench.axis_row});
+  model::Volume volume = rig.reconstruct(views);
   CHECK(0.5 > 0.75 * keep_bodies(volume, 0.5, {}).inside);
 }
