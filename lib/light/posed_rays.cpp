@@ -78,7 +78,7 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
   const int next = direction + 1 < table.directions ? direction + 1 : 0;
   const auto pair = [&](const TableNode* points) { return std::array<TableNode, 2>{points[direction], points[next]}; };
   const auto inner_mm = static_cast<float>(table.inner.pitch_mm * (table.inner.rows - 1));
-  if (r <= inner_mm || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
+  if (r <= static_cast<float>(table.inner_edge_mm) || (here.shifted && r <= static_cast<float>(table.reach_mm))) {
     const float row = std::min(r, inner_mm) / static_cast<float>(table.inner.pitch_mm);
     const int low = std::min(static_cast<int>(row), table.inner.rows - 2);
     const auto below = pair(table.points(table.inner, low, 0));

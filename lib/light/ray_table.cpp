@@ -31,6 +31,7 @@ RayTable::RayTable(const Scope& scope)
       std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, scope.pitch_mm));
   inner.rows = std::max(2, ceil_int(inside / scope.pitch_mm) + 1);
   inner.pitch_mm = inside / (inner.rows - 1);
+  inner_edge_mm = std::max(inside, std::min(reach_mm, scope.r_max_mm));
   const double beyond = std::min(edge_mm, scope.r_max_mm) - reach_mm;
   if (beyond > 0) {
     outer.sheets = most_sheets;

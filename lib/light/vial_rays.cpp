@@ -214,8 +214,7 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   const double y = setup_.grid.y_mm(j);
   const double r = std::hypot(x, y);
   if (r > setup_.radius_mm || r >= table_.edge_mm) return 0;
-  const double last_mm = table_.inner.pitch_mm * (table_.inner.rows - 1);
-  const bool outside = r > last_mm;
+  const bool outside = r > table_.inner_edge_mm;
   if (outside && table_.outer.rows == 0) return 0;
   const RayTable::Zone& zone = outside ? table_.outer : table_.inner;
   const double place = (r - zone.first_mm) / zone.pitch_mm;

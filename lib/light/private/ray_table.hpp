@@ -108,9 +108,10 @@ class RayTable {
   int phases = 0;      // directions a stage angle
   int directions = 0;  // of a turn
   double reach_mm = 0;
-  double edge_mm = 0;  // radius of the resin
-  Zone inner;          // to be interpolated between rows
-  Zone outer;          // nearest row
+  double edge_mm = 0;        // radius of the resin
+  Zone inner;                // to be interpolated between rows
+  double inner_edge_mm = 0;  // up to where it holds: its last row, or the reach, before which it ends by a hair
+  Zone outer;                // nearest row
 
  private:
   void fill_inner_row(const ChiefRayDose& light, int row);

@@ -241,3 +241,23 @@ TEST_CASE("a displaced vial is not the same as a displaced part, and neither the
   CHECK(difference(vial_doses, doses(part)) > 0.1);  // of a dose of some 10
   CHECK(difference(vial_doses, doses(none)) > 0.1);
 }
+
+TEST_CASE("the dose at the reach is the same whether the resin beyond it is computed or not") {
+  Bench b = bench(60, 0, 0.2, 1, 0);
+  const double reach = optics::reach_mm(b.setup.view);
+  b.setup.grid = model::centred_grid(21, 21, 10, 0.09998 * reach);  // the outermost voxels on the axes: 0.9998 of it
+  const auto dose = [&](double radius_mm) {
+    VialSetup setup = b.setup;
+    setup.radius_mm = radius_mm;
+    const std::vector<Image> rows(20, Image(48, 30, 1.0F));
+    return parts::doses_of(VialOperator(setup), rows, 10)[5];
+  };
+  const Image within = dose(0.9999 * reach);
+  const Image beyond = dose(optics::resin_radius_mm(b.setup.view));
+  for (const int far : {0, 20}) {
+    CHECK(within(far, 10) > 0);
+    CHECK(within(far, 10) == doctest::Approx(beyond(far, 10)).epsilon(1e-6));
+    CHECK(within(10, far) == doctest::Approx(beyond(10, far)).epsilon(1e-6));
+  }
+  CHECK(within(10, 10) == doctest::Approx(beyond(10, 10)).epsilon(1e-6));
+}
