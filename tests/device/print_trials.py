@@ -1,5 +1,5 @@
 """Kills vam-print, or one of its tools, in the middle of a print, again and again: by the memory of a virtual screen and
-the log of a simulated stage, how long until the light is off and the table stands. First on a machine that has nothing
+the log of a simulated stage, how long until the light is off and the stage stands. First on a machine that has nothing
 else to do, then beside busy loops. usage: print_trials.py TRIALS, in a folder with frames.exr and printer.toml. Prints a
 table; exit status 1 when one trial took too long."""
 

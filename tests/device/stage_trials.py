@@ -1,5 +1,5 @@
 """Ends vam-stage spin in every way a program can end, again and again, and lets the simulator's own log say when the
-table stood. usage: stage_trials.py TRIALS PROTOCOL (gcs, grbl, zaber). Prints a table; exit status 1 when one trial took too long.
+stage stood. usage: stage_trials.py TRIALS PROTOCOL (gcs, grbl, zaber). Prints a table; exit status 1 when one trial took too long.
 
 The stage turns at 60 deg/s and brakes at 3000 deg/s2, so 20 ms of the limit are the stage's own."""
 
@@ -19,7 +19,7 @@ OPTIONS = {"gcs": "?baud=115200"}.get(SCHEME, "")
 ANGLE_QUERY = {"gcs": "POS?", "grbl": "?", "zaber": "get pos"}[SCHEME]
 HOME = ["--home"] if SCHEME == "grbl" else []  # the others keep their reference
 TRAVEL = ["--min-angle", "-900000", "--max-angle", "900000"]  # of a Zaber stage, whose position counts on from trial to trial
-LANES = 3  # trials at the same time, each with a table of its own: mostly they wait
+LANES = 3  # trials at the same time, each with a stage of its own: mostly they wait
 
 
 def at_speed(event):

@@ -6,7 +6,7 @@ shim=$(vam-sim-stage --shim)
 tiny_print frames.exr
 printf '[stage]\ndevice = "gcs:%s/stage"\nspeed_deg_s = 180\n' "$PWD" >>printer.toml
 
-launch() {  # launch RUN OPTIONS...: that print, on a table with these options
+launch() {  # launch RUN OPTIONS...: that print, on a stage with these options
   run=$1; shift
   stage_up --acceleration 9000 --max-speed 360 --start-angle 1 "$@"
   rm -rf leds "$run"
@@ -33,7 +33,7 @@ aborted() {  # aborted STATUS OUTCOME REGEX: that print
   [ $status -eq "$1" ] || sed 's/^/# /' errors
   [ -z "$2" ] || is "$run: the summary" "$(json "$run/summary.json" outcome)" "$2"
   [ -z "$3" ] || { grep -Eq -- "$3" errors; report $? "$run: reports '$3'"; }
-  [ $run = unplugged ] || { await stood; ok "$run: the table stands" stood; }  # a pulled cable leaves it to its last order
+  [ $run = unplugged ] || { await stood; ok "$run: the stage stands" stood; }  # a pulled cable leaves it to its last order
   is "$run: black" "$($screen now)" black
   # The simulated light engine is a part of vam-project and dies with it; usb-safety.t kills it beside a real one.
   [ $run = projector-killed ] || is "$run: the light is off" "$(grep -o '"bits":[0-9]*' leds | tail -n 1)" '"bits":0'
