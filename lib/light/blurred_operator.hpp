@@ -10,7 +10,7 @@ namespace vam::light {
 class GaussianBlur;
 
 /// Dose = B A* g, where B is the Gaussian of the beam's point spread and of diffusion [physics §4],
-/// that of light::VolumeBlur, across the slices and from one to the next: the slices of a pass lie one above the other.
+/// that of light::BlurStream, across the slices and from one to the next: the slices of a pass lie one above the other.
 /// What is outside the grid or the pass is dark, so B is symmetric and A B its adjoint.
 class BlurredOperator final : public Operator {
  public:

@@ -7,7 +7,7 @@
 #include "base/parallel.hpp"
 #include "model/circle.hpp"
 #include "tomo/absorption.hpp"
-#include "tomo/trapezoid.hpp"
+#include "tomo/footprint.hpp"
 
 namespace vam::light {
 

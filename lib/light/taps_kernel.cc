@@ -1,6 +1,6 @@
 #include "light/private/taps_kernel.hpp"
 
-#include "tomo/trapezoid.hpp"
+#include "tomo/footprint.hpp"
 
 namespace vam::light::VAM_SIMD {
 

@@ -11,7 +11,7 @@
 #include "base/text.hpp"
 #include "device/os/angle_sample.hpp"
 #include "io/stream/stream.hpp"
-#include "metrology/calibrate/stage_course.hpp"
+#include "metrology/calibrate/recorded_angle_fit.hpp"
 #include "vam-calibrate/scan.hpp"
 
 namespace vam::calibrate_tool {

@@ -16,11 +16,11 @@
 #include "dark_part.hpp"
 #include "io/exr/stack_batches.hpp"
 #include "io/stream/input_name.hpp"
+#include "light/blur_stream.hpp"
 #include "light/dose_grid.hpp"
 #include "light/dose_stream.hpp"
 #include "light/gaussian_blur.hpp"
 #include "light/simulation.hpp"
-#include "light/volume_blur.hpp"
 #include "model/grid_size.hpp"
 #include "optics/projector_frames.hpp"
 #include "resin/dither.hpp"
@@ -64,7 +64,7 @@ class Blurred {
  private:
   bool sharp_;
   Sink& sink_;
-  light::VolumeBlur blur_;
+  light::BlurStream blur_;
 };
 
 /// What the projector makes of the sinograms: a range, and on request the grey levels in it.

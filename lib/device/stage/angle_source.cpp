@@ -11,7 +11,7 @@
 
 #include "base/error.hpp"
 #include "base/text.hpp"
-#include "device/stage/private/ripple_fit.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 
 namespace vam::device {
 
@@ -102,7 +102,7 @@ class FollowedAngle final : public AngleSource {
   long lines_ = 0;
   double heard_s_ = 0;
   AngleSample last_;
-  RippleFit fit_;
+  RippleFilter fit_;
 };
 
 }  // namespace

@@ -7,9 +7,9 @@
 #include "base/index.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "light/blur_stream.hpp"
 #include "light/gaussian_blur.hpp"
 #include "light/simulation.hpp"
-#include "light/volume_blur.hpp"
 #include "model/magnification.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/target/exclusions.hpp"
@@ -23,7 +23,7 @@ constexpr std::uint64_t seed = 13;
 std::vector<Image> blurred(std::vector<Image> sharp, double sigma_px) {
   if (sigma_px <= 0) return sharp;
   std::vector<Image> out;
-  light::VolumeBlur blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
+  light::BlurStream blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
   for (const Image& slice : sharp) blur.push(slice);
   blur.finish();
   return out;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/slab_lanes.hpp"
-#include "tomo/trapezoid.hpp"
+#include "tomo/footprint.hpp"
 
 namespace vam::tomo {
 

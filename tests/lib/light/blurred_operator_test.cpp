@@ -8,8 +8,8 @@
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
+#include "light/blur_stream.hpp"
 #include "light/private/parallel_operator.hpp"
-#include "light/volume_blur.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
@@ -55,7 +55,7 @@ std::vector<vam::model::DoseMetrics> judged(const Operator& sharp, const std::ve
   std::vector<Slab> dose = slabs(g.size(), sharp.object().width, sharp.object().height);
   sharp.adjoint(g, dose);
   int k = 0;
-  light::VolumeBlur blur(sigma_px, [&](const vam::Image& slice) {
+  light::BlurStream blur(sigma_px, [&](const vam::Image& slice) {
     for (std::size_t i = 0; i < slice.values.size(); ++i) {
       dose[0].values[i * lanes + static_cast<std::size_t>(k)] = slice.values[i];
     }
@@ -160,7 +160,7 @@ TEST_CASE("the blur agrees with that of the oracle") {
   const auto want = images(dose[0]);
   int k = 0;
   float worst = 0;
-  light::VolumeBlur blur(1.3, [&](const vam::Image& slice) {
+  light::BlurStream blur(1.3, [&](const vam::Image& slice) {
     for (std::size_t i = 0; i < slice.values.size(); ++i) {
       worst = std::max(worst, std::abs(slice.values[i] - want[k].values[i]));
     }

@@ -12,8 +12,8 @@
 #include "metrology/calibrate/lag.hpp"
 #include "metrology/calibrate/latency.hpp"
 #include "metrology/calibrate/private/half_maximum.hpp"
+#include "metrology/calibrate/recorded_angle_fit.hpp"
 #include "metrology/calibrate/response.hpp"
-#include "metrology/calibrate/stage_course.hpp"
 #include "metrology/calibrate/wobble.hpp"
 #include "oracle/calibration_scans.hpp"
 

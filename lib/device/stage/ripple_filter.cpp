@@ -1,4 +1,4 @@
-#include "device/stage/private/ripple_fit.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr double least_span_s = 0.25;
 
 }  // namespace
 
-void RippleFit::begin(const AngleSample& sample) {
+void RippleFilter::begin(const AngleSample& sample) {
   state_ = {};
   spread_ = {};
   state_[0] = sample.angle_deg;
@@ -31,7 +31,7 @@ void RippleFit::begin(const AngleSample& sample) {
   first_s_ = t_s_ = sample.t_s;
 }
 
-RippleFit::Vector RippleFit::seen_at(double angle_deg) {
+RippleFilter::Vector RippleFilter::seen_at(double angle_deg) {
   Vector seen{};
   seen[0] = 1;
   const double step = angle_deg * rad_per_deg;
@@ -42,7 +42,7 @@ RippleFit::Vector RippleFit::seen_at(double angle_deg) {
   return seen;
 }
 
-RippleFit::Vector RippleFit::times(const Vector& vector) const {
+RippleFilter::Vector RippleFilter::times(const Vector& vector) const {
   Vector product{};
   for (std::size_t i = 0; i < size; ++i) {
     for (std::size_t j = 0; j < size; ++j) product[i] += spread_[i][j] * vector[j];
@@ -50,7 +50,7 @@ RippleFit::Vector RippleFit::times(const Vector& vector) const {
   return product;
 }
 
-void RippleFit::advance(double to_s) {
+void RippleFilter::advance(double to_s) {
   const double dt = to_s - t_s_;
   t_s_ = to_s;
   state_[0] += dt * state_[1];
@@ -60,7 +60,7 @@ void RippleFit::advance(double to_s) {
   spread_[1][1] += wander * wander * std::abs(dt);
 }
 
-void RippleFit::add(const AngleSample& sample) {
+void RippleFilter::add(const AngleSample& sample) {
   if (count_++ == 0) return begin(sample);
   advance(sample.t_s);
   const Vector seen = seen_at(sample.angle_deg);
@@ -91,16 +91,16 @@ void RippleFit::add(const AngleSample& sample) {
   }
 }
 
-bool RippleFit::ready() const { return count_ >= 3 && t_s_ - first_s_ >= least_span_s; }
+bool RippleFilter::ready() const { return count_ >= 3 && t_s_ - first_s_ >= least_span_s; }
 
-double RippleFit::ripple_deg(double angle_deg) const {
+double RippleFilter::ripple_deg(double angle_deg) const {
   const Vector seen = seen_at(angle_deg);
   double sum = 0;
   for (std::size_t i = 2; i < size; ++i) sum += seen[i] * state_[i];
   return sum;
 }
 
-AngleSample RippleFit::at(double t_s) const {
+AngleSample RippleFilter::at(double t_s) const {
   const double dt = t_s - t_s_;
   const double line_deg = state_[0] + dt * state_[1];
   double angle_deg = line_deg;

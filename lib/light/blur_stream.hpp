@@ -14,10 +14,10 @@ class GaussianBlur;
 
 /// Gaussian blur of a volume with the same sigma along x, y and z, in a stream: slices in, slices out in order, as soon
 /// as those above them are known. Outside the volume is 0. Holds as many slices as the kernel is high.
-class VolumeBlur {
+class BlurStream {
  public:
-  VolumeBlur(double sigma_px, std::function<void(Image)> out);
-  ~VolumeBlur();
+  BlurStream(double sigma_px, std::function<void(Image)> out);
+  ~BlurStream();
   void push(Image slice);
   /// After the last slice.
   void finish();

@@ -1,4 +1,4 @@
-#include "device/stage/private/ripple_fit.hpp"
+#include "device/stage/private/ripple_filter.hpp"
 
 #include <doctest/doctest.h>
 
@@ -71,7 +71,7 @@ Errors print(double ripple, double jitter_s, int seed) {
 TEST_CASE("A ripple of 3 % each 30 degrees and a jitter of 20 ms leave a bias of 0.02 deg and 0.1 deg at p99") {
   for (int seed = 1; seed <= 5; ++seed) {
     CAPTURE(seed);
-    const Errors errors = print<RippleFit>(0.03, 0.02, seed);
+    const Errors errors = print<RippleFilter>(0.03, 0.02, seed);
     CHECK(std::abs(errors.bias_deg) <= 0.02);
     CHECK(errors.p99_deg <= 0.1);
     CHECK(errors.covered > 0.9);  // 0.954 were it Gaussian and independent; one print has some 30 independent errors
@@ -80,12 +80,12 @@ TEST_CASE("A ripple of 3 % each 30 degrees and a jitter of 20 ms leave a bias of
 }
 
 TEST_CASE("Without ripple the harmonics cost nothing that counts") {
-  CHECK(print<RippleFit>(0, 0.005, 1).p99_deg <= 0.02);
-  CHECK(print<RippleFit>(0.03, 0.005, 1).p99_deg <= 0.02);
+  CHECK(print<RippleFilter>(0, 0.005, 1).p99_deg <= 0.02);
+  CHECK(print<RippleFilter>(0.03, 0.005, 1).p99_deg <= 0.02);
 }
 
 TEST_CASE("After a start or a stop the line is found anew within half a second") {
-  RippleFit fit;
+  RippleFilter fit;
   const auto angle = [](double t_s) { return t_s < 1 ? 10.0 : t_s < 4 ? 10 + 90 * (t_s - 1) : 280; };
   double worst_deg = 0;
   for (int i = 0; i <= 600; ++i) {

@@ -1,4 +1,4 @@
-#include "light/volume_blur.hpp"
+#include "light/blur_stream.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -10,11 +10,11 @@
 
 namespace vam::light {
 
-VolumeBlur::VolumeBlur(double sigma_px, std::function<void(Image)> out)
+BlurStream::BlurStream(double sigma_px, std::function<void(Image)> out)
     : smear_(std::make_unique<GaussianBlur>(sigma_px)), out_(std::move(out)) {}
-VolumeBlur::~VolumeBlur() = default;
+BlurStream::~BlurStream() = default;
 
-void VolumeBlur::push(Image slice) {
+void BlurStream::push(Image slice) {
   float* const plane = slice.values.data();
   smear_->across(std::span(&plane, 1), slice.width, slice.height, 1);
   held_.push_back(std::move(slice));
@@ -22,11 +22,11 @@ void VolumeBlur::push(Image slice) {
   if (pushed_ - emitted_ > smear_->half_width()) emit(emitted_);
 }
 
-void VolumeBlur::finish() {
+void BlurStream::finish() {
   while (emitted_ < pushed_) emit(emitted_);
 }
 
-void VolumeBlur::emit(int centre) {
+void BlurStream::emit(int centre) {
   Image result(held_.front().width, held_.front().height);
   const int low = std::max(centre - smear_->half_width(), 0);
   const int high = std::min(centre + smear_->half_width(), pushed_ - 1);

@@ -1,4 +1,4 @@
-#include "light/volume_blur.hpp"
+#include "light/blur_stream.hpp"
 
 #include <doctest/doctest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 std::vector<Image> blurred(const std::vector<Image>& in, double sigma_px) {
   std::vector<Image> out;
-  VolumeBlur blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
+  BlurStream blur(sigma_px, [&](Image slice) { out.push_back(std::move(slice)); });
   for (const Image& slice : in) blur.push(slice);
   blur.finish();
   return out;

@@ -1,4 +1,4 @@
-#include "metrology/calibrate/stage_course.hpp"
+#include "metrology/calibrate/recorded_angle_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@ namespace vam::device {
 
 /// A Kalman filter. The line's speed may wander by a thousandth of itself in a second; the harmonics stay as they are
 /// learned, the first turn being enough, so that the run-up teaches them. After a jump the line is found anew.
-class RippleFit {
+class RippleFilter {
  public:
   void add(const AngleSample& sample);
   /// At least three samples over a quarter of a second.
