@@ -39,10 +39,11 @@ std::vector<metrology::StagePoint> read_points(const std::string& path) {
 }
 
 metrology::StageCourse course_of(const std::vector<metrology::StagePoint>& points, const std::vector<double>& time_s) {
-  const auto [first, last] = std::minmax_element(time_s.begin(), time_s.end());
+  const double first_s = *std::min_element(time_s.begin(), time_s.end());
+  const double last_s = *std::max_element(time_s.begin(), time_s.end());
   std::vector<metrology::StagePoint> during;
   std::copy_if(points.begin(), points.end(), std::back_inserter(during), [&](const metrology::StagePoint& point) {
-    return point.t_s >= *first - margin_s && point.t_s <= *last + margin_s;
+    return point.t_s >= first_s - margin_s && point.t_s <= last_s + margin_s;
   });
   return metrology::StageCourse(during);
 }
