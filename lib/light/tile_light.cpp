@@ -75,7 +75,7 @@ void TileLight::enter(int tile, const Tile& rays, const Chunk& chunk) {
   i1_ = std::min(i0_ + edge, grid.nx);
   j1_ = std::min(j0_ + edge, grid.ny);
   make_room(rays.rays.size());
-  voxels_.resize(voxel_gap + product(edge * edge, chunk.width() + voxel_gap) + overrun);
+  voxels_.resize(voxel_gap + product(product(edge, edge), chunk.width() + voxel_gap) + overrun);
 }
 
 void TileLight::make_room(std::size_t pitch) {

@@ -120,7 +120,7 @@ void cover(RgbImage& image, const Panel& panel) {
 }
 
 std::string legend(const ImageFigure& figure) {
-  const std::string line = figure.outline_name.empty() ? "" : "line: " + figure.outline_name;
+  std::string line = figure.outline_name.empty() ? "" : "line: " + figure.outline_name;
   if (figure.hatched_name.empty()) return line;
   return line + (line.empty() ? "" : "; ") + "hatched: " + figure.hatched_name;
 }

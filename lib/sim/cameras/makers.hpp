@@ -12,7 +12,7 @@ struct SimMaker {
   std::string name;           // of an option
   std::string vendor, model;  // as the camera tells them
   device::StampMoment stamp;  // of the exposure, that its frames bear
-  std::string nodes = "";     // GenICam features that others have not
+  std::string nodes = {};     // GenICam features that others have not
 };
 
 /// Those that there are; the first is Aravis' fake camera itself.
