@@ -1,5 +1,5 @@
 // Every cut and many corruptions of every format that is parsed by foreign libraries or by hand: status 0 or 65, never
-// a signal, never long, never much memory. VAM_TRIALS corruptions a format, 50 by default; ctest --preset long has
+// a signal, never long, never much memory. VAM_TRIALS corruptions a format, 200 by default; ctest --preset long has
 // 2000.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
@@ -151,7 +151,7 @@ std::string corrupted(std::string bytes, std::mt19937& random) {
 TEST_CASE("damage sweep: every cut and many corruptions of every format end with 0 or 65, soon and in little memory") {
   const scratch::Folder folder;
   const char* given = std::getenv("VAM_TRIALS");
-  const int trials = given != nullptr ? std::atoi(given) : 50;
+  const int trials = given != nullptr ? std::atoi(given) : 200;
   for (const Sample& sample : all_samples(folder)) {
     CAPTURE(sample.format);
     std::mt19937 random(7);
