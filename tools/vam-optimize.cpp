@@ -3,11 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
-#include "base/text.hpp"
 #include "device/os/interrupt.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/stream/stream.hpp"
@@ -44,20 +41,6 @@ void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, co
       whole ? "use larger voxels (vam-slice --voxel)" : "use larger voxels (vam-slice --voxel) or fewer --angles");
 }
 
-/// The grey levels show the light, if not all of it.
-void require_levels(double peak, double shown, const Options& options) {
-  if (!options.bits) return;
-  const double full = options.full_scale.value_or(peak);
-  if (!(shown > 0)) {
-    throw Error{Fault::data, "--bits " + std::to_string(*options.bits) + ": the peak intensity of " +
-                                 format_number(peak, 3) + " rounds to 0 at a full scale of " + format_number(full, 3) +
-                                 "; the frames would be dark; use a smaller --full-scale or more bits"};
-  }
-  if (peak <= full) return;
-  warn("the peak intensity of " + format_number(peak, 3) + " exceeds --full-scale " + format_number(full, 3) +
-       " and is clipped; the report describes the intensities before that: judge the frames by vam-dose and vam-score");
-}
-
 /// Options -> volumes -> light and task -> one pass after the other -> stack.
 void run(const cli::App& app, Options& options) {
   settle(app, options);
@@ -90,7 +73,7 @@ void run(const cli::App& app, Options& options) {
   }
   if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
   sink.finish();
-  require_levels(outcome.peak_intensity, sink.largest(), options);
+  sink.require_light(outcome.peak_intensity);
   std::optional<optimize::Trials> trials;
   if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
   publish(outcome, trials, scene, in.target.front(), info, options);

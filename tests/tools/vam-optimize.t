@@ -40,6 +40,12 @@ quiet "the shortest" vam-optimize --angles 180 $resin --shortest --report shorte
 holds "the shortest print has less intensity than the usual one" \
   "$(value shortest.json peak_intensity) < 0.8 * $(value limited.json peak_intensity)"
 holds "the shortest print meets the same conditions" "$(value shortest.json ver) == 0 && $(value shortest.json pw) >= 0.055"
+vam-slice --shape cylinder:diameter=4,height=2 --voxel 0.5 -o small.vdb
+quiet '--shortest of another method has the conditions of auto' \
+  vam-optimize --method apg --shortest --angles 24 --report small.json small.vdb -o small.exr
+is 'and ends when they are met' "$(value small.json stopped_by)" goal
+vam-optimize --method dose-norm --angles 24 --bits 8 --full-scale 0.01 small.vdb -o small.exr 2>clipped
+ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds --full-scale 0.01 and is clipped' clipped
 fails 65 '^vam-optimize: --bits 1: the peak intensity of [0-9.e-]+ rounds to 0 at a full scale of 100; the frames would be dark; use' \
   vam-optimize --method dose-norm --angles 24 --bits 1 --full-scale 100 part.vdb -o out.exr
 fails 64 'omit --max-intensity' vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/error.hpp"
+#include "base/text.hpp"
 #include "response.hpp"
 
 namespace vam::optimize_tool {
@@ -12,6 +14,8 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
     : keep_(options.printer_tolerances.has_value()),
+      bits_(options.bits),
+      full_scale_(options.full_scale),
       out_(options.output, info, options.stack),
       progress_("optimising", info.count) {
   if (!options.bits) return;
@@ -36,6 +40,19 @@ void Sink::add(const Image& image) {
 
 void Sink::finish() {
   if (levels_) levels_->finish();
+}
+
+void Sink::require_light(double peak) const {
+  if (!bits_) return;
+  const double full = full_scale_.value_or(peak);
+  if (!(most_ > 0)) {
+    throw Error{Fault::data, "--bits " + std::to_string(*bits_) + ": the peak intensity of " + format_number(peak, 3) +
+                                 " rounds to 0 at a full scale of " + format_number(full, 3) +
+                                 "; the frames would be dark; use a smaller --full-scale or more bits"};
+  }
+  if (peak <= full) return;
+  warn("the peak intensity of " + format_number(peak, 3) + " exceeds --full-scale " + format_number(full, 3) +
+       " and is clipped; the report describes the intensities before that: judge the frames by vam-dose and vam-score");
 }
 
 }  // namespace vam::optimize_tool

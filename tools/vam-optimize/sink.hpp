@@ -23,16 +23,19 @@ class Sink {
   void add(const Image& image);
   /// After the last slice.
   void finish();
+  /// After finish(), for light with that peak: throws Fault::data where all of it rounds to grey level 0, warns where
+  /// full grey is below it.
+  void require_light(double peak) const;
   void commit() { out_.commit(); }
-  /// Of all that was written.
-  [[nodiscard]] double largest() const { return static_cast<double>(most_); }
   /// All that was written, in order, if it was to be kept.
   [[nodiscard]] const std::vector<Image>& kept() const { return kept_; }
 
  private:
   void write(const Image& image);
   bool keep_;
-  float most_ = 0;
+  std::optional<int> bits_;
+  std::optional<double> full_scale_;
+  float most_ = 0;  // of all that was written
   std::vector<Image> kept_;
   io::StackWriter out_;
   std::optional<optimize::Quantiser> levels_;
