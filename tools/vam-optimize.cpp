@@ -10,8 +10,10 @@
 #include "io/stream/stream.hpp"
 #include "model/grid_size.hpp"
 #include "optimize/run/printable.hpp"
+#include "optimize/run/shown.hpp"
 #include "optimize/run/volume.hpp"
 #include "printer.hpp"
+#include "score/exposure_plan.hpp"
 #include "vam-optimize/beginning.hpp"
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
@@ -66,7 +68,7 @@ void run(const cli::App& app, Options& options) {
   optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, subject);
   beginning.begin(task, in, scene, *light, options);
   if (device::interrupted()) return;
-  const auto outcome = optimize::optimise(task, *light);
+  auto outcome = optimize::optimise(task, *light);
   if (outcome.stop == optimize::StopReason::interrupted) {
     beginning.keep();
     return;
@@ -74,8 +76,13 @@ void run(const cli::App& app, Options& options) {
   if (!options.demands.grey) optimize::require_light(outcome, subject);  // whose figures are misses, not doses
   sink.finish();
   sink.require_light(outcome.peak_intensity);
+  if (options.bits) {
+    const double threshold = options.demands.window.threshold();
+    const auto aimed = [&](const model::DoseMetrics& doses) { return score::aimed_dose(doses, threshold); };
+    optimize::judge_shown(task, *light, sink.kept(), aimed, outcome);
+  }
   std::optional<optimize::Trials> trials;
-  if (!sink.kept().empty()) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
+  if (options.printer_tolerances) trials = run_trials(make_trial(scene, info, options), task, sink.kept());
   publish(outcome, trials, scene, in.target.front(), info, options);
   sink.commit();
   beginning.remove();

@@ -46,6 +46,25 @@ quiet '--shortest of another method has the conditions of auto' \
 is 'and ends when they are met' "$(value small.json stopped_by)" goal
 vam-optimize --method dose-norm --angles 24 --bits 8 --full-scale 0.01 small.vdb -o small.exr 2>clipped
 ok 'full grey below the peak is a warning' grep -q 'the peak intensity of .* exceeds --full-scale 0.01 and is clipped' clipped
+vam-slice --shape cylinder:diameter=4,height=2.25 --voxel 0.5 -o cut.vdb  # its end slices are covered by a half or so
+level='--set projector.telecentric=true'
+judged() {  # judged NAME PART PRINTER OPTIONS...: the report and vam-dose | vam-score agree
+  name=$1 judged_part=$2 printer=$3
+  shift 3
+  # shellcheck disable=SC2086
+  vam-optimize --method dose-norm --angles 24 $printer "$@" --report shown.json "$judged_part" -o shown.exr 2>/dev/null
+  # shellcheck disable=SC2086
+  vam-dose $printer --like "$judged_part" shown.exr -o shown.vdb
+  vam-score --target "$judged_part" --report judged.json shown.vdb >/dev/null
+  for figure in ver pw iou min_part max_void outside_gelled_voxels; do
+    holds "$name: the report has the $figure of the frames as they are written" \
+      "($(value shown.json $figure) - $(value judged.json $figure)) ^ 2 <= 1e-12"  # floats, angles in another order
+  done
+}
+judged 'one bit' small.vdb '' --bits 1
+judged 'clipped' small.vdb '' --bits 8 --full-scale 0.01
+judged 'two bits, level rays' small.vdb "$level" --bits 2
+judged 'half-covered ends, level rays' cut.vdb "$level"
 fails 65 '^vam-optimize: --bits 1: the peak intensity of [0-9.e-]+ rounds to 0 at a full scale of 100; the frames would be dark; use' \
   vam-optimize --method dose-norm --angles 24 --bits 1 --full-scale 100 part.vdb -o out.exr
 fails 64 'omit --max-intensity' vam-optimize --shortest --max-intensity 1 part.vdb -o out.exr

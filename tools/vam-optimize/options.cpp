@@ -195,10 +195,9 @@ void declare_beam(cli::App& app, Options& options) {
 
 void declare_grey_levels(cli::App& app, Options& options) {
   app.group("Grey levels of the projector");
-  app.option(
-      "--bits", "N", options.bits, {1, 16},
-      "Quantise intensities to the grey levels of this bit depth, through projector.response. The report describes "
-      "the intensities before; vam-dose and vam-score judge those written.");
+  app.option("--bits", "N", options.bits, {1, 16},
+             "Quantise intensities to the grey levels of this bit depth, through projector.response. The report "
+             "describes the intensities that are written.");
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive, "Intensity shown at full grey.")
       .needs({"--bits"});
   app.default_is("the largest of all projections").was("--peak");

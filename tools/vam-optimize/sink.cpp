@@ -13,7 +13,7 @@ resin::GreyLevels grey_levels(const model::Printer& printer, int bits) {
 }
 
 Sink::Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info)
-    : keep_(options.printer_tolerances.has_value()),
+    : keep_(options.printer_tolerances || options.bits),
       bits_(options.bits),
       full_scale_(options.full_scale),
       out_(options.output, info, options.stack),
@@ -52,7 +52,7 @@ void Sink::require_light(double peak) const {
   }
   if (peak <= full) return;
   warn("the peak intensity of " + format_number(peak, 3) + " exceeds --full-scale " + format_number(full, 3) +
-       " and is clipped; the report describes the intensities before that: judge the frames by vam-dose and vam-score");
+       " and is clipped");
 }
 
 }  // namespace vam::optimize_tool

@@ -16,7 +16,8 @@ namespace vam::optimize_tool {
 /// Of the projector, through its response. Throws Error when the response cannot be read.
 [[nodiscard]] resin::GreyLevels grey_levels(const model::Printer& printer, int bits);
 
-/// Into the stack, quantised to the projector's grey levels on request. With --robust all is kept to be judged.
+/// Into the stack, quantised to the grey levels of the projector on request. With --robust and --bits all is kept to be
+/// judged.
 class Sink {
  public:
   Sink(const Options& options, const model::Printer& printer, const model::StackInfo& info);

@@ -96,10 +96,32 @@ std::vector<model::DoseStatistics> statistics(std::span<const Slab> dose, const 
   return counted(dose, problem, [&](std::size_t s, std::size_t i) { return problem.labels[s][i]; });
 }
 
+namespace {
+
+/// Whether nothing but settle() made this voxel part.
+bool is_thin_part(const Problem& problem, std::size_t s, std::size_t i) {
+  return problem.labels[s][i] == Label::part && problem.is_thin(s, i) && asks_surface(problem.demands);
+}
+
+/// As the target has it, before a thin slice was scaled: by a factor and back, hence the margin.
+float coverage(const Problem& problem, std::size_t s, std::size_t i) {
+  constexpr float rounding = 1 + 1e-6F;
+  const float value = problem.target[s].values[i];
+  return problem.is_thin(s, i) && value > 0 ? rounding * value / problem.gain[s * lanes + i % lanes] : value;
+}
+
+}  // namespace
+
+std::vector<model::DoseStatistics> whole_statistics(std::span<const Slab> dose, const Problem& problem) {
+  return counted(dose, problem, [&](std::size_t s, std::size_t i) {
+    return is_thin_part(problem, s, i) ? Label::surface : problem.labels[s][i];
+  });
+}
+
 std::vector<model::DoseStatistics> cut_statistics(std::span<const Slab> dose, const Problem& problem) {
   return counted(dose, problem, [&](std::size_t s, std::size_t i) {
-    if (problem.labels[s][i] != Label::surface) return Label::outside;
-    return model::half_covered(problem.target[s].values[i]) ? Label::part : Label::void_;
+    if (problem.labels[s][i] != Label::surface && !is_thin_part(problem, s, i)) return Label::outside;
+    return model::half_covered(coverage(problem, s, i)) ? Label::part : Label::void_;
   });
 }
 

@@ -56,10 +56,11 @@ VolumeOutcome Ledger::outcome(bool grey, std::span<const int> job_of_slice) cons
     outcome.trace.push_back(all.mean());
     ended.add(ends_[i]);
   }
-  outcome.metrics = grey ? figures_.mean() : total_.metrics();
   model::DoseStatistics with_cut;
   with_cut.merge(total_);
   with_cut.merge(cut_);
+  outcome.metrics = grey ? figures_.mean() : total_.metrics();
+  if (!grey && outcome.metrics.part == 0) outcome.metrics = with_cut.metrics();  // all of it is thin
   if (!grey) outcome.with_cut = with_cut.metrics();
   if (!grey) outcome.outside = outside_;
   for (const int job : job_of_slice) {

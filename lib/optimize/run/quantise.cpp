@@ -25,7 +25,10 @@ void Quantiser::finish() {
   for (const Image& image : held_) {
     for (const float v : image.values) largest = std::max(largest, v);
   }
-  for (const Image& image : held_) emit_(largest > 0 ? quantised(image, largest) : image);
+  for (Image& image : held_) {
+    emit_(largest > 0 ? quantised(image, largest) : image);
+    image = {};
+  }
   held_.clear();
 }
 

@@ -7,13 +7,13 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/text.hpp"
-#include "light/blurred_operator.hpp"
 #include "optimize/methods/metrics.hpp"
+#include "optimize/run/private/division.hpp"
 #include "optimize/run/private/finished.hpp"
 #include "optimize/run/private/ledger.hpp"
-#include "optimize/run/private/misses.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/run/private/pass_light.hpp"
+#include "optimize/run/private/tally.hpp"
 #include "optimize/run/private/threshold.hpp"
 #include "optimize/target/exclusions.hpp"
 #include "optimize/target/schedule.hpp"
@@ -45,17 +45,13 @@ Schedule scheduled(const VolumeTask& task, std::span<const SliceDigest> digests,
 class VolumeRun {
  public:
   VolumeRun(const VolumeTask& task, const light::Operator& light)
-      : task_(task),
-        light_(light),
-        reader_(task.source, light.object()),
-        whole_(takes_whole(task, light)),
-        halo_(task.blur_px > 0 && !whole_ ? light::halo_slices(task.blur_px) : 0) {
+      : task_(task), light_(light), reader_(task.source, light.object()), division_(division_of(task, light)) {
     const auto digests = check(task.source, light.object(), task.circle, task.demands.grey);
     mark_ = {task.interruption.job, {}, task.watch};
     for (const SliceDigest& slice : digests) {
       mark_.target = {mark_.target[0] * 31 + slice[0], mark_.target[1] * 31 + slice[1]};
     }
-    schedule_ = scheduled(task, digests, light.image(), halo_ == 0 && !whole_);
+    schedule_ = scheduled(task, digests, light.image(), division_.halo == 0 && !division_.whole);
     times_.assign(schedule_.slice_of_job.size(), 0);
     for (const int job : schedule_.job_of_slice) ++times_[job];
   }
@@ -69,7 +65,7 @@ class VolumeRun {
       fix_max_intensity();
     }
     while (finished_.jobs() < jobs()) {
-      if (!run_pass(next_pass(), work)) return interrupted();
+      if (!run_pass(division_.from(finished_.jobs(), jobs()), work)) return interrupted();
       work = {};
     }
     VolumeOutcome outcome = ledger_.outcome(task_.demands.grey, schedule_.job_of_slice);
@@ -100,17 +96,11 @@ class VolumeRun {
     return outcome;
   }
 
-  [[nodiscard]] Pass next_pass() const {
-    if (whole_) return {0, jobs(), 0, jobs()};
-    const int first = finished_.jobs();
-    const int last = std::min(jobs(), first + slices_per_pass - 2 * halo_);
-    return {first, last, std::max(0, first - halo_), std::min(jobs(), last + halo_)};
-  }
-
   void fix_max_intensity() {
     const IntensityLimit& limit = task_.limit;
     if (limit.most <= 0 && limit.of_even <= 0) return;
-    even_ = task_.even.mean > 0 ? task_.even : even_dose(light_, task_.circle, whole_ ? task_.source.slices : lanes);
+    even_ = task_.even.mean > 0 ? task_.even
+                                : even_dose(light_, task_.circle, division_.whole ? task_.source.slices : lanes);
     if (!(even_.mean > 0)) return;  // dark: nothing to limit
     const double threshold = task_.demands.window.threshold();
     max_intensity_ = limit.most > 0 ? limit.most : limit.of_even * threshold / even_.mean;
@@ -193,34 +183,14 @@ class VolumeRun {
   void finish(const Problem& problem, Work& work, const Pass& pass, const light::Operator& light,
               const Scenarios* scenarios) {
     Iterate& state = work.state;
-    if (halo_ == 0) {  // slices that share dose with other passes are to scale already
-      bring_to_threshold(problem, light, whole_ ? Together::pass : Together::slice, max_intensity_, scenarios, state);
+    const bool whole = division_.whole;
+    if (division_.halo == 0) {  // slices that share dose with other passes are to scale already
+      bring_to_threshold(problem, light, whole ? Together::pass : Together::slice, max_intensity_, scenarios, state);
     }
-    if (whole_) surface_ = work.method->surface_miss(state.dose);
-    const auto doses = statistics(state.dose, problem);
-    const auto cut = cut_statistics(state.dose, problem);
-    const auto figures = metrics(state.dose, problem);
-    for (int job = pass.first; job < pass.last; ++job) {
-      const auto i = static_cast<std::size_t>(job - pass.low);
-      ledger_.add(doses[i], figures[i], times_[job]);
-      ledger_.add_cut(cut[i], times_[job]);
-    }
-    if (!task_.demands.grey) {
-      add_outside(problem, state.dose, pass);
-      if (light_.couples_slices()) wrong_ = wrong_voxels(state.dose, problem);  // the one pass there is
-    }
+    if (whole) surface_ = work.method->surface_miss(state.dose);
+    tally(state.dose, problem, pass, {task_.part, schedule_.job_of_slice, times_}, ledger_);
+    if (light_.couples_slices() && !task_.demands.grey) wrong_ = wrong_voxels(state.dose, problem);  // one pass
     hand_out(state, pass, light);
-  }
-
-  /// Identical slices share a job, but some may be level with the part and others above or below it.
-  void add_outside(const Problem& problem, std::span<const Slab> dose, const Pass& pass) {
-    const OutsideSlices found = outside_part(dose, problem, task_.part);
-    for (int k = 0; k < task_.source.slices; ++k) {
-      const int job = schedule_.job_of_slice[k];
-      if (job < pass.first || job >= pass.last) continue;
-      const bool beside = k >= task_.part.low[2] && k <= task_.part.high[2];
-      ledger_.add_outside((beside ? found.beside : found.whole)[job - pass.low]);
-    }
   }
 
   /// Slab by slab: images are several times as large as the light in them.
@@ -268,8 +238,7 @@ class VolumeRun {
   const VolumeTask& task_;
   const light::Operator& light_;
   SliceReader reader_;
-  bool whole_;  // slices share light, a scenario's light, a front or a proof: all of them are one pass
-  int halo_;
+  Division division_;
   double max_intensity_ = 0, eigenvalue_ = 0;
   EvenDose even_;
   std::optional<SurfaceMiss> surface_;
@@ -284,11 +253,6 @@ class VolumeRun {
 };
 
 }  // namespace
-
-bool takes_whole(const VolumeTask& task, const light::Operator& light) {
-  const bool far = task.blur_px > 0 && light::halo_slices(task.blur_px) > lanes;
-  return light.couples_slices() || far || task.scenarios || task.front || task.certify;
-}
 
 VolumeOutcome optimise(const VolumeTask& task, const light::Operator& light) {
   if (task.blur_px > 0 && !light.couples_slices() && !task.make(0)->keeps_scale()) {

@@ -28,6 +28,7 @@ void settle_thin(Problem& problem, int slice) {
   float most = 0;
   for (std::size_t i = lane; i < labels.size(); i += lanes) most = std::max(most, slab.values[i]);
   const float gain = most >= half ? 1.0F / most : 0.0F;
+  problem.gain[slice] = gain;
   for (std::size_t i = lane; i < labels.size(); i += lanes) {
     slab.values[i] *= gain;
     const bool counts = s >= problem.weight.size() || problem.weight[s].values[i] > 0;
@@ -108,6 +109,7 @@ void append(Problem& problem, const Slices& slices, int count, int width, int he
     return slab;
   };
   problem.slices += count;
+  problem.gain.resize(problem.slices, 1.0F);
   problem.target.push_back(packed(slices.target));
   problem.labels.push_back(labelled(problem.target.back(), count, circle, problem.demands));
   if (!problem.stacked) settle(problem, problem.slices - count);

@@ -49,11 +49,16 @@ struct Problem {
   std::vector<Slab> target;                // coverage 0...1 or response, zero outside the circle
   std::vector<std::vector<Label>> labels;  // per slab, indexed like Slab::values; grey: part where the target is not 0
   Demands demands;
-  std::vector<Slab> weight;     // what an error of this voxel costs, the largest of a slice 1; empty: all 1
-  std::vector<Slab> tolerance;  // epsilon of this voxel; empty: demands.band
+  std::vector<Slab> weight;      // what an error of this voxel costs, the largest of a slice 1; empty: all 1
+  std::vector<Slab> tolerance;   // epsilon of this voxel; empty: demands.band
+  std::vector<float> gain = {};  // of each slice's target, by settle(): not 1 of a thin slice; empty: none is thin
 
   [[nodiscard]] float weight_at(std::size_t s, std::size_t i) const {
     return weight.empty() ? 1.0F : weight[s].values[i];
+  }
+  /// Of a slice that was scaled because no voxel of it is wholly inside the part.
+  [[nodiscard]] bool is_thin(std::size_t s, std::size_t i) const {
+    return !gain.empty() && gain[s * lanes + i % lanes] != 1.0F;
   }
   [[nodiscard]] float tolerance_at(std::size_t s, std::size_t i) const {
     return tolerance.empty() ? static_cast<float>(demands.band) : tolerance[s].values[i];

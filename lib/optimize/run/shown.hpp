@@ -1,0 +1,21 @@
+// The figures of the frames as they are written, in the projector's grey levels.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "base/image.hpp"
+#include "optimize/run/volume.hpp"
+
+namespace vam::optimize {
+
+/// The dose at which the exposure that is planned for these doses sets the resin.
+using AimedDose = std::function<double(const model::DoseMetrics& doses)>;
+
+/// Makes the figures, demands and intensities of `outcome` those of `frames`: one image a slice, columns x angles,
+/// fluence; slices without one are dark. What gels outside the part's box is counted at the dose aimed at. The
+/// surface's deviation is not known then. Memory: as a pass of optimise().
+void judge_shown(const VolumeTask& task, const light::Operator& light, std::span<const Image> frames,
+                 const AimedDose& aimed, VolumeOutcome& outcome);
+
+}  // namespace vam::optimize
