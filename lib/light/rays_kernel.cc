@@ -19,7 +19,8 @@ inline Vector lane_numbers() {
 inline Ints whole(Vector x) { return __builtin_convertvector(x, Ints); }
 inline Vector floats(Ints x) { return __builtin_convertvector(x, Vector); }
 inline Vector positive(Vector x) { return x > 0.0F ? x : Vector{}; }
-inline Vector size(Vector x) { return x > 0.0F ? x : -x; }
+/// Without the bit of the sign: one instruction.
+inline Vector size(Vector x) { return reinterpret_cast<Vector>(reinterpret_cast<Ints>(x) & 0x7FFFFFFF); }
 
 /// Element index of (low, high) side by side; indices are taken modulo twice the vector's length.
 inline Vector pick(Vector low, Vector high, Ints index) { return __builtin_shuffle(low, high, index); }
@@ -43,7 +44,7 @@ inline void take_rows(const float* line, float row, float zoom, float* to) {
 }
 
 /// Its transpose, to rows [0, rows): of the slices less than a row away the first one, and the next one or two.
-/// voxel_gap zeros lie before and after `from`.
+/// voxel_gap() zeros lie before and after `from`.
 inline void give_rows(const float* from, float row, float zoom, int rows, float* line) {
   const Vector number = lane_numbers();
   const float per_row = 1.0F / zoom;
@@ -85,17 +86,18 @@ struct Weights {
 
 /// taps: 3 or 4, the usual numbers, or 0 for any.
 template <int width, bool climbs, bool shadowed, int taps>
-void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, int count, float* voxels) {
+void gather(const TileColumns& columns, const RayTaps& ray, const VoxelRay* rays, int count, float* voxels) {
   alignas(64) float line[most_tile_rows + 32];
   const int rows = climbs ? columns.rows : width;
   const int ends = taps > 0 ? taps : ray.taps;
   if (climbs) {
     for (int v = 0; v < 32; v += vector_floats) store(line + rows + v, Vector{});
   }
-  for (int e = 0; e < count; ++e) {
+  for (int r = 0; r < count; ++r) {
+    const int e = rays[r].ray;
     const float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
     const Weights<taps> weight(ray, e);
-    float* to = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
+    float* to = voxels + static_cast<long>(rays[r].voxel) * (width + voxel_gap(climbs));
     float* sums = climbs ? line : to;
     for (int v = 0; v < rows; v += vector_floats) {
       Vector sum = climbs ? Vector{} : load(to + v);
@@ -118,14 +120,15 @@ void gather(const TileColumns& columns, const RayTaps& ray, const int* voxel, in
 }
 
 template <int width, bool climbs, bool shadowed, int taps>
-void scatter(const float* voxels, const RayTaps& ray, const int* voxel, int count, const TileColumns& columns) {
+void scatter(const float* voxels, const RayTaps& ray, const VoxelRay* rays, int count, const TileColumns& columns) {
   alignas(64) float line[most_tile_rows + 32];
   const int rows = climbs ? columns.rows : width;
   const int ends = taps > 0 ? taps : ray.taps;
-  for (int e = 0; e < count; ++e) {
+  for (int r = 0; r < count; ++r) {
+    const int e = rays[r].ray;
     float* light = columns.light + static_cast<long>(ray.cell[e] - ray.first_cell) * rows;
     const Weights<taps> weight(ray, e);
-    const float* from = voxels + static_cast<long>(voxel[e]) * (width + voxel_gap);
+    const float* from = voxels + static_cast<long>(rays[r].voxel) * (width + voxel_gap(climbs));
     if (climbs) give_rows(from, ray.start[e] - ray.first_row, ray.zoom[e], rows, line);
     const float* given = climbs ? line : from;
     for (int v = 0; v < rows; v += vector_floats) {
@@ -146,41 +149,42 @@ void scatter(const float* voxels, const RayTaps& ray, const int* voxel, int coun
 }
 
 template <int width, bool climbs>
-void gather_chunk(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, float* voxels) {
-  if (columns.ends_mm != nullptr) return gather<width, climbs, true, 0>(columns, taps, voxel, count, voxels);
-  if (taps.taps == 3) return gather<width, climbs, false, 3>(columns, taps, voxel, count, voxels);
-  if (taps.taps == 4) return gather<width, climbs, false, 4>(columns, taps, voxel, count, voxels);
-  gather<width, climbs, false, 0>(columns, taps, voxel, count, voxels);
+void gather_chunk(const TileColumns& columns, const RayTaps& taps, const VoxelRay* rays, int count, float* voxels) {
+  if (columns.ends_mm != nullptr) return gather<width, climbs, true, 0>(columns, taps, rays, count, voxels);
+  if (taps.taps == 3) return gather<width, climbs, false, 3>(columns, taps, rays, count, voxels);
+  if (taps.taps == 4) return gather<width, climbs, false, 4>(columns, taps, rays, count, voxels);
+  gather<width, climbs, false, 0>(columns, taps, rays, count, voxels);
 }
 
 template <int width, bool climbs>
-void scatter_chunk(const float* voxels, const RayTaps& taps, const int* voxel, int count, const TileColumns& columns) {
-  if (columns.ends_mm != nullptr) return scatter<width, climbs, true, 0>(voxels, taps, voxel, count, columns);
-  if (taps.taps == 3) return scatter<width, climbs, false, 3>(voxels, taps, voxel, count, columns);
-  if (taps.taps == 4) return scatter<width, climbs, false, 4>(voxels, taps, voxel, count, columns);
-  scatter<width, climbs, false, 0>(voxels, taps, voxel, count, columns);
+void scatter_chunk(const float* voxels, const RayTaps& taps, const VoxelRay* rays, int count,
+                   const TileColumns& columns) {
+  if (columns.ends_mm != nullptr) return scatter<width, climbs, true, 0>(voxels, taps, rays, count, columns);
+  if (taps.taps == 3) return scatter<width, climbs, false, 3>(voxels, taps, rays, count, columns);
+  if (taps.taps == 4) return scatter<width, climbs, false, 4>(voxels, taps, rays, count, columns);
+  scatter<width, climbs, false, 0>(voxels, taps, rays, count, columns);
 }
 
 }  // namespace
 
-void gather_rays(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,
-                 float* voxels) {
-  if (width == 64 && climbs) return gather_chunk<64, true>(columns, taps, voxel, count, voxels);
-  if (width == 64) return gather_chunk<64, false>(columns, taps, voxel, count, voxels);
-  if (width == 32 && climbs) return gather_chunk<32, true>(columns, taps, voxel, count, voxels);
-  if (width == 32) return gather_chunk<32, false>(columns, taps, voxel, count, voxels);
-  if (climbs) return gather_chunk<16, true>(columns, taps, voxel, count, voxels);
-  gather_chunk<16, false>(columns, taps, voxel, count, voxels);
+void gather_rays(const TileColumns& columns, const RayTaps& taps, const VoxelRay* rays, int count, int width,
+                 bool climbs, float* voxels) {
+  if (width == 64 && climbs) return gather_chunk<64, true>(columns, taps, rays, count, voxels);
+  if (width == 64) return gather_chunk<64, false>(columns, taps, rays, count, voxels);
+  if (width == 32 && climbs) return gather_chunk<32, true>(columns, taps, rays, count, voxels);
+  if (width == 32) return gather_chunk<32, false>(columns, taps, rays, count, voxels);
+  if (climbs) return gather_chunk<16, true>(columns, taps, rays, count, voxels);
+  gather_chunk<16, false>(columns, taps, rays, count, voxels);
 }
 
-void scatter_rays(const float* voxels, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,
+void scatter_rays(const float* voxels, const RayTaps& taps, const VoxelRay* rays, int count, int width, bool climbs,
                   const TileColumns& columns) {
-  if (width == 64 && climbs) return scatter_chunk<64, true>(voxels, taps, voxel, count, columns);
-  if (width == 64) return scatter_chunk<64, false>(voxels, taps, voxel, count, columns);
-  if (width == 32 && climbs) return scatter_chunk<32, true>(voxels, taps, voxel, count, columns);
-  if (width == 32) return scatter_chunk<32, false>(voxels, taps, voxel, count, columns);
-  if (climbs) return scatter_chunk<16, true>(voxels, taps, voxel, count, columns);
-  scatter_chunk<16, false>(voxels, taps, voxel, count, columns);
+  if (width == 64 && climbs) return scatter_chunk<64, true>(voxels, taps, rays, count, columns);
+  if (width == 64) return scatter_chunk<64, false>(voxels, taps, rays, count, columns);
+  if (width == 32 && climbs) return scatter_chunk<32, true>(voxels, taps, rays, count, columns);
+  if (width == 32) return scatter_chunk<32, false>(voxels, taps, rays, count, columns);
+  if (climbs) return scatter_chunk<16, true>(voxels, taps, rays, count, columns);
+  scatter_chunk<16, false>(voxels, taps, rays, count, columns);
 }
 
 }  // namespace vam::light::VAM_SIMD

@@ -81,7 +81,7 @@ InsertShadow cast(const VialRays& rays, std::span<const Slab> inserts) {
 }  // namespace
 
 VialOperator::VialOperator(const VialSetup& setup, std::span<const Slab> inserts)
-    : rays_(setup), tiles_(TileLight::tiles(rays_)), shadow_(cast(rays_, inserts)), inverse_(inverse_of(rays_)) {
+    : rays_(setup), tiles_(tiles(rays_)), shadow_(cast(rays_, inserts)), inverse_(inverse_of(rays_)) {
   if (!rays_.climbs()) rays_.at_slices(0, 1, level_);
 }
 
@@ -104,21 +104,24 @@ void VialOperator::each_chunk(const SlabRange& slabs, const Visit& visit) const 
 
 double VialOperator::row_angle_rad() const { return std::abs(rays_.setup().turn.step_rad); }
 
-/// Angles are shared among the threads: each writes its own rows.
+/// Stage angles of the first quarter are shared among the threads, each with those that follow it by quarters: a thread
+/// writes its own rows.
 void VialOperator::forward_within(const Window<const Slab>& objects, const Window<Slab>& sinograms) const {
   for (Slab& slab : sinograms.slabs) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
-  const auto blocks = angle_blocks(sinogram().height, forward_angles);
+  const auto blocks = angle_blocks(sinogram().height / rays_.quarters(), forward_angles / rays_.quarters());
+  const SlabRange rows{sinograms.first, sinograms.end()};
   each_chunk({objects.first, objects.end()},
              [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
                parallel_for(count_of(blocks), [&](int b) {
-                 TileLight light(rays_, shadow_);
                  const auto [first, end] = blocks[b];
                  for (const int t : tiles) {
-                   const Tile& tile = tiles_[t];
-                   if (tile.voxels.empty()) continue;
-                   light.enter(t, tile, chunk);
-                   light.load_bright_voxels(objects);
-                   for (int angle = first; angle < end; ++angle) light.give(nodes, angle, sinograms);
+                   TileLight light(rays_, shadow_, tiles_[t], chunk);
+                   for (int quarter = 0; quarter < tiles_[t].quarters; ++quarter) {
+                     light.face(quarter);
+                     if (!light.load_bright_voxels(objects)) continue;
+                     light.aim(nodes, first, end, rows);
+                     light.give(sinograms);
+                   }
                  }
                });
              });
@@ -148,20 +151,22 @@ SlabRange VialOperator::lit_by(const SlabRange& objects) const {
 /// takes that of the next.
 void VialOperator::adjoint_within(const Window<const Slab>& sinograms, const Window<Slab>& objects) const {
   for (Slab& slab : objects.slabs) std::fill(slab.values.begin(), slab.values.end(), 0.0F);
-  const auto blocks = angle_blocks(sinogram().height, adjoint_angles);
+  const auto blocks = angle_blocks(sinogram().height / rays_.quarters(), adjoint_angles / rays_.quarters());
+  const SlabRange rows{sinograms.first, sinograms.end()};
   const Window<const Slab> sums{objects.first, objects.slabs};
   each_chunk({objects.first, objects.end()},
              [&](const RayNodes& nodes, const Chunk& chunk, const std::vector<int>& tiles) {
                for (const auto& [first, end] : blocks) {
-                 parallel_for(count_of(tiles), [&](int item) {
-                   const int t = tiles[item];
-                   const Tile& tile = tiles_[t];
-                   if (tile.voxels.empty()) return;
-                   TileLight light(rays_, shadow_);
-                   light.enter(t, tile, chunk);
-                   light.load_voxels(sums);
-                   for (int angle = first; angle < end; ++angle) light.take(nodes, angle, sinograms);
-                   light.store_voxels(objects);
+                 parallel_for(count_of(tiles), [&, first = first, end = end](int item) {
+                   const Tile& tile = tiles_[tiles[item]];
+                   TileLight light(rays_, shadow_, tile, chunk);
+                   light.aim(nodes, first, end, rows);
+                   for (int quarter = 0; quarter < tile.quarters; ++quarter) {
+                     light.face(quarter);
+                     light.load_voxels(sums);
+                     light.take(sinograms);
+                     light.store_voxels(objects);
+                   }
                  });
                }
              });

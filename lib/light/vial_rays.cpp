@@ -233,6 +233,19 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   return zone.sheets;
 }
 
+int VialRays::quarters() const {
+  const model::Grid& grid = setup_.grid;
+  const double off_mm =
+      std::max(std::abs(grid.x_mm(0) + grid.x_mm(grid.nx - 1)), std::abs(grid.y_mm(0) + grid.y_mm(grid.ny - 1)));
+  const bool square = grid.nx == grid.ny && off_mm < 1e-6 * grid.voxel_mm;
+  return square && !posed() && setup_.turn.rows % 4 == 0 ? 4 : 1;
+}
+
+int VialRays::turned_angle(int angle, int quarters) const {
+  const int angles = setup_.turn.rows;
+  return (angle - sense() * quarters * (angles / 4) + angles) % angles;
+}
+
 RayScale VialRays::scale() const {
   const double pixel = setup_.projector.pixel_mm;
   const double voxel = setup_.grid.voxel_mm;

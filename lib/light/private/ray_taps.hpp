@@ -20,4 +20,10 @@ struct RayTaps {
   float first_row, last_row;  // of any voxel's slices
 };
 
+/// A ray of a tile and the voxel column that it lights, both by their numbers in the tile.
+struct VoxelRay {
+  int ray;
+  int voxel;
+};
+
 }  // namespace vam::light

@@ -15,15 +15,15 @@ struct TileColumns {
 
 inline constexpr int most_tile_rows = 192;
 
-/// Zeros between the voxels of a tile, which are `width` floats each: slices that nothing lights.
-inline constexpr int voxel_gap = 48;
+/// Zeros before, between and after the voxels of a tile, which are `width` floats each: slices that nothing lights.
+constexpr int voxel_gap(bool climbs) { return climbs ? 48 : 0; }
 
-#define VAM_RAYS_KERNELS                                                                                            \
-  /* voxel[e] += sum over columns k of weight[k][e] * light[cell[e] + k], between rows linearly where rays climb */ \
-  void gather_rays(const TileColumns& columns, const RayTaps& taps, const int* voxel, int count, int width,         \
-                   bool climbs, float* voxels);                                                                     \
-  /* Its transpose. */                                                                                              \
-  void scatter_rays(const float* voxels, const RayTaps& taps, const int* voxel, int count, int width, bool climbs,  \
+#define VAM_RAYS_KERNELS                                                                                               \
+  /* voxel[e] += sum over columns k of weight[k][e] * light[cell[e] + k], between rows linearly where rays climb */    \
+  void gather_rays(const TileColumns& columns, const RayTaps& taps, const VoxelRay* rays, int count, int width,        \
+                   bool climbs, float* voxels);                                                                        \
+  /* Its transpose. */                                                                                                 \
+  void scatter_rays(const float* voxels, const RayTaps& taps, const VoxelRay* rays, int count, int width, bool climbs, \
                     const TileColumns& columns);
 
 namespace baseline {

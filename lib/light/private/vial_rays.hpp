@@ -31,6 +31,10 @@ class VialRays {
   [[nodiscard]] bool posed() const { return !setup_.poses.empty(); }
   /// Whether rows light other slices than their own.
   [[nodiscard]] bool climbs() const { return table_.climbs() || posed(); }
+  /// 4 where grid and stage angles are the same after a quarter of a turn, else 1.
+  [[nodiscard]] int quarters() const;
+  /// The stage angle at which voxels so many quarters of a turn on have the rays that these have at `angle`.
+  [[nodiscard]] int turned_angle(int angle, int quarters) const;
   /// The columns that light voxels: columns() from first_column() of the projector on.
   [[nodiscard]] int first_column() const { return first_; }
   [[nodiscard]] int columns() const { return count_of(transmitted_); }
