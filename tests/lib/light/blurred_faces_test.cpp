@@ -1,4 +1,4 @@
-#include "light/blurred_faces.hpp"
+#include "light/grids/blurred_faces.hpp"
 
 #include <doctest/doctest.h>
 

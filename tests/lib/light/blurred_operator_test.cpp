@@ -1,4 +1,4 @@
-#include "light/blurred_operator.hpp"
+#include "light/operators/blurred_operator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/blur_stream.hpp"
-#include "light/private/parallel_operator.hpp"
+#include "light/blur/blur_stream.hpp"
+#include "light/operators/private/parallel_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"

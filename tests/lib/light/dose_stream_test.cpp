@@ -1,4 +1,4 @@
-#include "light/dose_stream.hpp"
+#include "light/simulation/dose_stream.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "light/operator.hpp"
-#include "light/poses.hpp"
-#include "light/private/simulation_state.hpp"
+#include "light/grids/poses.hpp"
+#include "light/operators/operator.hpp"
+#include "light/simulation/private/simulation_state.hpp"
 
 using namespace vam;
 using namespace vam::light;

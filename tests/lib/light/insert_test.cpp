@@ -1,4 +1,4 @@
-#include "light/insert.hpp"
+#include "light/operators/insert.hpp"
 
 #include <doctest/doctest.h>
 

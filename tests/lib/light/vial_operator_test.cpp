@@ -1,4 +1,4 @@
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 
 #include <doctest/doctest.h>
 

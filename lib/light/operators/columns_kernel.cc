@@ -1,0 +1,37 @@
+#include "light/operators/private/columns_kernel.hpp"
+
+#include "base/kernel_vector.hpp"
+
+namespace vam::light::VAM_SIMD {
+
+using namespace vam::VAM_SIMD;
+
+void copy_columns(const float* from, int columns, int count, int pitch, long next, float* to) {
+  constexpr int slab = 16;
+  if (count == slab) {
+    for (int c = 0; c < columns; ++c, from += slab, to += pitch) {
+      __builtin_prefetch(from + next);
+      for (int v = 0; v < slab; v += vector_floats) store(to + v, load(from + v));
+    }
+    return;
+  }
+  for (int c = 0; c < columns; ++c, from += slab, to += pitch) {
+    for (int i = 0; i < count; ++i) to[i] = from[i];
+  }
+}
+
+void add_columns(const float* from, int columns, int count, int pitch, long next, float* to) {
+  constexpr int slab = 16;
+  if (count == slab) {
+    for (int c = 0; c < columns; ++c, from += pitch, to += slab) {
+      __builtin_prefetch(to + next, 1);
+      for (int v = 0; v < slab; v += vector_floats) store(to + v, load(to + v) + load(from + v));
+    }
+    return;
+  }
+  for (int c = 0; c < columns; ++c, from += pitch, to += slab) {
+    for (int i = 0; i < count; ++i) to[i] += from[i];
+  }
+}
+
+}  // namespace vam::light::VAM_SIMD
