@@ -14,7 +14,7 @@ namespace vam::resample_tool {
 struct Options {
   std::string input = "-";
   std::string output = "-";
-  std::string to = "projector";
+  std::string geometry = "vial";
   std::string interpolation = "cubic";
   bool no_fresnel = false;
   bool no_jacobian = false;
