@@ -275,7 +275,7 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
                               ".Nm\n.Op Ar OPTIONS\n.Fl -live\n.Op Ar \\&PART\n.Sh") != std::string::npos);
 }
 
-TEST_CASE("what a form cannot do without is shown as such and refused where missing") {
+TEST_CASE("required options of a form are shown as such and refused where missing") {
   const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
     std::string frames, log, chosen;
     App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
@@ -359,7 +359,7 @@ TEST_CASE("a command's option has former spellings, too") {
   }
 }
 
-TEST_CASE("the manual page escapes what roff would take for its own") {
+TEST_CASE("the manual page escapes the control characters of roff") {
   Declaration tool;
   tool.manual = {"vam-demo", "shows", {".starts with a dot and a \\ and 5 µm. Next sentence."}, {}, {}, {}};
   const std::string page = manual_page(tool);

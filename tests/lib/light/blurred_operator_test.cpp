@@ -198,7 +198,7 @@ TEST_CASE("a part compensated for the blur prints better under it than one that 
   CHECK(with[12].iou >= without[12].iou);
 }
 
-TEST_CASE("slices that share dose decide together, so that doses stay those of the light") {
+TEST_CASE("slices that share dose take steps together, so that the doses are those of the projections") {
   const int size = 64;
   const auto wheel = vam::oracle::wheel(size);
   std::vector<std::vector<float>> block(5, wheel);

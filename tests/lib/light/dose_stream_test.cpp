@@ -92,7 +92,7 @@ std::vector<Image> whole(const Simulation& simulation, const std::vector<Image>&
 
 }  // namespace
 
-TEST_CASE("a stream of rows gives the doses of all rows at once to the byte, pieces and threads as they may be") {
+TEST_CASE("a stream of rows gives the same bytes as all rows at once, for any pieces and any number of threads") {
   const Simulation simulation(printer(), {}, stack(slices), grid());
   REQUIRE(simulation.climbs());
   const std::vector<Image> light = light_of(slices);
