@@ -33,6 +33,8 @@ struct Options {
   std::string orientation = "normal";
   cli::PrinterOptions printer;
   io::StackOptions stack;
+  /// Whether the columns are those of the projector, whose rays the vial refracts.
+  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
 [[nodiscard]] cli::Manual manual();

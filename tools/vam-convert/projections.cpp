@@ -58,12 +58,12 @@ void plan_turns(const Options& options, double stated_deg, int angles, Plan& pla
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
   const double usual = columns == projector.columns ? projector.axis_column : 0.5 * (columns - 1);
-  return options.axis_column.value_or(options.geometry == "vial" ? usual : 0.5 * (columns - 1));
+  return options.axis_column.value_or(options.in_vial() ? usual : 0.5 * (columns - 1));
 }
 
 /// Slices are counted upwards, rows of images downwards.
 double slice_of_zero(const Options& options, const model::Projector& projector, int slices, bool frames) {
-  const bool own = frames && options.geometry == "vial" && slices == projector.rows;
+  const bool own = frames && options.in_vial() && slices == projector.rows;
   if (!options.axis_row && !own) return 0.5 * (slices - 1);
   const double row = options.axis_row.value_or(projector.axis_row);
   return frames ? slices - 1 - row : row;
@@ -71,7 +71,7 @@ double slice_of_zero(const Options& options, const model::Projector& projector, 
 
 void plan_columns(const Options& options, const model::Projector& projector, int columns, Plan& plan) {
   const double axis = axis_column(options, projector, columns);
-  if (options.geometry == "vial") {
+  if (options.in_vial()) {
     plan.columns = projector.columns;
     plan.shift = projector.axis_column - axis;
     return;
@@ -82,7 +82,7 @@ void plan_columns(const Options& options, const model::Projector& projector, int
 
 double pixel_mm(const Options& options, const model::Projector& projector) {
   const double pitch = options.pixel_mm.value_or(projector.pixel_mm);
-  if (options.geometry == "vial" && std::abs(pitch / projector.pixel_mm - 1) > 1e-6) {
+  if (options.in_vial() && std::abs(pitch / projector.pixel_mm - 1) > 1e-6) {
     throw Error{Fault::usage, "--pixel: " + format_number(pitch) + " mm, but projector.pixel_mm is " +
                                   format_number(projector.pixel_mm) +
                                   "; give --set projector.pixel_mm=" + format_number(pitch) + " here and to vam-dose"};
@@ -131,7 +131,7 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
 model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
                          const Heights& heights, bool frames) {
   model::StackInfo info;
-  const bool projector = options.geometry == "vial";
+  const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
   info.width = plan.columns;
   info.height = plan.per_turn;

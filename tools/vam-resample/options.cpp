@@ -49,7 +49,7 @@ void declare(cli::App& app, Options& options) {
 }
 
 void check(const Options& options, const model::Printer& printer) {
-  const bool projector = options.geometry == "vial";
+  const bool projector = options.in_vial();
   const auto refuse = [&](bool given, const char* flag) {
     if (given) throw Error{Fault::usage, std::string(flag) + ": does not apply to --geometry " + options.geometry};
   };

@@ -29,6 +29,8 @@ struct Options {
   std::optional<int> row;  // of the projector, whose rays to explain
   cli::PrinterOptions printer;
   io::StackOptions stack;
+  /// Whether the columns are those of the projector, whose rays the vial refracts.
+  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
 [[nodiscard]] cli::Manual manual();
