@@ -106,15 +106,17 @@ void add_beam(cli::App& app, ScanOptions& o) {
       "beam", "width and divergence of the beam, on a sensor moved along it or from the side in resin", o.command);
   add_input(scan, o, Flips::optional);
   scan.flag("--side", o.side,
-            "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).");
+            "The frames show a lit row in fluorescent resin from the side (vam-project --pattern row).")
+      .form();
   add_dark(scan, o);
-  scan.option("--first", "MM", o.first_mm, cli::any,
-              "Distance of the first plane from the rotation axis. Required without --side.");
-  scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes. Required without --side.")
+  scan.option("--first", "MM", o.first_mm, cli::any, "Distance of the first plane from the rotation axis.")
+      .required_without("--side");
+  scan.option("--spacing", "MM", o.step_mm, cli::any, "Distance between planes.")
+      .required_without("--side")
       .was("--step");
   scan.option("--pixel", "MM", o.pixel_mm, cli::positive,
-              "Pixel pitch of the bare sensor (required without --side), or of the frames at the rotation axis (with "
-              "--side).")
+              "Pixel pitch of the bare sensor, or of the frames at the rotation axis (with --side).")
+      .required_without("--side")
       .default_is("as stated in the stack, with --side");
 }
 
@@ -159,12 +161,13 @@ void add_resin(cli::App& app, std::string& command, ResinOptions& o) {
   auto& resin = app.subcommand("resin", "gelation threshold, from a printed standard cylinder", command);
   resin.positional("SCATTER", o.scatter, "Scattering volume of the standard (VDB).").reads();
   resin.option("-o,--output", "FILE.json", o.record, "Record for --resin; - is standard output.");
-  resin.option("--diameter", "MM", o.diameter_mm, cli::positive,
-               "Known diameter of the standard. Required without --profile.");
+  resin.option("--diameter", "MM", o.diameter_mm, cli::positive, "Known diameter of the standard.")
+      .required_without("--profile");
   resin
       .option("--profile", "FILE.png", o.profile,
-              "Height image of the standard from a profilometer, to measure its diameter. Required without --diameter.")
-      .reads();
+              "Height image of the standard from a profilometer, to measure its diameter.")
+      .reads()
+      .form();
   resin.option("--profile-pixel", "MM", o.profile_pixel_mm, cli::positive, "Pixel pitch of the height image.");
 }
 

@@ -41,7 +41,10 @@ cli::Manual manual() {
       {"Duration. About a second, the time allowed for replies of network cameras; with --probe up to 4 s more per "
        "port.",
        "Limits. A camera in another subnet is not found; give its IP address (aravis:192.168.1.7)."},
-      {"vam-stage", "vam-capture", "vam-project", "vam-print"}};
+      {"vam-stage", "vam-capture", "vam-project", "vam-print"},
+      {},
+      {},
+      true};
 }
 
 struct Kind {

@@ -5,6 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "moved.hpp"
 #include "printer.hpp"
@@ -126,8 +128,8 @@ void declare_print(cli::App& app, Options& o) {
   app.option("--min-body", "MM3", o.pieces_mm3, cli::non_negative,
              "Minimum volume of a body that belongs to the print. Default: 1 % of the largest body's volume.")
       .was("--pieces");
-  app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (.ply or .stl).")
-      .writes({".ply", ".stl"})
+  app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
+      .writes(io::written_mesh_endings())
       .needs({"--isovalue", "--resin"});
   app.option("--projections", "FILE.png", o.projections, "Write sum projections of volume, print and target.")
       .writes({".png"});

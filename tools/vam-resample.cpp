@@ -24,7 +24,7 @@ using namespace vam;
 using resample_tool::Options;
 
 void explain(const Options& options, const model::Printer& printer, const optics::ResampleOptions& how) {
-  const bool projector = options.to == "projector";
+  const bool projector = options.in_vial();
   const optics::Detector detector = projector ? optics::projector_detector(printer, options.alignment)
                                               : optics::camera_detector(printer, options.alignment);
   std::ostringstream map;
@@ -46,7 +46,7 @@ void warn_of_climb(const Options& options, const model::Printer& printer, const 
 }
 
 void run(const cli::App& app, Options& options) {
-  const bool projector = options.to == "projector";
+  const bool projector = options.in_vial();
   const model::Printer printer = tool::load_printer(options.printer);
   check(options, printer);
   if (tool::print_printer(options.printer, printer, options.output)) return;

@@ -49,7 +49,8 @@ cli::Manual manual() {
       {{"The progress of a print, here a dry run:",
         "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\nvam-print "
         "projector.exr "
-        "--display null: --uncalibrated --missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run dry-run\n"
+        "--display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run "
+        "dry-run\n"
         "vam-status dry-run"},
        {"The same as a page:", "vam-status dry-run --page page.html"}},
       {"Dose. The page shows the dose in the middle slice, by horizontal rays and without blur; vam-dose --shown "

@@ -178,6 +178,11 @@ App& App::required() {
   return *this;
 }
 
+App& App::required_without(const std::string& flag) {
+  state_->current_group().options.back().unless = flag;
+  return required();
+}
+
 App& App::not_in_job() {
   state_->current_group().options.back().in_job = false;
   return *this;
@@ -211,6 +216,11 @@ App& App::needs(const std::vector<std::string>& any_of) {
 
 App& App::was(const std::string& old_flag, const std::string& value) {
   state_->current_group().options.back().former.push_back({old_flag, value});
+  return *this;
+}
+
+App& App::had(const std::string& old_value, const std::string& value) {
+  state_->current_group().options.back().former_values[old_value] = value;
   return *this;
 }
 

@@ -26,6 +26,7 @@ struct Manual {
   std::vector<std::string> see_also;                          // vam-sinogram, ...
   std::vector<std::string> files = {};                        // paragraphs on what its files hold beside the usual
   std::vector<ExitStatus> statuses = {};                      // beside those of all tools; device_statuses
+  bool locks = false;                                         // looks up who reserves devices, if it drives none
 };
 
 /// For the manuals of tools that drive devices.
@@ -82,8 +83,9 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
-  /// The option declared last must be given.
+  /// The option declared last must be given; or where that other one is not.
   App& required();
+  App& required_without(const std::string& flag);
   /// The option declared last leaves the result as it is, or is left out of job() for another reason.
   App& not_in_job();
   /// The option declared last names a file that the tool writes: no two of them may name the same one. Of what kind it
@@ -100,6 +102,8 @@ class App {
   /// A former spelling of the option declared last: works as the option, with one line on stderr; help, manual and
   /// completions do not show it. A value stands for a former flag that took none: --keep-negative, --negative keep.
   App& was(const std::string& old_flag, const std::string& value = "");
+  /// A former value of the option declared last: stands for the present one, with one line on stderr.
+  App& had(const std::string& old_value, const std::string& value);
   /// A subcommand with options of its own (vam-curethrough model, vam-stage move). Returns the nested declaration;
   /// chosen is set to the name when the user names it. A tool with operands or options of its own has a plain form,
   /// which runs without a command; else a command must be given. Options may stand before the command.

@@ -27,14 +27,13 @@ std::string operands(const Declaration& form) {
 std::string usage(const Declaration& tool) {
   const std::string name = tool.manual.name;
   std::vector<std::string> lines;
-  if (has_plain_form(tool)) {
-    for (const auto& form : forms_of(tool)) {
-      lines.push_back(name + (form.groups.empty() ? "" : " [OPTIONS]") + operands(form));
+  const auto add = [&](const Declaration& declared, const std::string& words) {
+    for (const auto& form : forms_of(declared)) {
+      lines.push_back(words + (form.groups.empty() ? "" : " [OPTIONS]") + operands(form));
     }
-  }
-  for (const auto& nested : tool.subcommands) {
-    lines.push_back(name + " " + nested.manual.name + (nested.groups.empty() ? "" : " [OPTIONS]") + operands(nested));
-  }
+  };
+  if (has_plain_form(tool)) add(tool, name);
+  for (const auto& nested : tool.subcommands) add(nested, name + " " + nested.manual.name);
   return "Usage: " + join(lines, "\n       ") + "\n";
 }
 
@@ -61,6 +60,9 @@ std::vector<Declaration> forms_of(const Declaration& tool) {
       Declaration form = tool;
       form.groups[g].options[i].required = true;
       const std::string flag = long_flag(form.groups[g].options[i]);
+      for (auto& group : form.groups) {
+        for (auto& option : group.options) option.required = option.required && option.unless != flag;
+      }
       std::erase_if(form.positionals, [&](const Positional& positional) {
         return std::find(positional.unless.begin(), positional.unless.end(), flag) != positional.unless.end();
       });
@@ -76,7 +78,7 @@ std::vector<std::string> details(const Option& option) {
   if (!option.range_text.empty()) texts.push_back("Range: " + option.range_text + ".");
   if (!option.default_text.empty()) texts.push_back("Default: " + option.default_text + ".");
   if (option.repeatable) texts.emplace_back("May be repeated.");
-  if (option.required) texts.emplace_back("Required.");
+  if (option.required) texts.push_back(option.unless.empty() ? "Required." : "Required without " + option.unless + ".");
   for (const auto& any_of : option.needs) texts.push_back("Requires " + join(any_of, " or ") + ".");
   return texts;
 }

@@ -201,8 +201,8 @@ std::string environment(const Declaration& tool) {
   if (find_option(tool, "--threads") != nullptr)
     out += ".It Ev VAM_SIMD\nHighest instruction set to use: baseline, avx2 or avx512.\n";
   const auto& statuses = tool.manual.statuses;
-  if (std::any_of(statuses.begin(), statuses.end(),
-                  [](const auto& status) { return status.code == 76; }))  // drives a device
+  const bool drives = std::any_of(statuses.begin(), statuses.end(), [](const auto& s) { return s.code == 76; });
+  if (drives || tool.manual.locks)
     out +=
         ".It Ev VAM_LOCK_DIR\nFolder of the locks that reserve a device for one program.\nDefault:\n"
         ".Pa /run/lock ,\nelse\n.Pa /tmp .\n";

@@ -81,15 +81,16 @@ void App::require_present() const {
   for (const auto& nested : state_->subcommands) {
     if (nested->state_->parser->parsed()) return nested->require_present();
   }
-  const auto require = [&](const std::string& name) {
-    if (state_->parser->get_option(name)->count() == 0) throw Error{Fault::usage, name + ": missing; see --help"};
+  const auto require = [&](const std::string& name, const std::string& unless = "") {
+    if (state_->parser->get_option(name)->count() > 0 || (!unless.empty() && given(unless))) return;
+    throw Error{Fault::usage, name + ": missing" + (unless.empty() ? "" : ", as is " + unless) + "; see --help"};
   };
   for (const auto& positional : state_->tool.positionals) {
     if (positional.default_text.empty()) require(split(positional.value_name, ' ').front());
   }
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {
-      if (option.required) require(long_flag(option));
+      if (option.required) require(long_flag(option), option.unless);
     }
   }
 }

@@ -75,6 +75,39 @@ void make_operand(const std::string& tool, const Positional& positional, std::ve
                positional.value_name.c_str());
 }
 
+void rename_flags(const std::string& tool, const Declaration& form, std::vector<std::string>& words) {
+  std::set<std::string> reported;
+  for (auto& word : words) {
+    if (word == "--") return;
+    const std::string flag = flag_of(word);
+    const Option* option = find_own(form, flag);
+    const Former* former = option == nullptr ? nullptr : former_name(*option, flag);
+    if (former == nullptr) continue;
+    const std::string value = former->value.empty() ? "" : " " + former->value;
+    const std::string present = long_flag(*option);
+    word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
+    if (!reported.insert(flag).second) continue;
+    std::fprintf(stderr, "%s: warning: %s is now %s%s\n", tool.c_str(), flag.c_str(), present.c_str(), value.c_str());
+  }
+}
+
+// The value follows its option, or stands behind "=".
+void rename_values(const std::string& tool, const Declaration& form, std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    const std::string flag = flag_of(words[i]);
+    const Option* option = find_own(form, flag);
+    if (option == nullptr || option->former_values.empty()) continue;
+    const bool joined = flag != words[i];
+    if (!joined && ++i == words.size()) return;
+    const auto former = option->former_values.find(joined ? words[i].substr(flag.size() + 1) : words[i]);
+    if (former == option->former_values.end()) continue;
+    const auto& [old_value, value] = *former;
+    words[i] = joined ? flag + "=" + value : value;
+    std::fprintf(stderr, "%s: warning: %s %s is now %s %s\n", tool.c_str(), flag.c_str(), old_value.c_str(),
+                 flag.c_str(), value.c_str());
+  }
+}
+
 // Where the first word stands that is neither an option nor an option's value; -1 when there is none.
 int first_operand(const Declaration& tool, const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -131,20 +164,8 @@ void rename_former(const Declaration& tool, std::vector<std::string>& words) {
   for (const auto& positional : form.positionals) {
     if (!positional.former.empty()) make_operand(tool.manual.name, positional, words);
   }
-  std::set<std::string> reported;
-  for (auto& word : words) {
-    if (word == "--") return;
-    const std::string flag = flag_of(word);
-    const Option* option = find_own(form, flag);
-    const Former* former = option == nullptr ? nullptr : former_name(*option, flag);
-    if (former == nullptr) continue;
-    const std::string value = former->value.empty() ? "" : " " + former->value;
-    const std::string present = long_flag(*option);
-    word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
-    if (!reported.insert(flag).second) continue;
-    std::fprintf(stderr, "%s: warning: %s is now %s%s\n", tool.manual.name.c_str(), flag.c_str(), present.c_str(),
-                 value.c_str());
-  }
+  rename_flags(tool.manual.name, form, words);
+  rename_values(tool.manual.name, form, words);
 }
 
 std::optional<std::string> take_memory(std::vector<std::string>& words) {

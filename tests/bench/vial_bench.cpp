@@ -7,7 +7,7 @@
 
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 #include "optics/writable_radius.hpp"
 
 namespace {

@@ -61,7 +61,7 @@ class Trial:
         open(folder + "/dri/card0", "w").close()
         self.log = folder + "/log"
         self.tool = subprocess.Popen(["vam-project", "part.exr", "-o", "drm:HDMI-A-1", "--speed", "30", "--turns", "9",
-                                      "--missed", "1", "--printer", "printer.toml", "--log", "/dev/stdout"],
+                                      "--max-missed", "1", "--printer", "printer.toml", "--log", "/dev/stdout"],
                                      stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                                      env=dict(os.environ, LD_PRELOAD=card, FAKE_DRM=folder, VAM_LOCK_DIR=folder,
                                               FAKE_DRM_FAULT="busy:30" if cause == "device error" else ""))

@@ -15,7 +15,7 @@ sys.dont_write_bytecode = True
 from screen import Screen  # noqa: E402
 from trials import LIMIT_S, LOADED_LIMIT_S, LOOPS, NEVER, Log, load, report, wait  # noqa: E402
 
-COMMAND = ["vam-print", "frames.exr", "--screen", "sdl:0", "--uncalibrated", "--missed", "0.9", "--missed-lit", "0.9",
+COMMAND = ["vam-print", "frames.exr", "--screen", "sdl:0", "--uncalibrated", "--max-missed", "0.9", "--max-missed-lit", "0.9",
            "--run-up", "0.05", "--turns", "40", "--run"]
 
 

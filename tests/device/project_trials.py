@@ -58,7 +58,7 @@ class Feeder(threading.Thread):
 
 def begin(venue):
     """A tool that has had an image on for 50 ms, and what feeds it; or None for a tool."""
-    tool = subprocess.Popen(["vam-project", "part.exr", "-o", "sdl:0", "--follow", "-", "--turns", "9", "--missed", "1"],
+    tool = subprocess.Popen(["vam-project", "part.exr", "-o", "sdl:0", "--follow", "-", "--turns", "9", "--max-missed", "1"],
                             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                             env=venue.environment)
     feeder = Feeder(tool.stdin)

@@ -16,7 +16,7 @@ from trials import NEVER, SIGNALS, Log, end_by, ended_by, report  # noqa: E402
 
 DEVICES = {"light": ["dlpc350:", "dlpc900:"], "tic": ["tic:?steps_per_deg=100"]}  # that take turns
 COMMANDS = {
-    "light": ["vam-project", "part.exr", "-o", "null:", "--speed", "1", "--missed", "1", "--light"],
+    "light": ["vam-project", "part.exr", "-o", "null:", "--speed", "1", "--max-missed", "1", "--light"],
     "tic": ["vam-stage", "spin", "--speed", "60", "--turns", "9", "--device"],
 }
 STARTED = {"light": lambda event: event.get("bits", 0) > 0, "tic": lambda event: event["event"] == "moving"}

@@ -35,7 +35,7 @@ finds tools/vam-score/new.cpp '#include "io/mesh/private/formats.hpp"' 'is priva
 finds tools/vam-score/new.cpp '#include "oracle/meshes.hpp"' 'oracle/meshes.hpp> has no room'
 finds tools/vam-score/new.cpp '#include "../../tests/oracle/meshes.hpp"' 'must not include tests/oracle/meshes.hpp'
 finds tools/vam-score/new.cpp '#include "opencv2/core.hpp"' 'belongs to plot'
-finds tests/oracle/new.cpp '#include <light/vial_setup.hpp>' 'the oracle must share nothing'
+finds tests/oracle/new.cpp '#include <light/rays/vial_setup.hpp>' 'the oracle must share nothing'
 finds tests/lib/tomo/new.cpp '#include "io/mesh/private/formats.hpp"' 'is private to io/mesh'
 finds tests/lib/tomo/new.cpp '#include <OpenEXR/ImfHeader.h>' 'belongs to io/exr'
 finds lib/optics/new.cpp '#include <io/exr/stack.hpp>' 'optics must not include io/exr'

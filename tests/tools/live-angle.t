@@ -27,7 +27,7 @@ near latency latency $latency
 python3 "$VAM_SOURCE/tests/tools/exr.py" make part.exr space=projector width=208 height=36 count=3 pixel=0.1 row=0.1 \
   "printer=projector.columns=208 projector.pixel_mm=0.1 projector.axis_column=103.5 projector.telecentric=true vial.radius_mm=9 bath.index=1.53 bath.window_mm=12"
 LD_PRELOAD=$shim vam-print part.exr --display sdl:0 --light sim: --need 'lag latency' --run-up 1 --frames-per-turn 3600 \
-  --missed 0.2 --missed-lit 0.2 --run run 2>errors
+  --max-missed 0.2 --max-missed-lit 0.2 --run run 2>errors
 is 'the print has status 0, silently' "$? $(cat errors)" '0 '
 stage_down
 screen_down

@@ -7,7 +7,7 @@ PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 trials=$((${VAM_TRIALS:-10} / 5))
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-print() { vam-print frames.exr --display null: --light sim: --missed 0.9 --missed-lit 0.9 --run-up 0.05 --uncalibrated --frames-per-turn 60 "$@"; }
+print() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --max-missed-lit 0.9 --run-up 0.05 --uncalibrated --frames-per-turn 60 "$@"; }
 cat >judge.py <<'PY'
 # The largest difference, over 60 stage angles, between the showing times in the first run and those in the others
 # together, in vertical blanks of 1/60 s.
@@ -31,7 +31,7 @@ is 'a whole print lasts a turn' "$? $(json whole/summary.json outcome)" '0 done'
 number_of=0 worst=0
 while read -r moment victim; do
   number_of=$((number_of + 1)) killed=killed$number_of rest=rest$number_of
-  (exec vam-print frames.exr --display null: --light sim: --missed 0.9 --missed-lit 0.9 --run-up 0.05 --uncalibrated \
+  (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --max-missed-lit 0.9 --run-up 0.05 --uncalibrated \
     --frames-per-turn 60 --turns 1 --run $killed) 2>errors & printing=$!
   await grep -qs '"frame":[0-9]' $killed/flips.jsonl
   sleep "$moment"

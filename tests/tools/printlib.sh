@@ -11,7 +11,7 @@ launch() {  # launch RUN OPTIONS...: that print, on a stage with these options
   stage_up --acceleration 9000 --max-speed 360 --start-angle 1 "$@"
   rm -rf leds "$run"
   (exec env --default-signal=INT LD_PRELOAD="$shim" vam-print frames.exr --display sdl:0 --light "sim:?log=$PWD/leds" \
-    --uncalibrated --home --missed 0.9 --run-up 0.05 --turns 20 --run "$run" 2>errors) &
+    --uncalibrated --home --max-missed 0.9 --run-up 0.05 --turns 20 --run "$run" 2>errors) &
   printing=$!
 }
 lit() { grep -q '"frame":[0-9]' "$run/flips.jsonl" 2>/dev/null; }

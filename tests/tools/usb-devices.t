@@ -24,7 +24,7 @@ begin foreign tic: vam-stage identify --device 'tic:999?steps_per_deg=100'
 begin missing dlpc350: $grey 0.05 --light dlpc900:
 for engine in dlpc350 dlpc900; do
   begin $engine "$engine:?slow_reads=3" \
-    vam-project part.exr -o null: --light "$engine:?current_percent=33.4" --speed 360 --missed 1
+    vam-project part.exr -o null: --light "$engine:?current_percent=33.4" --speed 360 --max-missed 1
 done
 begin asked-too-much dlpc900: $grey 0.05 --light dlpc900:?current_percent=60 --set projector.max_led_current_percent=50
 begin found-too-bright dlpc350:?current_percent=47 $grey 0.05 --light dlpc350:

@@ -48,7 +48,7 @@ ok 'whole' vam-check a.vdb
 fails 64 'the kind of data is not given; use --voxel MM' vam-convert a.npy -o x.vdb
 fails 64 'stdin: the kind of data is not given; use --voxel MM' sh -c 'vam-convert <a.npy'
 fails 64 'x.exr: a volume is written as .vdb' vam-convert a.npy --voxel 1 -o x.exr
-fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --projections virtual -o x.vdb
+fails 64 'x.vdb: a stack is written as .exr' vam-convert a.npy --geometry parallel -o x.vdb
 fails 64 'x.tif: a volume or stack is written as .npy' vam-convert a.vdb -o x.tif
 fails 64 '--voxel: is for data of other programs' vam-convert a.vdb --voxel 1 -o x.npy
 fails 64 "--axes: 'zyy' is not an order of the letters zyx" vam-convert a.npy --voxel 1 --axes zyy -o x.vdb
@@ -116,9 +116,9 @@ fails 65 'bomb.npz: has bytes behind its 24 values' vam-convert bomb.npz --voxel
 vam-slice --shape disc-grid --voxel 0.5 -o part.vdb
 vam-sinogram part.vdb --filter ram-lak --negative clip -o sino.exr
 vam-convert sino.exr -o sino.npy
-vam-convert sino.npy --projections virtual --pixel 0.5 -o back.exr
+vam-convert sino.npy --geometry parallel --pixel 0.5 -o back.exr
 vam-dose sino.exr --like part.vdb | vam-convert >dose.npy
-vam-convert sino.npy --projections virtual --pixel 0.5 | vam-dose --like part.vdb | vam-convert >again.npy
+vam-convert sino.npy --geometry parallel --pixel 0.5 | vam-dose --like part.vdb | vam-convert >again.npy
 same 'the dose of an array is that of the stack' dose.npy again.npy
 vam-convert back.exr >again.npy
 same 'and the values are' sino.npy again.npy
@@ -132,9 +132,9 @@ set="$set --set projector.axis_column=30.5 --set projector.axis_row=21.5"
   vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o frames
   vam-project projector.exr $set --turns 1 --fps 12 --speed 12 -o film.mkv
   vam-project projector.exr $set --turns 2 --fps 12 --speed 12 --orientation rotate-180 -o turned
-  ok 'frames of the projector' vam-convert frames --projections projector --like part.vdb $set -o back.exr
-  quiet 'a video is the same' vam-convert film.mkv --projections projector --like part.vdb $set -o film.exr
-  quiet 'and two turns of turned frames' vam-convert turned --projections projector --orientation rotate-180 --like part.vdb $set -o turned.exr
+  ok 'frames of the projector' vam-convert frames --geometry vial --like part.vdb $set -o back.exr
+  quiet 'a video is the same' vam-convert film.mkv --geometry vial --like part.vdb $set -o film.exr
+  quiet 'and two turns of turned frames' vam-convert turned --geometry vial --orientation rotate-180 --like part.vdb $set -o turned.exr
   for name in projector back film turned; do vam-dose $name.exr --like part.vdb $set | vam-convert >$name.npy; done
 }
 same 'video and folder' film.npy back.npy
@@ -155,21 +155,21 @@ python3 compare.py turned.npy back.npy >difference; read -r sizes worst <differe
 holds "turns are averaged: $worst" "$worst < 1e-5"
 
 # What is said of foreign frames moves them.
-middle() { vam-convert frames --projections virtual --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
+middle() { vam-convert frames --geometry parallel --pixel 0.5 "$@" -o m.exr; vam-view m.exr --export /dev/stdout | grep -a '^sizes\|^axis mins\|^spacings' | tr '\n' ' '; }
 is 'a parallel beam: the middle is the axis' "$(middle)" 'sizes: 64 360 48 spacings: 0.5 1 0.5 axis mins: -15.75 0 -11.75 '
 is 'another axis: its middle' "$(middle --axis-column 30.5 --axis-row 21)" 'sizes: 66 360 48 spacings: 0.5 1 0.5 axis mins: -16.25 0 -13 '
-fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --projections projector --pixel 0.1 -o x.exr
+fails 64 '--pixel: 0.1 mm, but projector.pixel_mm is' vam-convert frames --geometry vial --pixel 0.1 -o x.exr
 npy make minus.npy '<f4' 1,2,3
 python3 -c 'import struct; f = open("minus.npy", "r+b"); f.seek(-4, 2); f.write(struct.pack("<f", -0.5))'
-vam-convert minus.npy --projections virtual --pixel 1 -o minus.exr 2>err
+vam-convert minus.npy --geometry parallel --pixel 1 -o minus.exr 2>err
 is 'light that no projector shows is reported' "$(grep -c 'minus.npy: has values down to -0.5' err)" 1
-fails 64 '--axis-column: 1e12 is out of range' vam-convert a.npy --projections virtual --axis-column 1e12 -o x.exr
-fails 64 '--axis-row: 1e300 is out of range' vam-convert a.npy --projections virtual --axis-row 1e300 -o x.exr
-fails 64 '--angle-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --projections virtual --angle-step 7 -o x.exr
-fails 65 'has 360 projections, 720 make a turn' vam-convert frames --projections virtual --angle-step 0.5 -o x.exr
-fails 65 'has light on column .* check --axis-column' vam-convert frames --projections projector --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr
-fails 64 '--orientation: is for images' vam-convert sino.npy --projections virtual --orientation flip-rows -o x.exr
-fails 64 '--axes and --array are for arrays' vam-convert frames --projections virtual --axes zxa -o x.exr
+fails 64 '--axis-column: 1e12 is out of range' vam-convert a.npy --geometry parallel --axis-column 1e12 -o x.exr
+fails 64 '--axis-row: 1e300 is out of range' vam-convert a.npy --geometry parallel --axis-row 1e300 -o x.exr
+fails 64 '--view-step: 7 degrees make 51.4286 projections a turn' vam-convert frames --geometry parallel --view-step 7 -o x.exr
+fails 65 'has 360 projections, 720 make a turn' vam-convert frames --geometry parallel --view-step 0.5 -o x.exr
+fails 65 'has light on column .* check --axis-column' vam-convert frames --geometry vial --set projector.columns=60 --set projector.pixel_mm=0.5 --axis-column 50 -o x.exr
+fails 64 '--orientation: is for images' vam-convert sino.npy --geometry parallel --orientation flip-rows -o x.exr
+fails 64 '--axes and --array are for arrays' vam-convert frames --geometry parallel --axes zxa -o x.exr
 
 numpy=/usr/bin/python3
 if "$numpy" -c 'import numpy' 2>/dev/null; then

@@ -119,7 +119,8 @@ fails 64 'until: requires --target' vam-ost views --view-step 6 --live --isovalu
 fails 64 'report: describes one volume' vam-ost views --view-step 6 --live --report x.json
 fails 64 'view-step: is 0' vam-ost views --view-step 0 -o x.vdb
 fails 64 'requires --projections' vam-ost views --view-step 6 --live --page p.html
-fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb
+fails 64 '--diameter: missing, as is --profile' vam-calibrate resin scatter.vdb
+fails 64 'either --diameter or --profile' vam-calibrate resin scatter.vdb --diameter 6 --profile profile.png
 vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: warning: vam-ost threshold is now vam-calibrate resin'
 same 'with the same record' resin.json former.json

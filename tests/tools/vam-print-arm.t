@@ -6,7 +6,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
-dry() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 "$@"; }
+dry() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 "$@"; }
 print() { dry --uncalibrated "$@"; }
 
 # A sinogram for another printer.
@@ -58,9 +58,11 @@ f'
 mkdir "$odd"
 printf 'grey,intensity\n0,0\n255,1\n' >"$odd/r.csv"
 sed 's/^rows/response = "r.csv"\nrows/' printer.toml >"$odd/printer.toml"
-(cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
+(cd "$odd" && vam-print ../frames.exr --display null: --light sim: --uncalibrated --max-missed 0.9 --run-up 0.05 --run 'r & #1') 2>errors
 is 'a path with & # quotes and a newline' "$? $(cat errors)" '0 '
 ok 'whose settings can be read from elsewhere' vam-project frames.exr -o again.exr --printer "$odd/r & #1/printer.toml"
+is 'former spellings work with a warning' "$(vam-print --missed 0.9 --missed-lit 0.9 2>&1 | head -n 2)" 'vam-print: warning: --missed is now --max-missed
+vam-print: warning: --missed-lit is now --max-missed-lit'
 
 # A condition that is never met.
 vam-slice --shape half-cylinder:diameter=3,height=2 --voxel 0.26 -o part.vdb
@@ -90,7 +92,7 @@ PATH=$PWD/fake:$PATH live 'iou>=1' --set camera.device=sim: --run died 2>errors
 is 'the cause is the tool that failed first' "$? $(cat errors) $(json died/summary.json outcome)" '71 vam-ost: died ost failed'
 
 # A stopped tool does not delay the end.
-(exec vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stopped) 2>errors &
+(exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stopped) 2>errors &
 printing=$!
 await grep -qs '"frame":[0-9]' stopped/flips.jsonl
 fails 75 'stopped: is still being printed' print --resume stopped --run none
@@ -105,7 +107,7 @@ holds 'and the progress' "$(json stopped/summary.json reached.lit_flips) > 0 && 
 
 # An interrupt of all its processes, as Ctrl-C is; one that was started in the background by a script ignores it, its tools
 # do not.
-perl -e 'setpgrp(0, 0); $SIG{INT} = "IGNORE"; exec @ARGV' vam-print frames.exr --display null: --light sim: --missed 0.9 \
+perl -e 'setpgrp(0, 0); $SIG{INT} = "IGNORE"; exec @ARGV' vam-print frames.exr --display null: --light sim: --max-missed 0.9 \
   --run-up 0.05 --uncalibrated --turns 50 --run interrupted 2>errors &
 printing=$!
 await grep -qs '"frame":[0-9]' interrupted/flips.jsonl
@@ -115,7 +117,7 @@ is 'and is reported in one line' "$(cat errors)" "$(grep -E '^vam-print: aborted
 
 # A killed print is resumed, and both parts deliver the dose of a whole one, by vam-dose.
 print --turns 2 --run whole
-(exec vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
+(exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 2 --run killed) 2>errors &
 printing=$!
 lit() { [ "$(cat killed/flips.jsonl 2>/dev/null | grep -c '"frame":[0-9]')" -gt 300 ]; }  # a turn has 240
 await lit; kill -KILL $printing; wait $printing 2>/dev/null

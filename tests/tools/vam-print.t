@@ -94,7 +94,7 @@ for attempt in 1 2 3; do
   camera_up --address $address --follow truth --flips run/flips.jsonl --frames frames.mkv --columns 128 --rows 96 $plain
   $screen watch 45 1 >seen &
   watcher=$!
-  print --run-up 0.2 --frames-per-turn 3600 --missed 0.2 --view-step 10 --run run 2>errors
+  print --run-up 0.2 --frames-per-turn 3600 --max-missed 0.2 --view-step 10 --run run 2>errors
   printed=$?
   wait $watcher
   camera_down
@@ -128,7 +128,7 @@ stage_down
 ok 'the design' vam-slice box.stl --voxel 0.5 $plain -o part.vdb
 for attempt in 1 2 3; do
   turntable
-  print --run-up 0.05 --missed 0.9 --turns 3 --view-step 10 --until 'missing<=100' --target part.vdb --isovalue 0.001 --run live \
+  print --run-up 0.05 --max-missed 0.9 --turns 3 --view-step 10 --until 'missing<=100' --target part.vdb --isovalue 0.001 --run live \
     --set stage.speed_deg_s=120 --set camera.device="sim:?follow=$PWD/truth&lit=0.01" 2>errors
   printed=$?
   too_busy live || break

@@ -12,7 +12,7 @@ shown() { grep '"shade"' card/log | tail -n 1 | grep -o '"shade":"[a-z]*"'; }
 print() { rm -f card/log flips leds; LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 "$@"; }
 
 vam-project part.exr -o frames/ --fps 1 --speed 10
-print --missed 1 --log flips 2>errors
+print --max-missed 1 --log flips 2>errors
 is 'a print by page flips has status 0' "$? $(cat errors)" '0 '
 $judge images frames flips >judged
 is 'every flip showed the frame in its log line, at that blank' "$(cut -d' ' -f1 judged)" exact
@@ -23,17 +23,17 @@ is 'the gamma table is linear' "$(grep -o '"straight":.' card/log)" '"straight":
 is 'RGB is sent in full range, its bits are left alone' "$(grep -o '"full_range.*' card/log)" '"full_range":1,"bpc":12}'
 is 'in the mode that the screen prefers' "$(grep -o '"columns":[0-9]*' card/log | sort -u)" '"columns":64'
 FAKE_DRM_FAULT=no-properties; export FAKE_DRM_FAULT
-ok 'a card that does not know ranges is used as it is' print --missed 1
+ok 'a card that does not know ranges is used as it is' print --max-missed 1
 fails 64 'omit bpc' env LD_PRELOAD="$card" vam-project part.exr -o 'drm:HDMI-A-1?bpc=8'
 FAKE_DRM_FAULT=limited
 fails 76 'does not send full-range RGB' env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
 unset FAKE_DRM_FAULT
-grey() { rm -f card/log; LD_PRELOAD=$card vam-project --pattern grey -o "drm:HDMI-A-1?$1" --hold 0.05 --missed 1; }
+grey() { rm -f card/log; LD_PRELOAD=$card vam-project --pattern grey -o "drm:HDMI-A-1?$1" --hold 0.05 --max-missed 1; }
 ok 'bits per colour are set' grey bpc=8
 is 'and read back' "$(grep -o '"bpc":[0-9]*' card/log | tail -n 1)" '"bpc":8'
 fails 76 'rejects 16 bits' grey bpc=16
 printf '[projector]\ncolumns = 32\nrows = 24\nlens_distance_mm = 100\n' >small.toml
-ok 'another mode' env VAM_PRINTER=small.toml LD_PRELOAD="$card" vam-project --pattern grey -o 'drm:HDMI-A-1?mode=32x24@60' --hold 0.05 --missed 1
+ok 'another mode' env VAM_PRINTER=small.toml LD_PRELOAD="$card" vam-project --pattern grey -o 'drm:HDMI-A-1?mode=32x24@60' --hold 0.05 --max-missed 1
 is 'is set' "$(grep -o '"columns":[0-9]*' card/log | tail -n 1)" '"columns":32'
 fails 64 'no mode 1920x1080; the screen has: 32x24@60, 64x48@60' grey mode=1920x1080
 fails 64 'no mode 64x48@50' grey mode=64x48@50
@@ -52,7 +52,7 @@ peak_mb() {  # peak_mb FRAMES
   LD_PRELOAD=$VAM_BUILD/lib/vam-test/drm_card_hd.so VAM_PRINTER=hd.toml python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], check=True)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1e3)' \
-    vam-project --pattern ramp --steps $1 --hold 0.001 -o drm:HDMI-A-1 --missed 1
+    vam-project --pattern ramp --steps $1 --hold 0.001 -o drm:HDMI-A-1 --max-missed 1
 }
 if ! sanitized; then
   few=$(peak_mb 4); many=$(peak_mb 36)
@@ -61,7 +61,7 @@ if ! sanitized; then
   holds 'so that 720 take less than 2 GB' "$few + 716 * ($many - $few) / 32 < 2000"
 fi
 
-FAKE_DRM_FAULT=skip:10 print --missed 1 --log flips
+FAKE_DRM_FAULT=skip:10 print --max-missed 1 --log flips
 is 'blanks are missed' $? 0
 $judge images frames flips >judged
 holds 'and all counted' "$(cut -d' ' -f3 judged) >= 5"
@@ -78,7 +78,7 @@ lit = [line["t_monotonic_s"] for line in shown if line["shade"] == "lit"]
 print(shown[-1]["t_monotonic_s"] - lit[-1] if lit else 0)'
 }
 spoilt() {  # spoilt STATUS REGEX LAST-SHADE FAULT
-  FAKE_DRM_FAULT=$4 print --speed 720 --missed "${5-1}" --light "sim:?log=$PWD/leds" >out 2>errors; status=$?
+  FAKE_DRM_FAULT=$4 print --speed 720 --max-missed "${5-1}" --light "sim:?log=$PWD/leds" >out 2>errors; status=$?
   is "$4: status, in one line with the reason" "$status $(wc -l <errors) $(grep -Ec -- "$2" errors)" "$1 1 1"
   if [ -n "$3" ]; then
     is "$4: $3" "$(shown)" "\"shade\":\"$3\""
@@ -101,13 +101,13 @@ spoilt 75 'missed 1 vertical blanks' black skip:20 0.001
 
 # A second user is refused; a killed one leaves black and a free card.
 rm -f card/log
-LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 --speed 10 --missed 1 2>killed & first=$!
+LD_PRELOAD=$card vam-project part.exr -o drm:HDMI-A-1 --speed 10 --max-missed 1 2>killed & first=$!
 tries=0; until grep -q lit card/log 2>/dev/null || [ $tries -ge 250 ]; do tries=$((tries + 1)); sleep 0.02; done
 fails 75 "in use by process $first;" env LD_PRELOAD="$card" vam-project part.exr -o drm:HDMI-A-1
 kill -9 $first; wait $first 2>/dev/null
 is 'a killed print is killed' $? 137
 tries=0; until grep -q guardian killed || [ $tries -ge 100 ]; do tries=$((tries + 1)); sleep 0.02; done
 is 'its guardian reports its action' "$(grep -c "process $first ended unexpectedly; screen safe" killed) $(shown)" '1 "shade":"black"'
-print --missed 1 --speed 720
+print --max-missed 1 --speed 720
 is 'the screen is free again' $? 0
 done_testing

@@ -11,7 +11,7 @@ tiny_print part.exr
 fails 64 '1.5 is not a whole number' vam-project part.exr -o null: --turns 1.5
 fails 64 'cannot provide both' vam-project - -o null: --follow -
 fails 64 'unknown scheme|unknown option' vam-project part.exr -o null:?herz=5 --log why
-fails 64 'out of range' vam-project part.exr -o null: --missed 2
+fails 64 'out of range' vam-project part.exr -o null: --max-missed 2
 fails 66 'cannot open' vam-project part.exr -o null: --follow missing
 fails 69 'no such connected screen' vam-project part.exr -o drm:HDMI-A-1
 fails 69 'cannot reach a desktop' env -u DISPLAY -u WAYLAND_DISPLAY vam-project part.exr -o sdl:0
@@ -47,7 +47,7 @@ is 'one after the other' "$(grep -o '"frame":-*[0-9]*' ramps | uniq | tr '\n' ' 
 # Three simultaneous dry runs by stage angles: a good one, one whose stage ends too early, and one that is too fast.
 follow() {  # follow LEDS FLIPS OPTIONS...: the lines of a stage, without a screen
   leds=$1; flips=$2; shift 2
-  vam-project part.exr -o null: --follow - --light "sim:?log=$leds" --log $flips --missed 0.9 "$@"
+  vam-project part.exr -o null: --follow - --light "sim:?log=$leds" --log $flips --max-missed 0.9 "$@"
 }
 (vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 | sed -u 550q | follow leds2 flips2) 2>errors2 &
 early=$!
@@ -84,7 +84,7 @@ screen_up 64 48
 fails 65 'do not match the screen' vam-project part.exr -o sdl:0 --set projector.rows=40 --set projector.axis_row=30
 fails 69 'no such screen' vam-project part.exr -o sdl:7
 vam-project part.exr -o frames/ --fps 1 --speed 10
-vam-project part.exr -o sdl:0 --speed 90 --log shown --missed 0.5 2>errors &
+vam-project part.exr -o sdl:0 --speed 90 --log shown --max-missed 0.5 2>errors &
 tool=$!
 $screen watch 6 0.5 >seen &
 watcher=$!

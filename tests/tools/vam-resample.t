@@ -31,7 +31,7 @@ is "the map is CSV" "$(head -n 1 map.csv)" "x_p_mm,x_v_mm,delta_deg,T,J,weight"
 is "one line per column" "$(wc -l <map.csv)" 1025
 is "the paper's ray" "$(awk -F, '$1 == 150 { printf "%.4f %.4f %.5f %.5f", $2, $3, $4, $5 }' map.csv)" "97.7162 12.7003 0.94584 0.64716"
 is "telecentric: x_v = x_p / n" "$(vam-resample --explain --set projector.telecentric=true | awk -F, 'NR == 2 + 700 { printf "%.6f", $1 / $2 }')" 1.530000
-ok "a map to a camera" vam-resample --explain --to virtual -o camera.csv
+ok "a map to a camera" vam-resample --explain --geometry parallel -o camera.csv
 ok "settings in force" vam-resample --print-printer -o printer.toml
 ok "which can be read back" vam-resample --printer printer.toml --explain -o map2.csv
 
@@ -48,7 +48,7 @@ is "the middle row is that of the map" \
   "$(vam-resample --explain --row 383 --set projector.axis_row=383 | awk -F, 'NR > 1 { print $3 "," $5 "," $8 "," $9 }' | cksum)" \
   "$(vam-resample --explain | awk -F, 'NR > 1 { print $1 "," $2 "," $3 "," $4 }' | cksum)"
 fails 64 '--row: requires --explain' vam-resample --row 3 virtual.exr -o x.exr
-fails 64 'does not apply' vam-resample --explain --to virtual --row 3 -o x.csv
+fails 64 'does not apply' vam-resample --explain --geometry parallel --row 3 -o x.csv
 fails 64 'rows are 0 ... 767' vam-resample --explain --row 768 -o x.csv
 $exr make tall.exr width=64 height=60 pixel=0.26 row=0.26 count=51
 vam-resample tall.exr -o tall-p.exr 2>tall.err
@@ -72,10 +72,10 @@ holds "linear and cubic agree on a smooth part" "($($exr get linear.exr 1 600 7)
 
 # Camera
 $exr make camera.exr space=camera width=301 height=60 pixel=0.1 row=0.1 value=1
-vam-resample --to virtual camera.exr >back.exr
+vam-resample --geometry parallel camera.exr >back.exr
 is "as many detector bins as the camera sees" "$($exr sum back.exr | cut -d' ' -f1-3)" "3 167 60"
 holds "no weights by default" "($($exr get back.exr 0 80 3) - 1)^2 < 1e-12"
-vam-resample --to virtual --fresnel --bin-width 0.2 --detector-bins 41 camera.exr >glass.exr
+vam-resample --geometry parallel --fresnel --bin-width 0.2 --detector-bins 41 camera.exr >glass.exr
 holds "Fresnel losses are compensated" "($($exr get glass.exr 0 20 3) - 1 / 0.95611555)^2 < 1e-10"
 
 # 5,000 slices in constant memory
@@ -104,13 +104,17 @@ fails 65 'cut.exr' vam-resample cut.exr -o x.exr
 fails 65 'noise.exr' vam-resample noise.exr -o x.exr
 fails 65 'frames' vam-resample frames.exr -o x.exr
 fails 65 'projector' vam-resample projector.exr -o x.exr
-fails 65 'virtual' vam-resample --to virtual virtual.exr -o x.exr
+fails 65 'virtual' vam-resample --geometry parallel virtual.exr -o x.exr
 fails 65 'cover 180 deg' vam-resample half.exr -o x.exr
-fails 64 'to' vam-resample --to camera virtual.exr -o x.exr
+fails 64 'geometry' vam-resample --geometry camera virtual.exr -o x.exr
+is 'a former option and its value work with warnings' "$(vam-resample --explain --to virtual -o x.csv 2>&1)" \
+  "vam-resample: warning: --to is now --geometry
+vam-resample: warning: --geometry virtual is now --geometry parallel"
+same 'as the present ones' x.csv camera.csv
 fails 64 'interpolation' vam-resample --interpolation spline virtual.exr -o x.exr
-fails 64 'does not apply' vam-resample --to virtual --no-fresnel camera.exr -o x.exr
+fails 64 'does not apply' vam-resample --geometry parallel --no-fresnel camera.exr -o x.exr
 fails 64 'does not apply' vam-resample --bin-width 1 virtual.exr -o x.exr
-fails 64 'bin-width' vam-resample --to virtual --bin-width 0 camera.exr -o x.exr
+fails 64 'bin-width' vam-resample --geometry parallel --bin-width 0 camera.exr -o x.exr
 fails 64 'radius' vam-resample --set vial.radius_mm=-1 virtual.exr -o x.exr
 fails 65 'window' vam-resample --set bath.index=1.5 virtual.exr -o x.exr
 fails 64 'also the input' vam-resample virtual.exr -o virtual.exr

@@ -6,7 +6,7 @@ PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
 printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
 printf '[camera]\ndevice = "sim:?lit=2"\nfps = 20\nexposure_us = 5000\nbinning = 4\n' >>printer.toml
-print() { vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 "$@"; }
+print() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 "$@"; }
 
 fails 66 'nowhere: not a folder' vam-status nowhere
 fails 66 'frames.exr: not a folder' vam-status frames.exr
@@ -16,7 +16,7 @@ fails 64 '--wach: unknown option; did you mean --watch' vam-status empty --wach
 fails 64 '^vam-print: --run-page: takes no value' vam-print frames.exr --display null: --run-page=x
 
 # On a terminal: the line, refreshed in place, and the page.
-script -qefc "TERM=dumb vam-print frames.exr --display null: --light sim: --missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 --turns 3 --run-page --run run" typed \
+script -qefc "TERM=dumb vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --view-step 20 --turns 3 --run-page --run run" typed \
   >/dev/null 2>&1 & printing=$!
 await test -s run/page.html
 sleep 3

@@ -36,12 +36,7 @@ class Dark {
 };
 
 metrology::BeamWidths plane_by_plane(const ScanOptions& options, const model::Printer& printer) {
-  if (options.pixel_mm <= 0 || !options.first_mm || options.step_mm.value_or(0) == 0) {
-    throw Error{
-        Fault::usage,
-        "beam: requires --pixel, the pitch of the sensor, and --first and --spacing, the positions of the planes; or "
-        "--side"};
-  }
+  if (*options.step_mm == 0) throw Error{Fault::usage, "--spacing: must not be 0"};
   const Dark dark(options.dark);
   metrology::BeamWidths widths;
   each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {

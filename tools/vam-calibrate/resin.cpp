@@ -21,7 +21,7 @@ model::Volume read_scatter(const std::string& path) {
 }  // namespace
 
 void measure_resin(const ResinOptions& options) {
-  if (options.diameter_mm.has_value() == !options.profile.empty()) {
+  if (options.diameter_mm && !options.profile.empty()) {
     throw Error{Fault::usage, "resin: give the diameter of the standard, as either --diameter or --profile"};
   }
   double diameter_mm = options.diameter_mm.value_or(0);

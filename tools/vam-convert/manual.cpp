@@ -18,14 +18,14 @@ cli::Manual manual() {
        "Fortran order. --axes gives another order of the axes: projections of VAMToolbox, [column][angle][z], have the "
        "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused.",
        "Projections of other programs do not state their geometry, which is therefore given by options: the column "
-       "pitch at the axis (--pixel), the stage angle between projections (--angle-step), the column of the axis "
+       "pitch at the axis (--pixel), the stage angle between projections (--view-step), the column of the axis "
        "(--axis-column), the row of z = 0 (--axis-row) and the orientation of the images (--orientation). With "
-       "--projections virtual they are those of a parallel beam in the resin, as of a telecentric projector with an "
-       "index-matching bath; columns are added until the axis is in the middle. With --projections projector they are "
+       "--geometry parallel they are those of a parallel beam in the resin, as of a telecentric projector with an "
+       "index-matching bath; columns are added until the axis is in the middle. With --geometry vial they are "
        "images of the projector of the printer file, shifted so that the axis is at projector.axis_column, and "
        "vam-dose "
        "follows their rays through bath, glass and resin.",
-       "Grey values of images are fractions of full grey. They are used as intensity, or with --projections projector "
+       "Grey values of images are fractions of full grey. They are used as intensity, or with --geometry vial "
        "converted by projector.response. Colour images are read as luma: for a video in blue only, as OpenCAL plays "
        "it, "
        "full intensity is --full-scale 0.114 and about 30 levels remain; if that is too coarse, extract the blue "
@@ -37,12 +37,12 @@ cli::Manual manual() {
         "--voxel 0.5 -o again.vdb"},
        {"Its projections as an array, and the dose of such an array:",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-convert -o sino.npy && vam-convert sino.npy "
-        "--projections virtual --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
+        "--geometry parallel --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
        {"Does a folder of frames print?",
         "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.columns=64 --set "
         "projector.rows=64 --set projector.pixel_mm=0.5 | vam-project --set projector.columns=64 --set "
         "projector.rows=64 "
-        "--set projector.pixel_mm=0.5 --turns 1 -o frames && vam-convert frames --projections projector --set "
+        "--set projector.pixel_mm=0.5 --turns 1 -o frames && vam-convert frames --geometry vial --set "
         "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 --like part.vdb | vam-dose --like "
         "part.vdb --set "
         "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 | vam-score --target part.vdb"}},

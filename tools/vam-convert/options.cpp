@@ -22,9 +22,12 @@ void declare_volume(cli::App& app, Options& options) {
 
 void declare_projections(cli::App& app, Options& options) {
   app.group("Projections");
-  app.choice("--projections", options.projections, {"none", "virtual", "projector"},
+  app.choice("--geometry", options.geometry, {"none", "parallel", "vial"},
              "The array, images or video are projections: of an ideal parallel beam in the resin, or of the printer's "
-             "projector.");
+             "projector, whose rays the vial refracts.")
+      .was("--projections")
+      .had("virtual", "parallel")
+      .had("projector", "vial");
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
   app.default_is("projector.pixel_mm");
   app.option("--slice-pitch", "MM", options.slice_pitch_mm, cli::positive, "Pitch of the slices along z.");
@@ -35,9 +38,10 @@ void declare_projections(cli::App& app, Options& options) {
       .reads();
   app.default_is("the slices of the array, the rows of the images");
   app.option(
-      "--angle-step", "DEG", options.angle_step_deg, {-180, 180},
-      "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections of "
-      "several turns are averaged.");
+         "--view-step", "DEG", options.view_step_deg, {-180, 180},
+         "Stage angle from one projection to the next, negative for a stage that turns the other way. Projections of "
+         "several turns are averaged.")
+      .was("--angle-step");
   app.default_is("that of frames.csv beside the images, else one turn divided by the projections");
   app.option("--axis-column", "PX", options.axis_column, on_image, "Column of the projections on which the axis lies.");
   app.default_is("projector.axis_column in images as wide as the projector's, else the middle");
@@ -55,8 +59,8 @@ void refuse_given(const cli::App& app, const std::vector<std::string>& flags, co
 }
 
 const std::vector<std::string> volume_flags{"--voxel", "--origin"};
-const std::vector<std::string> projection_flags{"--projections", "--pixel",       "--slice-pitch", "--like",
-                                                "--angle-step",  "--axis-column", "--axis-row",    "--orientation"};
+const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       "--slice-pitch", "--like",
+                                                "--view-step", "--axis-column", "--axis-row",    "--orientation"};
 
 }  // namespace
 
@@ -105,12 +109,11 @@ void check_export(const cli::App& app, const Options& options) {
 
 void check_import(const cli::App& app, const Options& options) {
   const bool volume = options.voxel_mm.has_value();
-  const bool projections = options.projections != "none";
+  const bool projections = options.geometry != "none";
   if (!volume && !projections) {
-    throw Error{
-        Fault::usage,
-        io::input_name(options.input) +
-            ": the kind of data is not given; use --voxel MM for a volume, or --projections virtual or projector"};
+    throw Error{Fault::usage,
+                io::input_name(options.input) +
+                    ": the kind of data is not given; use --voxel MM for a volume, or --geometry parallel or vial"};
   }
   if (volume) {
     refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");
@@ -118,7 +121,7 @@ void check_import(const cli::App& app, const Options& options) {
     refuse_given(app, volume_flags, "is for volumes; omit it, or --projections");
     refuse_given(app, {"--grid"}, "is for volumes; omit it, or --projections");
   }
-  if (options.angle_step_deg == 0.0) throw Error{Fault::usage, "--angle-step: must not be 0"};
+  if (options.view_step_deg == 0.0) throw Error{Fault::usage, "--view-step: must not be 0"};
   const std::string ending = volume ? ".vdb" : ".exr";
   if (options.output == "-" || options.output.ends_with(ending) || options.output.starts_with("/dev/")) return;
   throw Error{Fault::usage, options.output + ": " + (volume ? "a volume" : "a stack") + " is written as " + ending};

@@ -23,16 +23,18 @@ struct Options {
   std::optional<double> voxel_mm;
   std::vector<double> origin_mm;
   std::string units = "relative";
-  std::string projections = "none";
+  std::string geometry = "none";
   std::optional<double> pixel_mm;
   std::optional<double> slice_pitch_mm;
   std::string like;
-  std::optional<double> angle_step_deg;
+  std::optional<double> view_step_deg;
   std::optional<double> axis_column;
   std::optional<double> axis_row;
   std::string orientation = "normal";
   cli::PrinterOptions printer;
   io::StackOptions stack;
+  /// Whether the columns are those of the projector, whose rays the vial refracts.
+  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
 [[nodiscard]] cli::Manual manual();

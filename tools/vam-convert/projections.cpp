@@ -36,19 +36,19 @@ struct Plan {
 };
 
 void plan_turns(const Options& options, double stated_deg, int angles, Plan& plan) {
-  const double step_deg = options.angle_step_deg.value_or(stated_deg != 0 ? stated_deg : 360.0 / angles);
+  const double step_deg = options.view_step_deg.value_or(stated_deg != 0 ? stated_deg : 360.0 / angles);
   const std::string name = io::input_name(options.input);
   const double per_turn = 360 / std::abs(step_deg);
   plan.per_turn = round_int(per_turn);
   plan.backwards = step_deg < 0;
   if (std::abs(per_turn - plan.per_turn) > 1e-3) {
-    throw Error{Fault::usage, "--angle-step: " + format_number(step_deg) + " degrees make " + format_number(per_turn) +
+    throw Error{Fault::usage, "--view-step: " + format_number(step_deg) + " degrees make " + format_number(per_turn) +
                                   " projections a turn, which is not an integer"};
   }
   plan.turns = angles / plan.per_turn;
   if (plan.turns == 0) {
     throw Error{Fault::data, name + ": has " + std::to_string(angles) + " projections, " +
-                                 std::to_string(plan.per_turn) + " make a turn; check --angle-step"};
+                                 std::to_string(plan.per_turn) + " make a turn; check --view-step"};
   }
   if (const int over = angles - plan.turns * plan.per_turn; over > 0) {
     warn(name + ": the last " + std::to_string(over) + " of " + std::to_string(angles) +
@@ -58,12 +58,12 @@ void plan_turns(const Options& options, double stated_deg, int angles, Plan& pla
 
 double axis_column(const Options& options, const model::Projector& projector, int columns) {
   const double usual = columns == projector.columns ? projector.axis_column : 0.5 * (columns - 1);
-  return options.axis_column.value_or(options.projections == "projector" ? usual : 0.5 * (columns - 1));
+  return options.axis_column.value_or(options.in_vial() ? usual : 0.5 * (columns - 1));
 }
 
 /// Slices are counted upwards, rows of images downwards.
 double slice_of_zero(const Options& options, const model::Projector& projector, int slices, bool frames) {
-  const bool own = frames && options.projections == "projector" && slices == projector.rows;
+  const bool own = frames && options.in_vial() && slices == projector.rows;
   if (!options.axis_row && !own) return 0.5 * (slices - 1);
   const double row = options.axis_row.value_or(projector.axis_row);
   return frames ? slices - 1 - row : row;
@@ -71,7 +71,7 @@ double slice_of_zero(const Options& options, const model::Projector& projector, 
 
 void plan_columns(const Options& options, const model::Projector& projector, int columns, Plan& plan) {
   const double axis = axis_column(options, projector, columns);
-  if (options.projections == "projector") {
+  if (options.in_vial()) {
     plan.columns = projector.columns;
     plan.shift = projector.axis_column - axis;
     return;
@@ -82,7 +82,7 @@ void plan_columns(const Options& options, const model::Projector& projector, int
 
 double pixel_mm(const Options& options, const model::Projector& projector) {
   const double pitch = options.pixel_mm.value_or(projector.pixel_mm);
-  if (options.projections == "projector" && std::abs(pitch / projector.pixel_mm - 1) > 1e-6) {
+  if (options.in_vial() && std::abs(pitch / projector.pixel_mm - 1) > 1e-6) {
     throw Error{Fault::usage, "--pixel: " + format_number(pitch) + " mm, but projector.pixel_mm is " +
                                   format_number(projector.pixel_mm) +
                                   "; give --set projector.pixel_mm=" + format_number(pitch) + " here and to vam-dose"};
@@ -131,7 +131,7 @@ Image shifted(const Image& turn, const Plan& plan, const std::string& name) {
 model::StackInfo info_of(const cli::App& app, const Options& options, const model::Printer& printer, const Plan& plan,
                          const Heights& heights, bool frames) {
   model::StackInfo info;
-  const bool projector = options.projections == "projector";
+  const bool projector = options.in_vial();
   info.space = projector ? model::Space::projector : model::Space::virtual_;
   info.width = plan.columns;
   info.height = plan.per_turn;

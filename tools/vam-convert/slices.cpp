@@ -20,7 +20,7 @@ namespace {
 /// Intensity of every 16-bit level; nothing where the response is not known, and taken to be linear.
 std::vector<float> intensities(const Options& options, const model::Printer& printer) {
   std::vector<float> table;
-  if (options.projections != "projector" || printer.projector.response.empty()) return table;
+  if (!options.in_vial() || printer.projector.response.empty()) return table;
   const resin::Response response = tool::response_of(printer.projector);
   for (int level = 0; level < 65536; ++level) table.push_back(static_cast<float>(response.intensity(level / 65535.0)));
   return table;

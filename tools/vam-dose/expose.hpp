@@ -6,7 +6,7 @@
 
 #include "io/exr/stack.hpp"
 #include "io/vdb/vdb.hpp"
-#include "light/display_range.hpp"
+#include "light/simulation/display_range.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/outside.hpp"
 #include "model/printer.hpp"

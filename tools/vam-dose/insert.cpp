@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "base/error.hpp"
-#include "light/insert.hpp"
+#include "light/operators/insert.hpp"
 #include "model/dose_metrics.hpp"
 
 namespace vam::dose_tool {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "io/vdb/vdb.hpp"
-#include "light/simulation.hpp"
+#include "light/simulation/simulation.hpp"
 #include "model/stack.hpp"
 
 namespace vam::dose_tool {

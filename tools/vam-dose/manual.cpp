@@ -60,7 +60,7 @@ std::vector<std::pair<std::string, std::string>> examples() {
           {"The dose of an aborted print, here a dry run:",
            "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout "
            "15 vam-print short.exr --display null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 "
-           "--missed 0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer "
+           "--max-missed 0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer "
            "ended/printer.toml --like part.vdb --report given.json -o given.vdb"}};
 }
 

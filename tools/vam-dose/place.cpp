@@ -4,9 +4,9 @@
 #include "io/settings/pose_file.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/vdb/gate.hpp"
-#include "light/dose_grid.hpp"
-#include "light/lit_grid.hpp"
-#include "light/poses.hpp"
+#include "light/grids/dose_grid.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/grids/poses.hpp"
 #include "model/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
 

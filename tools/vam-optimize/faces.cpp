@@ -9,7 +9,7 @@
 #include "base/text.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/covered.hpp"
-#include "light/blurred_faces.hpp"
+#include "light/grids/blurred_faces.hpp"
 #include "model/dose_metrics.hpp"
 #include "model/magnification.hpp"
 #include "model/rows.hpp"

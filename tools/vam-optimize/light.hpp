@@ -7,8 +7,8 @@
 
 #include "base/index.hpp"
 #include "io/vdb/vdb.hpp"
-#include "light/lit_grid.hpp"
-#include "light/operator.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/operators/operator.hpp"
 #include "model/circle.hpp"
 #include "model/grid.hpp"
 #include "model/pose.hpp"

@@ -25,10 +25,13 @@ void add_position(cli::App& app, Options& options) {
   app.choice("--orientation", options.orientation, {"normal", "flip-columns", "flip-rows", "rotate-180"},
              "Mounting of the projector.")
       .default_is("projector.orientation");
-  app.option("--column-offset", "PX", options.column_offset, {-65536, 65536},
-             "Shift of the image, positive to the right; not necessarily whole pixels.");
+  app.option(
+      "--column-offset", "PX", options.column_offset, {-65536, 65536},
+      "Distance in columns from projector.axis_column to the image of the axis, positive to the right; the light is "
+      "shifted by it.");
   app.option("--row-offset", "PX", options.row_offset, {-65536, 65536},
-             "Shift of the image, positive downwards; not necessarily whole pixels.");
+             "Distance in rows from projector.axis_row to the image of z = 0, positive downwards; the light is shifted "
+             "by it.");
   app.option("--flatland", "MM", options.flatland_mm, cli::any, "Show the slice nearest to this z from above.");
 }
 
@@ -63,10 +66,12 @@ void add_live(cli::App& app, Options& all) {
   app.option("--latency", "MS", options.latency_ms, {-1000, 1000},
              "Delay of the projector, from the vertical blank to the light.")
       .default_is("projector.latency_ms");
-  app.option("--missed", "FRACTION", options.allowed_missed, {0, 1},
-             "Maximum fraction of missed vertical blanks in the run-up.");
-  app.option("--missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
-             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --missed.");
+  app.option("--max-missed", "FRACTION", options.allowed_missed, {0, 1},
+             "Maximum fraction of missed vertical blanks in the run-up.")
+      .was("--missed");
+  app.option("--max-missed-lit", "FRACTION", options.allowed_missed_lit, {0, 1},
+             "Maximum fraction of missed vertical blanks by the end of the print, at least that of --max-missed.")
+      .was("--missed-lit");
   app.option("--log", "FILE", options.log,
              "Append one JSON line per event, with UTC and monotonic time: every flip with frame and angle, and the "
              "reason of the end; - is standard error.");
@@ -121,8 +126,8 @@ void declare(cli::App& app, Options& options) {
 }
 
 void refuse_live(const cli::App& app, const std::string& output) {
-  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--missed",
-                           "--missed-lit", "--plan", "--log"}) {
+  for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--max-missed",
+                           "--max-missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;
     throw Error{Fault::usage, std::string(flag) + ": applies only to a display, but the output is " +
                                   (output == "-" ? "standard output" : output) + "; give -o " +

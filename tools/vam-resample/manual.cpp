@@ -19,11 +19,11 @@ std::vector<std::string> description() {
       "R_w / (D n M_vp), that is for parts up to 0.5 D n M_vp / R_w voxels above and below the axis of the lens (10 "
       "voxels for the default printer). Otherwise a warning states the deviation, and vam-optimize --geometry vial "
       "(the default) computes projections that include the climb.",
-      "With --to virtual the inverse map is applied for a camera that views the vial: camera sinograms become "
+      "With --geometry parallel the inverse map is applied for a camera that views the vial: camera sinograms become "
       "parallel-beam sinograms, ready for filtered back-projection. The azimuth of the camera is counter-clockwise "
       "from the projector, seen from above.",
       "Columns whose ray misses the resin, or falls outside the input, are 0. The sinogram must cover one full turn. "
-      "The output of --to projector has the projector's columns, with the axis at projector.axis_column."};
+      "The output of --geometry vial has the projector's columns, with the axis at projector.axis_column."};
 }
 
 std::vector<std::pair<std::string, std::string>> examples() {
@@ -47,7 +47,8 @@ std::vector<std::string> notes() {
       "values, including those of its overshoot, are set to 0 for a projector, which cannot show them, unless "
       "--negative keep is given. An output with coarser columns than the input is averaged over the width of its "
       "columns.",
-      "Weights: J/T for a projector by default, none for a camera; with --to virtual, --fresnel divides by T, the loss "
+      "Weights: J/T for a projector by default, none for a camera; with --geometry parallel, --fresnel divides by T, "
+      "the loss "
       "on the way out, and --jacobian divides by J.",
       "Sources: Orth et al., Correcting ray distortion in tomographic additive manufacturing, Opt. Express 2021, eq "
       "3-7 and fig 4; Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, eq 5-9, with "

@@ -5,10 +5,15 @@
 namespace vam::resample_tool {
 
 void declare(cli::App& app, Options& options) {
-  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --to virtual.")
+  app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --geometry parallel.")
       .reads({"--explain"});
   cli::add_output(app, options.output);
-  app.choice("--to", options.to, {"projector", "virtual"}, "Output: projector columns, or virtual detector bins.");
+  app.choice(
+         "--geometry", options.geometry, {"vial", "parallel"},
+         "Output: columns of the projector, whose rays the vial refracts, or detector bins of an ideal parallel beam.")
+      .was("--to")
+      .had("projector", "vial")
+      .had("virtual", "parallel");
   app.choice("--interpolation", options.interpolation, {"linear", "cubic"}, "Interpolation across columns and angles.");
   app.flag(
          "--explain", options.explain,
@@ -19,12 +24,12 @@ void declare(cli::App& app, Options& options) {
              "column,row,x_p_mm,z_p_mm,x_v_mm,z_mm,climb,delta_deg,T.")
       .needs({"--explain"});
   app.group("Weights");
-  app.flag("--no-fresnel", options.no_fresnel, "--to projector: do not divide by the transmittance T.");
-  app.flag("--no-jacobian", options.no_jacobian, "--to projector: do not multiply by J.");
-  app.flag("--fresnel", options.fresnel, "--to virtual: divide by T.");
-  app.flag("--jacobian", options.jacobian, "--to virtual: divide by J.");
+  app.flag("--no-fresnel", options.no_fresnel, "--geometry vial: do not divide by the transmittance T.");
+  app.flag("--no-jacobian", options.no_jacobian, "--geometry vial: do not multiply by J.");
+  app.flag("--fresnel", options.fresnel, "--geometry parallel: divide by T.");
+  app.flag("--jacobian", options.jacobian, "--geometry parallel: divide by J.");
   app.choice("--negative", options.negative, {"clip", "keep"},
-             "--to projector: clip negative values to 0, or keep them.");
+             "--geometry vial: clip negative values to 0, or keep them.");
   app.was("--keep-negative", "keep");
   app.group("Alignment");
   app.option("--column-offset", "PX", options.alignment.column_offset, cli::any,
@@ -32,7 +37,7 @@ void declare(cli::App& app, Options& options) {
              "axis, positive to the right.");
   app.option("--angle-offset", "DEG", options.angle_offset_deg, cli::any, "Angle of the part at stage angle 0.");
   app.flag("--reverse", options.alignment.reverse, "Direction of rotation opposite to stage.direction.");
-  app.group("Detector bins of --to virtual");
+  app.group("Detector bins of --geometry parallel");
   app.option("--bin-width", "MM", options.bin_width_mm, cli::positive, "Width of a detector bin.");
   app.default_is("the slice height, so that voxels are cubes").was("--voxel");
   app.option("--detector-bins", "N", options.bins, {1, 65536}, "Number of detector bins.");
@@ -44,9 +49,9 @@ void declare(cli::App& app, Options& options) {
 }
 
 void check(const Options& options, const model::Printer& printer) {
-  const bool projector = options.to == "projector";
+  const bool projector = options.in_vial();
   const auto refuse = [&](bool given, const char* flag) {
-    if (given) throw Error{Fault::usage, std::string(flag) + ": does not apply to --to " + options.to};
+    if (given) throw Error{Fault::usage, std::string(flag) + ": does not apply to --geometry " + options.geometry};
   };
   refuse(projector && options.fresnel, "--fresnel");
   refuse(projector && options.jacobian, "--jacobian");

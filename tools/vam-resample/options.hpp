@@ -14,7 +14,7 @@ namespace vam::resample_tool {
 struct Options {
   std::string input = "-";
   std::string output = "-";
-  std::string to = "projector";
+  std::string geometry = "vial";
   std::string interpolation = "cubic";
   bool no_fresnel = false;
   bool no_jacobian = false;
@@ -29,6 +29,8 @@ struct Options {
   std::optional<int> row;  // of the projector, whose rays to explain
   cli::PrinterOptions printer;
   io::StackOptions stack;
+  /// Whether the columns are those of the projector, whose rays the vial refracts.
+  [[nodiscard]] bool in_vial() const { return geometry == "vial"; }
 };
 
 [[nodiscard]] cli::Manual manual();

@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/text.hpp"
-#include "light/flat_faces.hpp"
+#include "light/grids/flat_faces.hpp"
 
 namespace vam::slice_tool {
 

@@ -7,7 +7,7 @@
 
 #include "base/image.hpp"
 #include "io/settings/flip_log.hpp"
-#include "light/simulation.hpp"
+#include "light/simulation/simulation.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,15 +23,17 @@ struct Option {
   std::string range_text;            // "greater than 0"; empty: none shown
   std::vector<std::string> choices;  // empty: free text
   bool repeatable = false;
-  std::vector<std::vector<std::string>> needs = {};  // one option of each, where this one is given
-  std::vector<Former> former = {};                   // not shown
-  std::function<std::string()> value = {};           // in force
-  bool required = false;                             // in its form of the tool
-  bool form = false;                                 // the synopsis shows the tool with it
-  bool in_job = true;                                // App::job() lists it
-  bool reads = false;                                // names a file that is read
-  bool writes = false;                               // names a file that is written
-  std::vector<std::string> endings = {};             // of which its name has one; empty: any
+  std::vector<std::vector<std::string>> needs = {};       // one option of each, where this one is given
+  std::vector<Former> former = {};                        // not shown
+  std::map<std::string, std::string> former_values = {};  // present values by the old ones; not shown
+  std::function<std::string()> value = {};                // in force
+  bool required = false;                                  // in its form of the tool,
+  std::string unless = {};                                // unless this one is given
+  bool form = false;                                      // the synopsis shows the tool with it
+  bool in_job = true;                                     // App::job() lists it
+  bool reads = false;                                     // names a file that is read
+  bool writes = false;                                    // names a file that is written
+  std::vector<std::string> endings = {};                  // of which its name has one; empty: any
 };
 
 struct Group {

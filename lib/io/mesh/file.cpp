@@ -46,13 +46,11 @@ PolygonSoup parse(const std::string& bytes) {
 
 // The format of a name that is written; standard output is the first one.
 const MeshFormat& format_of_output(const std::string& path) {
-  std::vector<std::string> endings;
   for (const MeshFormat& format : mesh_formats()) {
-    if (format.write == nullptr) continue;
-    if (path == "-" || path.ends_with(format.extension)) return format;
-    endings.push_back(format.extension);
+    if (format.write != nullptr && (path == "-" || path.ends_with(format.extension))) return format;
   }
-  throw Error{Fault::usage, path + ": no mesh format that is written has this ending; use " + join(endings, " or ")};
+  throw Error{Fault::usage,
+              path + ": no mesh format that is written has this ending; use " + join(written_mesh_endings(), " or ")};
 }
 
 void check_points(const PolygonSoup& soup) {
@@ -136,6 +134,14 @@ std::string mesh_format_names() {
   std::vector<std::string> names;
   for (const MeshFormat& format : mesh_formats()) names.push_back(format.name);
   return join(names, ", ");
+}
+
+std::vector<std::string> written_mesh_endings() {
+  std::vector<std::string> endings;
+  for (const MeshFormat& format : mesh_formats()) {
+    if (format.write != nullptr) endings.push_back(format.extension);
+  }
+  return endings;
 }
 
 void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments) {

@@ -17,6 +17,9 @@ namespace vam::io {
 /// The formats that are read, for messages and help: "3MF, PLY, ...".
 [[nodiscard]] std::string mesh_format_names();
 
+/// The endings that write_mesh() knows: ".ply", ...
+[[nodiscard]] std::vector<std::string> written_mesh_endings();
+
 /// Writes the format of the file name's extension, PLY to "-"; comments go where the format has some.
 /// Throws Error: usage (an ending that is not written), no_output, io.
 void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const std::vector<std::string>& comments);

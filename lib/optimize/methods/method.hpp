@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/methods/archive.hpp"
 #include "optimize/methods/scenarios.hpp"
 #include "optimize/target/problem.hpp"

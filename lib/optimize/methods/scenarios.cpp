@@ -6,7 +6,7 @@
 
 #include "base/per_slice.hpp"
 #include "base/random.hpp"
-#include "light/blurred_operator.hpp"
+#include "light/operators/blurred_operator.hpp"
 
 namespace vam::optimize {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/index.hpp"
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 
 namespace vam::optimize {
 

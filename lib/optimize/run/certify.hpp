@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {

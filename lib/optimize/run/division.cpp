@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "light/blurred_operator.hpp"
+#include "light/operators/blurred_operator.hpp"
 
 namespace vam::optimize {
 

@@ -1,7 +1,7 @@
 // The dose if every pixel is fully lit at every stage angle.
 #pragma once
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "model/circle.hpp"
 
 namespace vam::optimize {

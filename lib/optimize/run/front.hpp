@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "model/dose_metrics.hpp"
 #include "optimize/methods/method.hpp"
 

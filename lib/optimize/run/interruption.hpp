@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/methods/archive.hpp"
 #include "optimize/run/run_method.hpp"
 #include "optimize/target/schedule.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "light/insert.hpp"
+#include "light/operators/insert.hpp"
 
 namespace vam::optimize {
 

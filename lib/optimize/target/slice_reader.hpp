@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "model/circle.hpp"
 #include "optimize/target/schedule.hpp"
 #include "optimize/target/surface_band.hpp"

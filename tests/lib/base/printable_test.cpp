@@ -12,11 +12,11 @@ TEST_CASE("control characters are shown, not sent") {
   CHECK(vam::printable("\xc2").size() == 1);
 }
 
-TEST_CASE("a name in a page is a link and nothing else") {
+TEST_CASE("a name in a page is escaped inside its link") {
   CHECK(vam::link_text("turns-1_a.png") == "turns-1_a.png");
   CHECK(vam::link_text("a\"><script>?\n\xc3\xa4") == "a%22%3E%3Cscript%3E%3F%0A%C3%A4");
 }
 
-TEST_CASE("a text in a page is a text and nothing else") {
+TEST_CASE("a text in a page is escaped") {
   CHECK(vam::page_text("a < b & \"c\" > 'd'\n") == "a &lt; b &amp; &quot;c&quot; &gt; &#39;d&#39;\\n");
 }

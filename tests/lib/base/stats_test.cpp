@@ -97,7 +97,7 @@ TEST_CASE("a fitted line has the covariance HC3 by hand, whatever the origin of 
   CHECK(at_middle.sigma == doctest::Approx(std::sqrt(wider * c00)).epsilon(1e-6));
 }
 
-TEST_CASE("readings that are too few, or do not tell the parameters apart, are refused") {
+TEST_CASE("too few readings, or readings that do not determine the parameters, are refused") {
   const auto two = [](const std::vector<double>& p) { return std::vector<double>{1 - p[0], 2 - p[1]}; };
   CHECK(fault_of([&] { static_cast<void>(fit_curve(two, {0, 0}, {1e-3, 1e-3}, "few")); }) == Fault::data);
   const auto same = [](const std::vector<double>& p) {

@@ -18,7 +18,7 @@ TEST_CASE("times are written and read to the millisecond") {
   }
 }
 
-TEST_CASE("what is no time is refused") {
+TEST_CASE("a text that is not a time is refused") {
   for (const char* text : {"yesterday", "2026-11-21T16:58:00.250Z and more", "2026-99-21T16:58:00.250Z",
                            "2026-02-30T16:58:00.250Z", "2026-11-21T16:58:00.250", ""}) {
     CHECK(fault_of([&] { (void)parse_utc(text, "r"); }) == Fault::data);

@@ -188,11 +188,16 @@ TEST_CASE("the manual lists the variables and statuses of what the tool has") {
   CHECK(bare.find("VAM_PRINTER") == std::string::npos);
   CHECK(bare.find(".It 1\n") == std::string::npos);
   CHECK(bare.find(".It 76\n") == std::string::npos);
+  CHECK(bare.find("VAM_LOCK_DIR") == std::string::npos);
+  tool.manual.locks = true;
+  CHECK(manual_page(tool).find("VAM_LOCK_DIR") != std::string::npos);
+  tool.manual.locks = false;
   tool.manual.statuses = device_statuses;
   tool.groups = {
       {"Options", {{"--printer", "FILE", "Settings.", "", "", {}}, {"--require", "C", "Limits.", "", "", {}}}}};
   const std::string page = manual_page(tool);
   CHECK(page.find("VAM_PRINTER") != std::string::npos);
+  CHECK(page.find("VAM_LOCK_DIR") != std::string::npos);
   CHECK(page.find(".It 1\n") != std::string::npos);
   CHECK(page.find(".It 76\nDevice protocol error.\n") != std::string::npos);
 }
@@ -270,7 +275,7 @@ TEST_CASE("an option that stands for an operand is a form of its own in the syno
                               ".Nm\n.Op Ar OPTIONS\n.Fl -live\n.Op Ar \\&PART\n.Sh") != std::string::npos);
 }
 
-TEST_CASE("what a form cannot do without is shown as such and refused where missing") {
+TEST_CASE("required options of a form are shown as such and refused where missing") {
   const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
     std::string frames, log, chosen;
     App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
@@ -285,6 +290,46 @@ TEST_CASE("what a form cannot do without is shown as such and refused where miss
   CHECK(said({"scan", "a.exr"}, stderr) == "vam-demo: --flips: missing; see --help\n");
   CHECK(said({"scan", "--flips", "log"}, stderr) == "vam-demo: FRAMES: missing; see --help\n");
   CHECK(said({"scan", "--help"}, stdout).starts_with("Usage: vam-demo scan [OPTIONS] --flips FILE FRAMES\n"));
+}
+
+TEST_CASE("an option that stands for others is a form of its own without them") {
+  const auto said = [](const std::vector<std::string>& words, std::FILE* stream) {
+    std::string chosen;
+    double first = 0;
+    bool side = false;
+    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    auto& beam = app.subcommand("beam", "one", chosen);
+    beam.flag("--side", side, "From the side.").form();
+    beam.option("--first", "MM", first, any, "First plane.").required_without("--side");
+    return written_to(stream, [&] { run_app(app, words); });
+  };
+  CHECK(said({"beam", "--side"}, stderr).empty());
+  CHECK(said({"beam", "--first", "1"}, stderr).empty());
+  CHECK(said({"beam"}, stderr) == "vam-demo: --first: missing, as is --side; see --help\n");
+  const std::string help = said({"beam", "--help"}, stdout);
+  CHECK(
+      help.starts_with("Usage: vam-demo beam [OPTIONS] --first MM\n"
+                       "       vam-demo beam [OPTIONS] --side\n"));
+  CHECK(help.find("First plane. Default: 0. Required without --side.") != std::string::npos);
+  CHECK(said({"--man"}, stdout).find(".Cm beam\n.Op Ar OPTIONS\n.Fl -side\n.Sh") != std::string::npos);
+}
+
+TEST_CASE("a former value stands for the present one, with one warning") {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"--geometry", "virtual"}, {"--geometry=virtual"}, {"--to", "virtual"}, {"--to=virtual"}}) {
+    std::string geometry = "vial";
+    App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+    app.choice("--geometry", geometry, {"vial", "parallel"}, "Rays.").was("--to").had("virtual", "parallel");
+    const std::string text = written_to(stderr, [&] { CHECK(run_app(app, words) == 0); });
+    CHECK(text.ends_with("vam-demo: warning: --geometry virtual is now --geometry parallel\n"));
+    CHECK(geometry == "parallel");
+  }
+  std::string geometry = "vial", name;
+  App app(Manual{"vam-demo", "shows options", {}, {}, {}, {}});
+  app.choice("--geometry", geometry, {"vial", "parallel"}, "Rays.").had("virtual", "parallel");
+  app.option("--name", "NAME", name, "Any text.");
+  CHECK(written_to(stderr, [&] { CHECK(run_app(app, {"--name", "virtual"}) == 0); }).empty());
+  CHECK(name == "virtual");
 }
 
 TEST_CASE("a former spelling is not shown") {
@@ -314,7 +359,7 @@ TEST_CASE("a command's option has former spellings, too") {
   }
 }
 
-TEST_CASE("the manual page escapes what roff would take for its own") {
+TEST_CASE("the manual page escapes the control characters of roff") {
   Declaration tool;
   tool.manual = {"vam-demo", "shows", {".starts with a dot and a \\ and 5 µm. Next sentence."}, {}, {}, {}};
   const std::string page = manual_page(tool);

@@ -62,7 +62,7 @@ TEST_CASE("Lines go out and come back") {
   }
 }
 
-TEST_CASE("A sample is dated in the middle and blurred by what the answer took") {
+TEST_CASE("A sample has the time of the middle of its query and half the duration as uncertainty") {
   const AngleSample sample = to_angle_sample({90, 10.000, 10.012}, 25);
   CHECK(sample.t_s == doctest::Approx(10.006));
   CHECK(sample.sigma_deg == doctest::Approx(25 * 0.012 / std::sqrt(12.0)).epsilon(1e-3));

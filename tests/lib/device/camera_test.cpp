@@ -97,7 +97,7 @@ TEST_CASE("Time stamps: the shortest delay is used for all, and follows a drifti
   CHECK(clock.host_s(18, 118.050) == doctest::Approx(118.050));  // all before are older than 10 s
 }
 
-TEST_CASE("A camera's clock: what all readings allow, until the clocks have drifted apart") {
+TEST_CASE("A camera's clock: the offset that is consistent with all readings, until the clocks have drifted apart") {
   ReadClock clock;
   CHECK_FALSE(clock.ready());
   clock.add({5, 105, 105.010});  // its middle is 3 ms late
@@ -113,7 +113,7 @@ TEST_CASE("A camera's clock: what all readings allow, until the clocks have drif
   CHECK(host_s(15) == doctest::Approx(115.0105).epsilon(1e-9));
 }
 
-TEST_CASE("A camera's clock: readings of a busy machine, held up on either side, know it far better than each does") {
+TEST_CASE("A camera's clock: many readings delayed on either side determine it far better than one") {
   std::mt19937_64 random(5);
   std::exponential_distribution<double> held_up_s(1 / 0.001);
   std::vector<double> ratios;
@@ -154,7 +154,7 @@ TEST_CASE("The moment of a time stamp: as requested, as the maker documents it, 
   CHECK(to_middle_s(StampMoment::end, 0.02) == -0.01);
 }
 
-TEST_CASE("V4L2: stamps are of the moment that the printer file says, else of that of the driver") {
+TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to the driver's") {
   for (const auto& [stamp, middle_s] : {std::pair("auto", 10.49), std::pair("end", 10.49), std::pair("start", 10.51)}) {
     VirtualClock clock;
     V4l2Script script;
@@ -262,7 +262,7 @@ TEST_CASE("V4L2: an unsupported setting is named in the error") {
   CHECK(fault({}) == Fault::absent);
 }
 
-TEST_CASE("A series by count, by number and by angle; what is lost is counted") {
+TEST_CASE("A series by count, by number and by angle; lost frames are counted") {
   const auto bench = recording(20, 10, {3, 4}, {7});
   CapturePlan plan;
   plan.frames = 6;

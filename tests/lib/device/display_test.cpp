@@ -11,7 +11,7 @@
 using namespace vam;
 using namespace vam::device;
 
-TEST_CASE("A screen takes frames of its own size and depth only") {
+TEST_CASE("A screen refuses frames of another size or depth") {
   VirtualClock clock;
   const auto display = open_display("null:", {4, 3, 60}, clock, nullptr);
   CHECK(fault_of([&] { display->add(GreyImage(3, 4, 8)); }) == Fault::data);

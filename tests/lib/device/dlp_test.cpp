@@ -161,7 +161,7 @@ TEST_CASE("Every byte to a DLPC900: its grey is linear in three patterns of 8 bi
         std::string::npos);
 }
 
-TEST_CASE("An engine that refuses to stop a pattern still goes to sleep") {
+TEST_CASE("An engine that refuses to stop a pattern is still put to sleep") {
   CHECK(heard_by({.refuse = 0x1A24}).back().substr(4) == "0300000201");
 }
 

@@ -56,7 +56,8 @@ TEST_CASE("commands are addressed to one controller of a chain") {
   CHECK(first.commands("") == 0);
 }
 
-TEST_CASE("The unit of an axis is degrees, however it is written; a stage without reference says what to do") {
+TEST_CASE(
+    "The unit of an axis may be any spelling of degrees; the error of a stage without reference states the remedy") {
   VirtualStage lab;
   CHECK(describe(*lab.stage)["unit"] == "deg");  // the controller answers DEG
   lab.stage->enable();

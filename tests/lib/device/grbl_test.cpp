@@ -66,7 +66,7 @@ TEST_CASE("GRBL: each user homes, whether or not the board greets him; only homi
   }
 }
 
-TEST_CASE("GRBL: a board without switches takes its zero where it stands, for one user") {
+TEST_CASE("GRBL: a board without switches takes its present position as zero, for one session") {
   SimGcsSettings sim;
   sim.no_switches = true;
   GrblLab lab(sim);

@@ -48,7 +48,7 @@ double play_part(double from_deg, int turns, long killed_after, double phase_s, 
 
 }  // namespace
 
-TEST_CASE("A print that is killed at a random moment and resumed gives each frame the light of the whole one") {
+TEST_CASE("A print killed at a random moment and resumed exposes each frame as an uninterrupted one does") {
   std::vector<double> whole(36);
   play_part(0, 3, -1, 0, whole);
   CHECK(whole[7] == doctest::Approx(3 * 20 / 60.0).epsilon(1e-6));

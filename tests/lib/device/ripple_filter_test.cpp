@@ -79,7 +79,7 @@ TEST_CASE("A ripple of 3 % each 30 degrees and a jitter of 20 ms leave a bias of
   CHECK(print<AngleFit>(0.03, 0.02, 1).p99_deg > 0.2);
 }
 
-TEST_CASE("Without ripple the harmonics cost nothing that counts") {
+TEST_CASE("Without ripple the fitted harmonics add no relevant error") {
   CHECK(print<RippleFilter>(0, 0.005, 1).p99_deg <= 0.02);
   CHECK(print<RippleFilter>(0.03, 0.005, 1).p99_deg <= 0.02);
 }

@@ -39,7 +39,7 @@ std::string line_of(const std::function<void()>& work) {
 
 }  // namespace
 
-TEST_CASE("what is put in comes out, across many slots, in pieces of any size") {
+TEST_CASE("a ring returns the bytes that were put in, across many slots, in pieces of any size") {
   std::vector<std::uint32_t> numbers(1'300'001);
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::uint32_t>(i * 2654435761U);
   std::vector<std::uint32_t> got(numbers.size());
@@ -62,7 +62,7 @@ TEST_CASE("what is put in comes out, across many slots, in pieces of any size") 
   CHECK(got == numbers);
 }
 
-TEST_CASE("a child that crashes is one line, and this process goes on") {
+TEST_CASE("the crash of a child is a one-line error, and this process continues") {
   CHECK(has(line_of([] { std::abort(); }), "part.vdb: is damaged: its reader was ended by signal 6 (Aborted); "));
   CHECK(has(line_of([] { (void)std::raise(SIGKILL); }), "signal 9"));
   CHECK(has(line_of([] { _exit(0); }), "ended early"));

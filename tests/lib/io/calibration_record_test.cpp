@@ -110,7 +110,7 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(fault_of([&] { (void)write_record(none, "edges", edges(1, 1), now_s); }) == Fault::usage);
 }
 
-TEST_CASE("a record outside physics is refused, with the record, the number and what it may be") {
+TEST_CASE("a record with an impossible value is refused, with the record, the number and its range") {
   const auto refused = [](double column, double radius_mm, const std::string& scan = "edges") {
     const scratch::Folder folder;
     const auto calibration = here(folder);

@@ -20,7 +20,7 @@ std::string flip(double t_s, int frame, double angle_deg) {
 
 }  // namespace
 
-TEST_CASE("what was shown is the flips with a frame, each until the next flip") {
+TEST_CASE("the exposure is that of the flips with a frame, each until the next flip") {
   const scratch::Folder folder;
   const std::string lines = R"({"event":"display"})"
                             "\n" +
@@ -36,7 +36,7 @@ TEST_CASE("what was shown is the flips with a frame, each until the next flip") 
   CHECK(turns_shown({{90, 1}, {-1, 0.5}}, {4, 0, -90}, 90) == std::vector<double>{0.5, 0, 0, 1});
 }
 
-TEST_CASE("an image does not last into the next run of one log") {
+TEST_CASE("in a log of several runs an image ends with its run") {
   const scratch::Folder folder;
   const std::string begin = R"({"event":"display"})"
                             "\n";

@@ -101,7 +101,7 @@ TEST_CASE("level sets, solid backgrounds, metres and micrometres, two grids of o
   CHECK(has(error_of([&] { require_usable("-", two); }, Fault::data), "stdin: grid 'target' occurs twice"));
 }
 
-TEST_CASE("what is read in passing is held to the same") {
+TEST_CASE("data read in passing is checked in the same way") {
   SparseVolume good = one_voxel("target", 1);
   CHECK(refusal_in_passing(good) == "no error");
   SparseVolume bad = one_voxel("target", -3);

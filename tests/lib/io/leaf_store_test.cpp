@@ -69,7 +69,7 @@ TEST_CASE("a volume beyond the leaves that stay in memory is read, changed and w
   CHECK(vam::io::farthest_mm(again, 0.5F) == doctest::Approx(vam::io::farthest_mm(volume, 0.5F)));
 }
 
-TEST_CASE("a volume that fits needs no scratch file, and without a folder for one the error says what to do") {
+TEST_CASE("a volume that fits needs no scratch file; without a folder for one the error states the remedy") {
   const char* before = std::getenv("TMPDIR");
   const std::string kept = before != nullptr ? before : "";
   setenv("TMPDIR", "/nonexistent", 1);

@@ -43,7 +43,9 @@ std::string package(const std::string& root, const std::string& second = "") {
 
 }  // namespace
 
-TEST_CASE("3MF: components are placed from the inside out, mirrored ones stay outside out, unprintable ones stay out") {
+TEST_CASE(
+    "3MF: components are placed from the inside out, mirrored ones keep their orientation, unprintable ones are left "
+    "out") {
   const scratch::Folder folder;
   const std::string nested = object(1, mesh_xml(box())) +
                              object(2, "<components>" + component(1, "transform=\"2 0 0 0 1 0 0 0 1 1 0 0\"") +

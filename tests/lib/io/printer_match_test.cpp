@@ -43,7 +43,7 @@ TEST_CASE("printers differ where light for one is wrong in the other") {
         "projector.telecentric_columns 1, now 0; projector.telecentric_rows 1, now 0; ");
 }
 
-TEST_CASE("what a new calibration changes, and what is applied at the print, is no difference") {
+TEST_CASE("settings that a calibration changes, or that are applied at the print, count as no difference") {
   CHECK(difference({}, {"projector.axis_column=511.7", "vial.radius_mm=12.75", "resin.index=1.531"}).empty());
   CHECK(difference({}, {"projector.lens_distance_mm=119.808"}).empty());
   CHECK(difference({}, {"projector.response=a.csv", "projector.rows=900", "stage.speed_deg_s=20"}).empty());

@@ -135,7 +135,7 @@ void recompress(const std::string& from, const std::string& to, Imf::Compression
 
 }  // namespace
 
-TEST_CASE("damage sweep: no flipped bit of a sealed stack goes unseen") {
+TEST_CASE("damage sweep: every flipped bit of a sealed stack is detected") {
   const scratch::Folder folder;
   for (const std::string compression : {"none", "rle", "zip", "piz", "pxr24"}) {
     for (const bool narrow : {false, true}) {
@@ -151,7 +151,7 @@ TEST_CASE("damage sweep: no flipped bit of a sealed stack goes unseen") {
   no_flip_unseen(folder / "a.exr", slurp(folder / "pipe.exr"), seen_stack);
 }
 
-TEST_CASE("damage sweep: no flipped bit of a sealed volume goes unseen") {
+TEST_CASE("damage sweep: every flipped bit of a sealed volume is detected") {
   const scratch::Folder folder;
   const auto grid = model::centred_grid(30, 26, 22, 0.1, 0.4);
   std::vector<SparseVolume> volumes;

@@ -34,7 +34,7 @@ TEST_CASE("a file appears under its name only at commit, whole") {
   }
 }
 
-TEST_CASE("without commit nothing is left and what was there stays") {
+TEST_CASE("without commit no new file is left and the old one stays") {
   for (const auto temporary : {Temporary::unnamed, Temporary::named}) {
     const scratch::Folder folder;
     spill(folder / "a.txt", "old");
@@ -164,7 +164,7 @@ TEST_CASE("an ignored signal stays ignored") {
   CHECK(std::filesystem::exists(folder / "a"));
 }
 
-TEST_CASE("kill -9 leaves nothing where the file system knows unnamed files") {
+TEST_CASE("kill -9 leaves no file on file systems with unnamed files") {
   const scratch::Folder folder;
   const int probe = open(folder.path.c_str(), O_TMPFILE | O_RDWR, 0600);
   if (probe < 0) {

@@ -15,7 +15,7 @@ using namespace vam::volumes;
 using scratch::spill;
 using scratch::status;
 
-TEST_CASE("a target of another program gets the void around it, and stays where it lies") {
+TEST_CASE("a target of another program is extended by void, and keeps its position") {
   const scratch::Folder folder;
   openvdb::initialize();
   const auto array =

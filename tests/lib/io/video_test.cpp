@@ -89,7 +89,7 @@ TEST_CASE("the same frames give the same bytes") {
   }
 }
 
-TEST_CASE("without commit nothing is left; other endings, missing and foreign files are refused") {
+TEST_CASE("without commit no file is left; other endings, missing and foreign files are refused") {
   const scratch::Folder folder;
   {
     VideoWriter writer(folder / "a.mkv", {64, 48, 8, 16, ""});
@@ -135,7 +135,7 @@ TEST_CASE("a truncated video is never read as a shorter one") {
   }
 }
 
-TEST_CASE("damage sweep: no flipped bit of a lossless video goes unseen, and no frame is lost or shown twice") {
+TEST_CASE("damage sweep: every flipped bit of a lossless video is detected, and no frame is lost or shown twice") {
   const scratch::Folder folder;
   write_video(folder / "a.mkv", 12, 8);
   const std::string whole = slurp(folder / "a.mkv");

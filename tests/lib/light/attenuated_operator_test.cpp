@@ -1,4 +1,4 @@
-#include "light/private/attenuated_operator.hpp"
+#include "light/operators/private/attenuated_operator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/private/parallel_operator.hpp"
+#include "light/operators/private/parallel_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 

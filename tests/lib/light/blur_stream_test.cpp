@@ -1,11 +1,11 @@
-#include "light/blur_stream.hpp"
+#include "light/blur/blur_stream.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "light/gaussian_blur.hpp"
+#include "light/blur/gaussian_blur.hpp"
 
 using namespace vam;
 using namespace vam::light;

@@ -1,4 +1,4 @@
-#include "light/blurred_faces.hpp"
+#include "light/grids/blurred_faces.hpp"
 
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ TEST_CASE("faces are hard where rays smear them and voxels nearby are wrong") {
   CHECK(hard[0].wrong_voxels == 8);  // smeared over three voxels up and down: slices 92 ... 97
 }
 
-TEST_CASE("the remedy brings the worst face to the lens, or tilts it by what rays climb") {
+TEST_CASE("the remedy moves the worst face to the height of the lens, or tilts it by the climb of the rays") {
   const model::Printer printer;
   const std::vector<FlatFace> faces{{9, true, 12, 113}};
   const std::vector<BlurredFace> hard{{faces[0], blur_voxels(printer, faces[0], 0.1), 5}};

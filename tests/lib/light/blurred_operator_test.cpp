@@ -1,4 +1,4 @@
-#include "light/blurred_operator.hpp"
+#include "light/operators/blurred_operator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 #include "lib/light/operator_checks.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/blur_stream.hpp"
-#include "light/private/parallel_operator.hpp"
+#include "light/blur/blur_stream.hpp"
+#include "light/operators/private/parallel_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
@@ -198,7 +198,7 @@ TEST_CASE("a part compensated for the blur prints better under it than one that 
   CHECK(with[12].iou >= without[12].iou);
 }
 
-TEST_CASE("slices that share dose decide together, so that doses stay those of the light") {
+TEST_CASE("slices that share dose take steps together, so that the doses are those of the projections") {
   const int size = 64;
   const auto wheel = vam::oracle::wheel(size);
   std::vector<std::vector<float>> block(5, wheel);

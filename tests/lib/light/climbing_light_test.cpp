@@ -215,7 +215,7 @@ TEST_CASE("an insert's shadow agrees with voxel-by-voxel ray traversal, for skew
   CHECK(compare(without, smooth).rms > 0.1);  // there is light
 }
 
-TEST_CASE("a displaced vial is not the same as a displaced part, and neither the same as none") {
+TEST_CASE("a displaced vial, a displaced part and neither have three different doses") {
   const Bench b = posed(bench(90, -1.8, 0.05, 1, 0), model::Moves::vial, 0.9, 0);
   const auto doses = [&](const VialSetup& setup) {
     std::vector<Image> rows(20, Image(48, 20));

@@ -1,4 +1,4 @@
-#include "light/dose_stream.hpp"
+#include "light/simulation/dose_stream.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
-#include "light/operator.hpp"
-#include "light/poses.hpp"
-#include "light/private/simulation_state.hpp"
+#include "light/grids/poses.hpp"
+#include "light/operators/operator.hpp"
+#include "light/simulation/private/simulation_state.hpp"
 
 using namespace vam;
 using namespace vam::light;
@@ -92,7 +92,7 @@ std::vector<Image> whole(const Simulation& simulation, const std::vector<Image>&
 
 }  // namespace
 
-TEST_CASE("a stream of rows gives the doses of all rows at once to the byte, pieces and threads as they may be") {
+TEST_CASE("a stream of rows gives the same bytes as all rows at once, for any pieces and any number of threads") {
   const Simulation simulation(printer(), {}, stack(slices), grid());
   REQUIRE(simulation.climbs());
   const std::vector<Image> light = light_of(slices);

@@ -1,4 +1,4 @@
-#include "light/flat_faces.hpp"
+#include "light/grids/flat_faces.hpp"
 
 #include <doctest/doctest.h>
 

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
-#include "light/simulation.hpp"
+#include "light/simulation/simulation.hpp"
 #include "oracle/part_2d.hpp"
 #include "oracle/ray_tracer.hpp"
 #include "oracle/walked_dose.hpp"

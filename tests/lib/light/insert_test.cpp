@@ -1,4 +1,4 @@
-#include "light/insert.hpp"
+#include "light/operators/insert.hpp"
 
 #include <doctest/doctest.h>
 
@@ -19,12 +19,12 @@ TEST_CASE("a voxel is in shadow up to 1 % of the largest dose, and not above") {
   }
 }
 
-TEST_CASE("everything is in shadow where no light comes, and what has no number") {
+TEST_CASE("a voxel with no light, or a dose that is not a number, is in shadow") {
   CHECK(in_shadow(0, 0));
   CHECK(in_shadow(std::numeric_limits<float>::quiet_NaN(), 1));
 }
 
-TEST_CASE("coverage keeps light out from a half on, and there is no dose there") {
+TEST_CASE("voxels covered by at least half are opaque and have no dose") {
   CHECK_FALSE(opaque(std::nextafter(0.5F, 0.0F)));
   CHECK(opaque(0.5F));
   struct Voxels {

@@ -1,4 +1,4 @@
-#include "light/make_operator.hpp"
+#include "light/operators/make_operator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,10 +6,10 @@
 #include "fault_of.hpp"
 #include "lib/light/vials.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/private/attenuated_operator.hpp"
-#include "light/private/parallel_operator.hpp"
-#include "light/private/shadowed_operator.hpp"
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/attenuated_operator.hpp"
+#include "light/operators/private/parallel_operator.hpp"
+#include "light/operators/private/shadowed_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 
 using namespace vam;
 using namespace vam::light;

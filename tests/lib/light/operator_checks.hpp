@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/slab.hpp"
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/methods/method.hpp"
 #include "oracle/part_2d.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "lib/light/operator_checks.hpp"
 #include "lib/optimize/parts.hpp"
-#include "light/private/parallel_operator.hpp"
+#include "light/operators/private/parallel_operator.hpp"
 #include "oracle/part_2d.hpp"
 
 using namespace vam;

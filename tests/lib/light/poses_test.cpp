@@ -1,4 +1,4 @@
-#include "light/poses.hpp"
+#include "light/grids/poses.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,9 +6,9 @@
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
-#include "light/dose_grid.hpp"
-#include "light/lit_grid.hpp"
-#include "light/vial_setup.hpp"
+#include "light/grids/dose_grid.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/rays/vial_setup.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 

@@ -1,4 +1,4 @@
-#include "light/simulation.hpp"
+#include "light/simulation/simulation.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,9 +8,9 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
-#include "light/display_range.hpp"
-#include "light/dose_grid.hpp"
-#include "light/lit_grid.hpp"
+#include "light/grids/dose_grid.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/simulation/display_range.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
 #include "score/exposure.hpp"

@@ -7,7 +7,7 @@
 #include "base/image.hpp"
 #include "base/per_slice.hpp"
 #include "base/slab.hpp"
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 
 namespace parts {
 

@@ -70,7 +70,7 @@ double corrected(const View& view, double x_p, double theta) {
 
 }  // namespace
 
-TEST_CASE("a matched telecentric bench lights the resin evenly, and nothing else") {
+TEST_CASE("a matched telecentric bench lights only the resin, and evenly") {
   VialSetup setup = setup_of(matched, 64, 30);
   const double window = chief_ray(matched, 0).transmittance;
   const Image dose = dose_of(setup, Image(440, 360, 1.0F));

@@ -1,4 +1,4 @@
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ double shine(double x_p, double theta) { return 1.2 + std::sin(0.35 * x_p + 2 * 
 
 }  // namespace
 
-TEST_CASE("in the vial A and A* are adjoint, whatever stands in the light's way and whichever way the stage turns") {
+TEST_CASE("in the vial A and A* are adjoint, with and without inserts, in either direction of rotation") {
   CHECK(parts::adjoint_error(VialOperator(vial_setup(64, 90))) < 1e-5);
   CHECK(parts::adjoint_error(VialOperator(vial_setup(37, 91, parts::walled_vial))) < 1e-5);
   VialSetup turned = vial_setup(50, 72);
@@ -36,7 +36,7 @@ TEST_CASE("in the vial A and A* are adjoint, whatever stands in the light's way 
   CHECK(parts::adjoint_error(VialOperator(turned)) < 1e-5);
 }
 
-TEST_CASE("four slabs at once give what each gives alone") {
+TEST_CASE("four slabs at once give the results of each alone") {
   const VialOperator light(vial_setup(40, 60));
   std::vector<Slab> g;
   for (unsigned s = 0; s < 7; ++s) g.push_back(parts::noise(light.sinogram(), s));
@@ -85,7 +85,7 @@ TEST_CASE("A* is the dose of rays counted one by one") {
   }
 }
 
-TEST_CASE("what is projected is the unknowns as fluence, and the way back") {
+TEST_CASE("expand turns the unknowns into fluence, and collapse inverts it") {
   const VialOperator light(vial_setup(40, 60));
   const Slab g = parts::noise(light.sinogram(), 5);
   Slab image(light.image().width, light.image().height);
@@ -178,7 +178,7 @@ TEST_CASE("voxels a quarter of a turn apart share their rays: the dose is that o
   }
 }
 
-TEST_CASE("A leaves out what is dark: half of the voxels and the other half sum up to all of them") {
+TEST_CASE("A skips dark voxels: the images of two halves of the voxels add up to that of all") {
   for (const bool climbs : {false, true}) {
     const VialOperator light(climbs ? climbing(40, 90, 36) : vial_setup(40, 36));
     std::vector<Slab> objects, halves[2] = {slabs(6, 40, 40), slabs(6, 40, 40)};
@@ -274,7 +274,7 @@ TEST_CASE("in every pose A and A* are adjoint, with more slices than rows and wi
   }
 }
 
-TEST_CASE("poses of no displacement give the dose of none") {
+TEST_CASE("poses without displacement give the dose without poses") {
   const VialSetup still = climbing(40, 43, 60);
   VialSetup setup = still;
   for (int k = 0; k < 60; ++k) setup.poses.push_back({6.0 * k});

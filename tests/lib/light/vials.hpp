@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "light/private/vial_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
 #include "optics/writable_radius.hpp"
 
 namespace parts {

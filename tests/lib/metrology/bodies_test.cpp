@@ -65,7 +65,7 @@ TEST_CASE("the smallest body, and the neighbourhood of a reference, can be set")
   CHECK_THROWS_AS((void)neighbourhood(reference, 1), Error);
 }
 
-TEST_CASE("nothing to keep is no error") {
+TEST_CASE("an empty selection is not an error") {
   model::Volume volume{model::centred_grid(4, 4, 4, 1), std::vector<float>(64)};
   const BodyCount count = keep_bodies(volume, 0.5, {});
   CHECK(count.kept == 0);

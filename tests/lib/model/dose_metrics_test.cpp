@@ -157,7 +157,7 @@ TEST_CASE("a figure of merit is found by its name, any other is none") {
   CHECK(std::isnan(figure(metrics, "no figure")));
 }
 
-TEST_CASE("part and void that a bin does not tell apart are told apart by their extremes") {
+TEST_CASE("part and void within one bin are separated by their extremes") {
   const float low = 1.0001F;
   const float high = 1.0002F;  // a bin reaches from 1 to 1 + 2^-12
   const auto m = gathered({{high, 2}, {low, 0.5}}).metrics();

@@ -28,7 +28,8 @@ TEST_CASE("vertical magnification follows [OST22 eq S5] and is 1 for a telecentr
   CHECK(1 / vertical_magnification(printer) == doctest::Approx(1.0572).epsilon(1e-4));
 }
 
-TEST_CASE("a camera magnifies by the way that glass and resin shorten, a telecentric one by none") {
+TEST_CASE(
+    "the camera's magnification includes the shortening of the path by glass and resin; a telecentric one's does not") {
   Printer printer;
   printer.vial.wall_mm = 1.2;
   printer.vial.index_glass = 1.47;

@@ -15,7 +15,7 @@ TEST_CASE("tolerances are read with their units") {
   CHECK(parse_tolerances("psf=0.1mm") == Tolerances{0, 0, 0, 0, 0, 0.1});
 }
 
-TEST_CASE("tolerances are written as they are read, and what has none is named") {
+TEST_CASE("tolerances are written as they are read; a quantity without one is named") {
   const Tolerances some{0.5, 0, 0.25, 0.2, 0, 0.05};
   CHECK(tolerances_text(some) == "axis=0.5px,angle=0.25deg,radius=0.2%,psf=0.05mm");
   CHECK(parse_tolerances(tolerances_text(some)) == some);
@@ -37,7 +37,7 @@ TEST_CASE("wrong tolerances are reported") {
   }
 }
 
-TEST_CASE("a printer deviates in what has a tolerance and in nothing else") {
+TEST_CASE("a printer deviates only in quantities that have a tolerance") {
   const Printer printer;
   const DeviatingPrinter off = deviate(printer, {0.5, 0.005, 0.25, 0.2, 3, 0.05}, {1, -1, 1, -1, 1, -1});
   CHECK(off.printer.projector.axis_column == doctest::Approx(printer.projector.axis_column + 0.5));

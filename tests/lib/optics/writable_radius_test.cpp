@@ -44,7 +44,7 @@ TEST_CASE("few columns narrow it, the narrower side decides") {
   CHECK_THROWS_WITH_AS((void)writable_radius_mm(printer), doctest::Contains("beside its columns 0 ... 200"), Error);
 }
 
-TEST_CASE("a printer whose lens stands in the vial has none") {
+TEST_CASE("a printer with its lens inside the vial has no writable radius") {
   model::Printer printer;
   printer.projector.lens_distance_mm = 10;
   CHECK_THROWS_AS((void)writable_radius_mm(printer), Error);

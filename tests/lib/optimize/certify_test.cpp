@@ -182,7 +182,7 @@ TEST_CASE("no method's light is better than the bound") {
   }
 }
 
-TEST_CASE("the bound of a resolution target is near what light reaches") {
+TEST_CASE("the bound of a resolution target is near the optimised ratio") {
   const Case it{64, 90, oracle::resolution_target(64)};
   const Certificate proof = certify(it.problem, *it.light, it.light_of("apg", 40));
   CHECK(proof.least > 0.85 * proof.reached);

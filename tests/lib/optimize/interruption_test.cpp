@@ -101,7 +101,7 @@ TEST_CASE("the same where a blur joins the slices, and the passes overlap") {
   CHECK_THROWS_WITH_AS(run(slices, task), doctest::Contains("neglect the blur"), vam::Error);
 }
 
-TEST_CASE("a part that goes on beyond a pass of whole slabs has no surface where the pass ends") {
+TEST_CASE("a part that continues beyond a pass has no surface where the pass ends") {
   const std::vector<std::vector<float>> slices(
       96, vam::oracle::draw(size, [](double x, double y) { return std::hypot(x, y - 8) < 6; }));
   VolumeTask task;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "light/make_operator.hpp"
+#include "light/operators/make_operator.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/run_method.hpp"
 

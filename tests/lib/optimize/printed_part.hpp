@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "light/make_operator.hpp"
-#include "light/simulation.hpp"
+#include "light/operators/make_operator.hpp"
+#include "light/simulation/simulation.hpp"
 #include "model/circle.hpp"
 #include "optics/resample_stack.hpp"
 #include "optics/writable_radius.hpp"

@@ -51,7 +51,7 @@ TEST_CASE("error feedback rounds as frames of one turn are") {
   CHECK(grey.values == shown.values);
 }
 
-TEST_CASE("a given peak clips what is above it") {
+TEST_CASE("a given peak clips larger values") {
   const Image grey = quantised(ramp(), 8, 1.0, false);
   for (const float v : grey.values) CHECK(v <= 1.0F);
   CHECK_THROWS_AS(quantised(ramp(), 8, 0.0, false), Error);

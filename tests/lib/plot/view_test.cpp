@@ -62,7 +62,7 @@ void keep(const vam::RgbImage& image, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("sections stand upright: y up across the axis, z up along it") {
+TEST_CASE("sections are drawn upright: y up across the axis, z up along it") {
   const auto grid = vam::model::centred_grid(5, 4, 19, 0.5, -2);
   const SparseVolume volume = labelled("dose", grid);
   const auto axial = planes(volume, Plane::axial, {2, 17});

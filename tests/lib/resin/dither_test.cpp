@@ -64,7 +64,7 @@ TEST_CASE("the turns' levels add up to the step, whatever the phase") {
   CHECK(dither.intensity(15) == 1);
 }
 
-TEST_CASE("dark pixels stay dark, and beyond full intensity nothing is saved up") {
+TEST_CASE("dark pixels stay dark, and no error is carried beyond full intensity") {
   const GreyLevels levels(Response(), 1);
   const Image shown = dithered(field(64, 32), Dither(levels, 1));
   for (int a = 0; a < 32; ++a) {

@@ -73,7 +73,7 @@ TEST_CASE("the least dose in a gap is the one that a correction reaches") {
   }
 }
 
-TEST_CASE("gaps of a part: what must fuse, what is tight, what is fine") {
+TEST_CASE("gaps of a part: those that fuse, those at the limit and those that are open") {
   // Columns side by side with a gap of 1, 3, 40 slices, two gaps (1 and 3), no gap, nothing.
   const std::vector<std::vector<int>> gaps{{1}, {3}, {40}, {1, 3}, {}, {}};
   const int width = static_cast<int>(gaps.size());

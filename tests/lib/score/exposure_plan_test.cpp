@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fault_of.hpp"
-#include "light/simulation.hpp"
+#include "light/simulation/simulation.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;

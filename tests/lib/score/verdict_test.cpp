@@ -38,7 +38,7 @@ TEST_CASE("a verdict has both figures, the voxels of each, and the seconds that 
         "duration 360 s");
 }
 
-TEST_CASE("a window of width 0 prints, and the report says what the line says") {
+TEST_CASE("a window of width 0 prints, and report and message agree") {
   Verdict edge = verdict();
   edge.whole.pw = 0;
   CHECK(prints(edge));

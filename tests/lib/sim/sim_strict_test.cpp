@@ -91,7 +91,7 @@ TEST_CASE("GCS: a position is set in reference mode 0 only, and at rest; codes 8
   CHECK(say("MOV 1 30\nPOS 1 0\nERR?\n") == "93\n");
 }
 
-TEST_CASE("GCS: codes of what cannot be: 2, 7, 8, 15, 24, 25, 54") {
+TEST_CASE("GCS: error codes of impossible commands: 2, 7, 8, 15, 24, 25, 54") {
   Terminal say = gcs();
   say("SVO 1 1\nRON 1 0\nPOS 1 0\n");
   const std::map<std::string, std::string> codes{{"ABC 1 1", "2"},     {"MOV 1 1e6", "7"}, {"VEL 1 1000", "8"},
@@ -151,7 +151,7 @@ TEST_CASE("GRBL: reports wait until homing is over, and so does its ok") {
   CHECK(text.find("ok\r\n") != std::string::npos);
 }
 
-TEST_CASE("Zaber: device 0 and none are everyone, the message number comes back, WR lasts until homing") {
+TEST_CASE("Zaber: device 0 or no number addresses all devices, the message number is returned, WR lasts until homing") {
   SimGcsSettings settings;
   settings.address = 2;
   Terminal say(make_sim_zaber, settings);

@@ -23,7 +23,7 @@ Repair repaired_copy(TriangleSoup mesh) { return repair(mesh, "test"); }
 
 }  // namespace
 
-TEST_CASE("a sound mesh is left as it is") {
+TEST_CASE("a sound mesh is not changed") {
   TriangleSoup mesh = cube;
   const Repair done = repaired(mesh);
   CHECK(done.closed());

@@ -177,7 +177,7 @@ TEST_CASE("every shape: inside its bounds, not empty, converging, empty and full
   }
 }
 
-TEST_CASE("smooth blocks give each voxel what it gets by itself") {
+TEST_CASE("a voxel has the same coverage in a block as alone") {
   // 0.05 mm, so that blocks of four and of eight voxels are smooth in places, and windows that lie on the surface.
   constexpr int n = 32;
   constexpr double voxel_mm = 0.05;

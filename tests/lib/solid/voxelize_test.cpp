@@ -297,7 +297,7 @@ TEST_CASE("the same bytes for any number of threads") {
   }
 }
 
-TEST_CASE("an axis that sees a face on one side only says half, and more than a half is undecided") {
+TEST_CASE("an axis with a face on one side only counts half; more than half is undecided") {
   // A bar of 6 x 1 x 6 voxels, less than a voxel thick: both faces across x are missing, and the upper one across z.
   const model::Grid grid = cube_grid(12);
   for (const double thickness : {0.4, 0.45, 0.55, 0.8}) {

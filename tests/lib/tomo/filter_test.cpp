@@ -87,7 +87,7 @@ TEST_CASE("the exponential ramp blocks |k| < alpha and passes the rest") {
     CHECK(gain(filter, fraction) == doctest::Approx(fraction / 2).epsilon(0.01));
 }
 
-TEST_CASE("none leaves a sinogram as it is") {
+TEST_CASE("filter none does not change a sinogram") {
   const Slab before = random_slab(40, 3);
   Slab after = before;
   Filter(40, {FilterWindow::none, 1, 0, 0}).apply(after);

@@ -40,7 +40,7 @@ TEST_CASE("projections of a Gaussian in closed form: lengths in mm, and filtered
   CHECK(at_the_axis() == doctest::Approx((1 - t * t / (sigma * sigma)) / (2 * pi)).epsilon(0.005));
 }
 
-TEST_CASE("negative light is raised by what is given, then clipped") {
+TEST_CASE("negative intensities are offset, then clipped") {
   Slab slab(3, 1);
   for (int i = 0; i < 3 * lanes; ++i) slab.at(0, 0)[i] = static_cast<float>(i % 3) - 1;  // -1, 0, 1
   CHECK(lowest(slab) == -1);

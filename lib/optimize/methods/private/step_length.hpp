@@ -1,7 +1,7 @@
 // How long a step may be, from the operator alone.
 #pragma once
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/target/problem.hpp"
 
 namespace vam::optimize {

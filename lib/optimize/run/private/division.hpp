@@ -1,7 +1,7 @@
 // How a volume is divided into passes.
 #pragma once
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/run/private/pass.hpp"
 #include "optimize/run/volume.hpp"
 

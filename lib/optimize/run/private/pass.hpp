@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/target/problem.hpp"
 #include "optimize/target/slice_reader.hpp"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "light/blurred_operator.hpp"
+#include "light/operators/blurred_operator.hpp"
 
 namespace vam::optimize {
 

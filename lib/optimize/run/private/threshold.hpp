@@ -1,7 +1,7 @@
 // The scale of what has been optimised: where the printing threshold lies in its doses.
 #pragma once
 
-#include "light/operator.hpp"
+#include "light/operators/operator.hpp"
 #include "optimize/methods/method.hpp"
 
 namespace vam::optimize {

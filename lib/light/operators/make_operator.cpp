@@ -1,0 +1,68 @@
+#include "light/operators/make_operator.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "base/constants.hpp"
+#include "base/error.hpp"
+#include "base/text.hpp"
+#include "light/operators/private/attenuated_operator.hpp"
+#include "light/operators/private/parallel_operator.hpp"
+#include "light/operators/private/shadowed_operator.hpp"
+#include "light/operators/private/vial_operator.hpp"
+
+namespace vam::light {
+
+namespace {
+
+tomo::ParallelGeometry parallel_turn(const model::StackInfo& info, const model::Grid& grid) {
+  require_one_turn(info.height, info.angle_step_deg);
+  if (!(std::abs(grid.voxel_mm / info.pixel_mm - 1) < 1e-3)) {
+    throw Error{Fault::data, "sinogram: its columns are " + format_number(info.pixel_mm) + " mm wide, the voxels " +
+                                 format_number(grid.voxel_mm) + " mm; a parallel-beam dose requires equal widths"};
+  }
+  return {grid.nx,
+          grid.ny,
+          info.width,
+          info.height,
+          -grid.origin_mm[0] / grid.voxel_mm,
+          -grid.origin_mm[1] / grid.voxel_mm,
+          info.angle_start_deg * rad_per_deg,
+          info.angle_step_deg * rad_per_deg,
+          0};
+}
+
+std::unique_ptr<Operator> operator_of(const VialSetup& setup, std::span<const Slab> inserts) {
+  return std::make_unique<VialOperator>(setup, inserts);
+}
+
+std::unique_ptr<Operator> operator_of(const ParallelBeam& beam, std::span<const Slab> inserts) {
+  const double mu = beam.mu_per_px;
+  if (!inserts.empty()) {
+    if (mu > 0 && beam.correction == Correction::disc) {
+      throw Error{Fault::usage,
+                  "the disc normalisation of absorption does not apply around an insert; use the exact inverse"};
+    }
+    return std::make_unique<ShadowedOperator>(beam.turn, mu, beam.resin_radius_px, inserts);
+  }
+  if (mu == 0) return std::make_unique<ParallelOperator>(beam.turn);
+  return std::make_unique<AttenuatedOperator>(beam.turn, mu, beam.resin_radius_px, beam.correction);
+}
+
+}  // namespace
+
+Beam beam_of(const model::Printer& printer, const optics::AxisAlignment& alignment, const model::StackInfo& info,
+             const model::Grid& grid) {
+  if (info.space == model::Space::projector) return vial_setup(printer, alignment, info, grid);
+  if (info.space != model::Space::virtual_) {
+    throw Error{Fault::data, "sinogram: a camera sinogram has no dose; a projector or virtual sinogram is required"};
+  }
+  return ParallelBeam{parallel_turn(info, grid), printer.resin.absorption_per_mm * grid.voxel_mm,
+                      model::resin_radius_mm(printer.vial) / grid.voxel_mm};
+}
+
+std::unique_ptr<Operator> make_operator(const Beam& beam, std::span<const Slab> inserts) {
+  return std::visit([&](const auto& light) { return operator_of(light, inserts); }, beam);
+}
+
+}  // namespace vam::light

@@ -1,0 +1,45 @@
+// The dose of a level chief ray at a point, T / |J - u ddelta/dx_p| e^{-mu s} [RAY21 eq 8; physics §4], on circles of
+// the laboratory.
+#pragma once
+
+#include "light/rays/private/ray_table.hpp"
+#include "optics/chief_ray.hpp"
+
+namespace vam::light {
+
+/// The chief rays of a level fan at the points of a circle of radius r: everything at the angle b from the ray's own
+/// normal, where t = r cos b and u = r sin b.
+struct ChiefRayDose {
+  /// Rays at the very rim graze the glass and carry no light.
+  static constexpr double rim = 1 - 1e-9;
+
+  struct OnCircle {
+    double alpha = 0;
+    double alpha_rate = 1;  // d alpha / d b = 1 - u (d delta / d x_p) / J
+    double x_p_mm = 0;
+    double strength = 0;  // T / J e^{-mu s}, per d b
+    optics::ChiefRay ray;
+    double u_mm = 0;
+
+    /// T / |J - u ddelta/dx_p| e^{-mu s} [RAY21 eq 8], where alpha rises with b.
+    [[nodiscard]] double dose() const { return strength / alpha_rate; }
+  };
+
+  const RayTable::Scope& scope;
+  double edge_mm;
+  double reach_mm;
+
+  [[nodiscard]] OnCircle at(double r_mm, double b_rad) const;
+
+  /// e^{-mu s} at depth u of a ray that climbs as steeply.
+  [[nodiscard]] double transmitted(double offset_mm, double u_mm, double steepness) const;
+
+  /// At the rim rays crowd without bounds, and carry next to nothing: a voxel is read there over fewer columns than it
+  /// covers.
+  [[nodiscard]] double spacing(double exact) const;
+
+  /// d z_p / d z of low rays at depth u.
+  [[nodiscard]] double low_zoom(double x_p_mm, double u_mm) const;
+};
+
+}  // namespace vam::light

@@ -1,0 +1,83 @@
+#include "light/rays/private/ray_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "light/rays/private/chief_ray_dose.hpp"
+#include "optics/writable_radius.hpp"
+
+namespace vam::light {
+
+namespace {
+
+constexpr int least_directions = 1440;  // alpha in steps of at most 0.25 deg: column to 1e-3 at 400 columns radius
+
+float value(const TableNode::Even& even, float z2) { return even[0] + z2 * (even[1] + z2 * even[2]); }
+
+}  // namespace
+
+RayTable::RayTable(const Scope& scope)
+    : phases((least_directions + scope.angles - 1) / scope.angles),
+      directions(scope.angles * phases),
+      reach_mm(optics::reach_mm(scope.view)),
+      edge_mm(optics::resin_radius_mm(scope.view)),
+      scope_(scope),
+      climbs_(scope.view.rows_lens_mm.has_value()) {
+  scope_.height_mm = std::max(scope.height_mm, 1e-3);
+  const ChiefRayDose light{scope_, edge_mm, reach_mm};
+  const double inside =
+      std::min(reach_mm * (climbs_ ? 0.9995 : ChiefRayDose::rim), std::max(scope.r_max_mm, scope.pitch_mm));
+  inner.rows = std::max(2, ceil_int(inside / scope.pitch_mm) + 1);
+  inner.pitch_mm = inside / (inner.rows - 1);
+  inner_edge_mm = std::max(inside, std::min(reach_mm, scope.r_max_mm));
+  const double beyond = std::min(edge_mm, scope.r_max_mm) - reach_mm;
+  if (beyond > 0) {
+    outer.sheets = most_sheets;
+    outer.rows = ceil_int(2 * beyond / scope.pitch_mm);  // nearest row: half the pitch
+    outer.pitch_mm = beyond / outer.rows;
+    outer.first_mm = reach_mm + 0.5 * outer.pitch_mm;
+    outer.first_row = inner.rows;
+  }
+  nodes_.resize(static_cast<std::size_t>(inner.rows + outer.rows * outer.sheets) * directions);
+  parallel_for(inner.rows, [&](int row) { fill_inner_row(light, row); });
+  parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
+}
+
+HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {
+  return {static_cast<float>((z_mm / scope_.height_mm) * (z_mm / scope_.height_mm)),
+          static_cast<float>(scale.columns_per_mm),
+          static_cast<float>(scale.column_origin),
+          static_cast<float>(scale.rows_per_mm * z_mm),
+          static_cast<float>(scale.row_origin),
+          static_cast<float>(scale.rows_per_slice),
+          static_cast<float>(scale.columns_per_voxel)};
+}
+
+void RayTable::at_height(double z_mm, const RayScale& scale, RayNodes& nodes) const {
+  const int rows = inner.rows + outer.rows * outer.sheets;
+  nodes.resize(rows * static_cast<std::size_t>(directions + 1));
+  const HeightScale here = scale_at(z_mm, scale);
+  parallel_for(rows, [&](int row) {
+    const TableNode* from = nodes_.data() + std::ptrdiff_t{row} * directions;
+    RayNode* to = nodes.data() + std::ptrdiff_t{row} * (directions + 1);
+    for (int i = 0; i < directions; ++i) to[i] = node_at(from[i], here);
+    to[directions] = to[0];
+  });
+}
+
+double RayTable::drift_mm(double from_mm, double to_mm, double r_mm) const {
+  const auto square = [&](double z) { return static_cast<float>((z / scope_.height_mm) * (z / scope_.height_mm)); };
+  constexpr double counts = 0.95;  // of the reach: at the rim rays drift without bounds, and carry next to nothing
+  const int row = std::min(inner.rows - 1, ceil_int(std::min(r_mm, counts * reach_mm) / inner.pitch_mm));
+  const TableNode* nodes = nodes_.data() + std::ptrdiff_t{row} * directions;
+  float most = 0;
+  for (int i = 0; i < directions; ++i) {
+    const TableNode::Even& x_p = nodes[i].x_p;
+    most = std::max(most, std::abs(value(x_p, square(to_mm)) - value(x_p, square(from_mm))));
+  }
+  return most;
+}
+
+}  // namespace vam::light
