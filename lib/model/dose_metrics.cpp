@@ -37,16 +37,16 @@ void DoseStatistics::add_part(float dose) {
   part_histogram_.add(dose);
   min_part_ = std::min(min_part_, dose);
   max_part_ = std::max(max_part_, dose);
-  sum_ += static_cast<double>(dose);
-  sum_squares_ += static_cast<double>(dose) * static_cast<double>(dose);
-  if (threshold_ && static_cast<double>(dose) >= *threshold_) ++part_cured_;
+  sum_ += dose;
+  sum_squares_ += dose * static_cast<double>(dose);
+  if (threshold_ && dose >= *threshold_) ++part_cured_;
 }
 
 void DoseStatistics::add_void(float dose) {
   ++void_;
   void_histogram_.add(dose);
   max_void_ = std::max(max_void_, dose);
-  if (threshold_ && static_cast<double>(dose) >= *threshold_) ++void_cured_;
+  if (threshold_ && dose >= *threshold_) ++void_cured_;
 }
 
 void DoseStatistics::merge(const DoseStatistics& other, int times) {
@@ -67,22 +67,22 @@ void DoseStatistics::merge(const DoseStatistics& other, int times) {
 void DoseStatistics::fill(DoseMetrics& m, bool relative) const {
   m.part = part_;
   m.void_ = void_;
-  m.max_part = part_ > 0 ? static_cast<double>(max_part_) : 0.0;
-  m.max_dose = std::max(m.max_part, void_ > 0 ? static_cast<double>(max_void_) : 0.0);
+  m.max_part = part_ > 0 ? max_part_ : 0.0;
+  m.max_dose = std::max(m.max_part, void_ > 0 ? max_void_ : 0.0);
   m.mean_part = part_ > 0 ? sum_ / static_cast<double>(part_) : 0.0;
   const double variance = part_ > 0 ? sum_squares_ / static_cast<double>(part_) - m.mean_part * m.mean_part : 0.0;
   m.cv = m.mean_part > 0 ? std::sqrt(std::max(0.0, variance)) / m.mean_part : 0.0;
   const double unit = relative && m.max_dose > 0 ? m.max_dose : 1.0;
   m.pw = (m.min_part - m.max_void) / unit;
   m.ipdr = (m.max_part - m.min_part) / unit;
-  const bool apart = part_ == 0 || void_ == 0 || static_cast<double>(max_void_) < m.min_part;
+  const bool apart = part_ == 0 || void_ == 0 || max_void_ < m.min_part;
   m.ver = apart ? 0.0 : ratio(void_histogram_.count_from(m.min_part), part_ + void_);
 }
 
 DoseMetrics DoseStatistics::metrics(bool relative) const {
   DoseMetrics m;
-  m.min_part = part_ > 0 ? static_cast<double>(min_part_) : 0.0;
-  m.max_void = void_ > 0 ? static_cast<double>(max_void_) : 0.0;
+  m.min_part = part_ > 0 ? min_part_ : 0.0;
+  m.max_void = void_ > 0 ? max_void_ : 0.0;
   fill(m, relative);
   if (part_ == 0) return m;
   if (m.max_void < m.min_part) {  // any threshold between the two prints the part exactly
@@ -113,8 +113,8 @@ std::optional<ThresholdMetrics> DoseStatistics::at_threshold() const {
 }
 
 ThresholdMetrics DoseStatistics::at(double threshold) const {
-  const bool all_part = static_cast<double>(min_part_) >= threshold;
-  const bool no_void = static_cast<double>(max_void_) < threshold;
+  const bool all_part = min_part_ >= threshold;
+  const bool no_void = max_void_ < threshold;
   return cured(threshold, all_part ? part_ : part_histogram_.count_from(threshold),
                no_void ? 0 : void_histogram_.count_from(threshold));
 }
@@ -131,10 +131,10 @@ ThresholdMetrics DoseStatistics::cured(double threshold, std::int64_t part, std:
 
 void LightEfficiency::add(std::span<const float> values) {
   for (const float v : values) {
-    sum += static_cast<double>(v);
+    sum += v;
     max = std::max(max, static_cast<double>(v));
   }
-  count += static_cast<std::int64_t>(values.size());
+  count += values.size();
 }
 
 }  // namespace vam::model

@@ -32,8 +32,8 @@ std::vector<double> sequence(double from, double to, int count) {
 RgbImage slices_image(const PlaneFigure& plane, const resin::Response& response) {
   RgbImage image(plane.light.width, plane.light.height);
   for (std::size_t p = 0; p < plane.light.size(); ++p) {
-    const auto level = static_cast<std::uint8_t>(
-        std::lround(255 * std::clamp(response.grey(static_cast<double>(plane.light.values[p])), 0.0, 1.0)));
+    const auto level =
+        static_cast<std::uint8_t>(std::lround(255 * std::clamp(response.grey(plane.light.values[p]), 0.0, 1.0)));
     image.values[p] = {level, level, level};
   }
   return image;
@@ -75,7 +75,7 @@ void draw_column(plot::Canvas& canvas, plot::PlotFrame frame, const PlaneFigure&
       canvas.fill(frame.spot(0, n), frame.spot(frame.x.high, n + 1.0), shade);
     }
     dose.push_back(frame.spot(plane.omega[n], n + 0.5));
-    const double grey = print.response.grey(static_cast<double>(plane.light(plane.column, n)));
+    const double grey = print.response.grey(plane.light(plane.column, n));
     const double at = frame.left + 0.98 * grey * (frame.right - frame.left);
     stairs.push_back({at, frame.spot_y(n)});
     stairs.push_back({at, frame.spot_y(n + 1.0)});
@@ -127,7 +127,7 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSe
   const plot::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
   const auto frame = [&](int number, int across, const plot::Axis& up) {
     const double start = left + number * (width + left);
-    return plot::PlotFrame{start, static_cast<double>(top), start + across, static_cast<double>(top + height), x, up};
+    return plot::PlotFrame{start, top, start + across, static_cast<double>(top + height), x, up};
   };
   draw_image(canvas, frame(0, width, y), slices_image(plane, print.response),
              "slices, row " + std::to_string(plane.row));

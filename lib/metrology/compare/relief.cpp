@@ -24,10 +24,10 @@ double otsu(const std::vector<float>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   constexpr int bins = 512;
   std::array<double, bins> counts{};
-  const double width = (static_cast<double>(*high) - static_cast<double>(*low)) / bins;
-  if (!(width > 0)) return static_cast<double>(*low);
+  const double width = (*high - static_cast<double>(*low)) / bins;
+  if (!(width > 0)) return *low;
   for (const float v : values) {
-    const int bin = static_cast<int>((static_cast<double>(v) - static_cast<double>(*low)) / width);
+    const int bin = static_cast<int>((v - static_cast<double>(*low)) / width);
     ++counts[std::clamp(bin, 0, bins - 1)];
   }
   double all = 0;
@@ -50,7 +50,7 @@ double otsu(const std::vector<float>& values) {
     }
     if (between >= best * (1 - 1e-12)) last = b;
   }
-  return static_cast<double>(*low) + width * (0.5 * static_cast<double>(first + last) + 1);
+  return *low + width * (0.5 * static_cast<double>(first + last) + 1);
 }
 
 // Least squares over the pixels with a reading for which use(pixel, height) holds.
@@ -62,7 +62,7 @@ BasePlane fit_plane(const Image& heights, const Use& use) {
   const double my = 0.5 * (heights.height - 1);
   for (int j = 0; j < heights.height; ++j) {
     for (int i = 0; i < heights.width; ++i) {
-      const auto h = static_cast<double>(heights(i, j));
+      const double h = heights(i, j);
       if (!std::isfinite(h) || !use(i, j, h)) continue;
       const double x = i - mx;
       const double y = j - my;
@@ -137,7 +137,7 @@ std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
   const double limit = otsu(heights);
   std::vector<float> base;
   std::vector<float> above;
-  for (const float h : heights) (static_cast<double>(h) < limit ? base : above).push_back(h);
+  for (const float h : heights) (h < limit ? base : above).push_back(h);
   if (base.empty() || above.empty()) return std::nullopt;
   const Plateaus found{stats::median(base), stats::median(above)};
   for (float& h : base) h = std::fabs(h - static_cast<float>(found.base_mm));

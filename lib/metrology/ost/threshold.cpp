@@ -99,8 +99,7 @@ FittedCircle find_circle(const Image& image) {
     throw Error{Fault::data, "no circle: none with a radius of " + std::to_string(smallest_px) + " to " +
                                  std::to_string(largest) + " px stands out"};
   }
-  FittedCircle circle{static_cast<double>(found[0][0]), static_cast<double>(found[0][1]),
-                      static_cast<double>(found[0][2]), 0};
+  FittedCircle circle{found[0][0], found[0][1], found[0][2], 0};
   for (int round = 0; round < 3; ++round) {
     std::vector<RimPoint> edges;
     const double reach = std::max(3.0, (round == 0 ? 0.3 : 0.15) * circle.radius);
