@@ -130,7 +130,7 @@ void declare(cli::App& app, Options& o) {
       .was("--latency");
   app.option("--max-lost", "N", o.max_lost, cli::non_negative,
              "Maximum number of dropped and incomplete frames; above it the capture ends with status 75.");
-  app.group("Output and machine");
+  app.group("Output and performance");
   app.flag("--live", o.live, "Send every frame immediately as a stack of its own.").form();
   app.option("--latest", "FILE", o.latest, "Also write the newest frame to FILE (PNG), at most once a second.")
       .writes();

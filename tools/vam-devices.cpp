@@ -1,4 +1,4 @@
-// vam-devices: the devices of this machine, and what stands in their way.
+// vam-devices: the devices of this machine, and why some cannot be used.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -166,7 +166,7 @@ void declare(cli::App& app, Options& o) {
   declare_print(app, o);
   declare_live(app, o);
   cli::add_printer(app, o.printer);
-  app.group("Output and machine");
+  app.group("Output and performance");
   cli::add_report(app, o.report);
   cli::add_threads(app);
 }

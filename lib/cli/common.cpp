@@ -21,7 +21,7 @@ App& add_printer(App& app, PrinterOptions& options) {
 }
 
 App& add_report(App& app, std::string& report) {
-  return app.option("--report", "FILE", report, "Write a report in JSON; its keys carry the units.")
+  return app.option("--report", "FILE", report, "Write a report in JSON; units are part of the key names.")
       .not_in_job()
       .writes();
 }

@@ -135,7 +135,7 @@ std::string help_text(const Declaration& tool) {
     }
     text += "\n";
   }
-  text += "Every tool:\n  --memory GIB\n" + wrap(memory_help, width, indent);
+  text += "Common options:\n  --memory GIB\n" + wrap(memory_help, width, indent);
   text += "  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
   return text;
 }

@@ -49,6 +49,13 @@ std::string guarded(const std::string& lines) {
   return out;
 }
 
+/// Words that end with a full stop inside of a sentence.
+bool abbreviated(const std::string& word) {
+  static const std::set<std::string> known = {"al.",  "Adv.", "Appl.", "Comput.", "Mater.",
+                                              "Opt.", "e.g.", "i.e.",  "vs."};
+  return known.count(word) > 0;
+}
+
 std::string paragraph(const std::string& text) {
   std::string out;
   std::string sentence;
@@ -59,7 +66,8 @@ std::string paragraph(const std::string& text) {
     const char last = words[i].back();
     const bool closing = (last == ')' || last == ']' || last == '"') && words[i].size() > 1;
     const char mark = closing ? words[i][words[i].size() - 2] : last;
-    if (mark == '.' || mark == '?' || mark == '!' || i + 1 == words.size()) {
+    const bool ends = (mark == '.' && !abbreviated(words[i])) || mark == '?' || mark == '!';
+    if (ends || i + 1 == words.size()) {
       out += guarded(wrap(escape(sentence), width, 0));
       sentence.clear();
     }
@@ -239,7 +247,7 @@ std::string head(const Manual& manual) {
 }
 
 std::string every_tool() {
-  return ".Ss Every tool\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
+  return ".Ss Common options\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
          ".It Fl h , Fl -help\nPrint a summary of the options.\n"
          ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
          ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";

@@ -33,7 +33,7 @@ Condition parse_clause(const std::string& clause, const std::vector<std::string>
   condition.relation = clause.substr(at, two ? 2 : 1);
   if (std::find(known.begin(), known.end(), condition.name) == known.end()) {
     throw Error{Fault::usage,
-                "'" + clause + "': no figure is called '" + condition.name + "'; there are " + join(known, ", ")};
+                "'" + clause + "': unknown figure '" + condition.name + "'; expected one of " + join(known, ", ")};
   }
   std::string bound = trimmed(clause.substr(at + condition.relation.size()));
   const bool percent = std::find(in_percent.begin(), in_percent.end(), condition.name) != in_percent.end();

@@ -48,8 +48,8 @@ void check(const View& view) {
   double outside = radius;
   for (const Shell& shell : view.shells) {
     if (!(shell.radius_mm > 0 && shell.radius_mm <= outside)) {
-      throw Error{Fault::data, "vial: a shell of " + mm(shell.radius_mm) + " does not fit into one of " + mm(outside) +
-                                   "; check vial.radius_mm and vial.wall_mm"};
+      throw Error{Fault::data, "vial: an inner radius of " + mm(shell.radius_mm) + " exceeds the outer radius of " +
+                                   mm(outside) + "; check vial.radius_mm and vial.wall_mm"};
     }
     outside = shell.radius_mm;
   }
@@ -57,7 +57,7 @@ void check(const View& view) {
   if (!lens_mm) return;
   if (!(*lens_mm > radius)) {
     throw Error{Fault::data, "lens: " + mm(*lens_mm) + " from the axis is inside the vial of " + mm(radius) +
-                                 "; move it or make it telecentric"};
+                                 "; increase projector.throw_ratio or set projector.telecentric"};
   }
   if (view.bath_index == 1.0) return;
   if (!(view.window_mm >= radius && view.window_mm < *lens_mm)) {

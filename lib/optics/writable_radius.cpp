@@ -28,7 +28,7 @@ double writable_radius_mm(const model::Printer& printer) {
   const int last = projector.columns - 1;
   if (projector.axis_column < 0 || projector.axis_column > last) {
     throw Error{Fault::data, "projector: the rotation axis, at column " + format_number(projector.axis_column) +
-                                 ", is beside its columns 0 ... " + std::to_string(last) +
+                                 ", is outside its columns 0 to " + std::to_string(last) +
                                  "; check projector.axis_column and projector.columns"};
   }
   const View view = projector_view(printer);

@@ -1,4 +1,4 @@
-// What a dose is worth, in one line for people: will it print, with what margin, how long, and from how many voxels
+// The verdict on a dose in one line: will it print, with what margin, how long, and from how many voxels
 // these are computed.
 #pragma once
 

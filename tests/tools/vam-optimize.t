@@ -305,7 +305,7 @@ fails 65 'part and insert share' vam-optimize overlap.vdb -o out.exr
 
 fails 64 'magic. is not one of auto, fbp' vam-optimize --method magic part.vdb -o out.exr
 fails 64 'void dose, 0.9, is not below the least part dose, 0.8' vam-optimize --dose-low 0.9 --dose-high 0.8 part.vdb -o out.exr
-fails 64 "no figure is called 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
+fails 64 "unknown figure 'vre'" vam-optimize --until 'vre<=0' part.vdb -o out.exr
 fails 64 '--power' vam-optimize --method pm --power 0.5 part.vdb -o out.exr
 fails 64 '--dither: 2 turns need frames that differ' vam-optimize --bits 4 --dither 2 part.vdb -o out.exr
 fails 64 '--full-scale: requires --bits' vam-optimize --full-scale 1 part.vdb -o out.exr

@@ -34,7 +34,7 @@ is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
 quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
-fails 64 "no figure is called 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
+fails 64 "unknown figure 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
 fails 64 'cured_wrong: the critical dose is not known; give --critical-dose' \
   vam-score --grid target part.vdb --require 'ver<=1,cured_wrong<=1'
 quiet "a condition on a known figure is evaluated" vam-score --grid target part.vdb --critical-dose 0.5 --require 'cured_wrong<=0'

@@ -151,7 +151,7 @@ void declare_duration(cli::App& app, Options& options) {
 }
 
 void declare_proof(cli::App& app, Options& options) {
-  app.group("Proof");
+  app.group("Optimality bound");
   app.option("--certify", "FILE", options.certify,
              "After the optimisation, compute a lower bound on the ratio of the largest void dose to the least part "
              "dose that holds for any projections (certificate in the report), and write the weights that prove it as "

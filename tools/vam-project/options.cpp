@@ -119,7 +119,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--freeze", "FILE", options.freeze,
              "Check the sinogram against the printer, write the settings in force to FILE, including calibration "
              "records and with absolute paths, and exit; used by vam-print.");
-  app.group("Output and machine");
+  app.group("Output and performance");
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_report(app, options.report);
   cli::add_threads(app);

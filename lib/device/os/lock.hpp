@@ -1,4 +1,4 @@
-// One user per device. The lock dies with its holder (flock), whatever that dies of [devices guarantee 4].
+// One user per device. The lock is released when its holder ends (flock), however it ends [devices guarantee 4].
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Stages and light engines on serial ports and on USB, without a word to any of them.
+// Stages and light engines on serial ports and on USB, without sending commands.
 #pragma once
 
 #include <string>

@@ -49,8 +49,7 @@ const MeshFormat& format_of_output(const std::string& path) {
   for (const MeshFormat& format : mesh_formats()) {
     if (format.write != nullptr && (path == "-" || path.ends_with(format.extension))) return format;
   }
-  throw Error{Fault::usage,
-              path + ": no mesh format that is written has this ending; use " + join(written_mesh_endings(), " or ")};
+  throw Error{Fault::usage, path + ": unsupported output format; use " + join(written_mesh_endings(), " or ")};
 }
 
 void check_points(const PolygonSoup& soup) {

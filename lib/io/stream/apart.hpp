@@ -1,4 +1,5 @@
-// Foreign bytes are parsed apart: in a process that can compute and send what it has read, and nothing else.
+// Foreign bytes are parsed in a sandboxed child: a process that can compute and send what it has read, and nothing
+// else.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Dense slices in and out of an OpenVDB tree, leaf by leaf (8 x 8 x 8 voxels). A leaf is built aside, in parallel, and
-// hung into the tree by one thread; going through accessors voxel by voxel takes about 20 times as long.
+// inserted into the tree by one thread; going through accessors voxel by voxel takes about 20 times as long.
 #include "io/vdb/vdb.hpp"
 
 #include <openvdb/tools/Prune.h>

@@ -1,4 +1,4 @@
-// Volumes out of the records of the child that reads archives: leaves and tiles are hung into trees.
+// Volumes out of the records of the child that reads archives: leaves and tiles are inserted into trees.
 #include <algorithm>
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The print as a body: what hangs together at the gelation threshold, and what is noise, bubbles or dirt beside it.
+// The print as a body: connected components at the gelation threshold, and which are noise, bubbles or dirt.
 #pragma once
 
 #include <array>

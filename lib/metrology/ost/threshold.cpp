@@ -96,8 +96,8 @@ FittedCircle find_circle(const Image& image) {
                      smallest_px, largest);
   }
   if (found.empty()) {
-    throw Error{Fault::data, "no circle: none with a radius of " + std::to_string(smallest_px) + " to " +
-                                 std::to_string(largest) + " px stands out"};
+    throw Error{Fault::data, "no circle with a radius of " + std::to_string(smallest_px) + " to " +
+                                 std::to_string(largest) + " px detected"};
   }
   FittedCircle circle{found[0][0], found[0][1], found[0][2], 0};
   for (int round = 0; round < 3; ++round) {

@@ -1,4 +1,4 @@
-// Filtered back-projection with what light cannot do taken out: the start of [CAL17], and the yardstick.
+// Filtered back-projection made non-negative: the start of [CAL17], and the baseline of comparisons.
 #include <algorithm>
 
 #include "optimize/methods/method.hpp"

@@ -1,4 +1,4 @@
-// Doses against what they must become, slice by slice.
+// Figures of merit of doses, slice by slice.
 #pragma once
 
 #include <span>

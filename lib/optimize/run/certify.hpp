@@ -1,4 +1,4 @@
-// How well any light could print the part: a proof by weights on its voxels.
+// Lower bound on the ratio of void to part dose of any light: a proof by weights on the voxels.
 #pragma once
 
 #include <span>

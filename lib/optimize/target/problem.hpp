@@ -1,4 +1,4 @@
-// What the voxels of a pass must become.
+// Target constraints of the voxels of a pass.
 #pragma once
 
 #include <cstddef>

@@ -31,7 +31,7 @@ void check(const Process& p) {
   if (p.slice_um > 10 * p.absorbance_height_um) {
     throw Error{Fault::data, "slice height: " + format_number(p.slice_um) +
                                  " um is more than ten absorbance heights (" + format_number(p.absorbance_height_um) +
-                                 " um), no light crosses a slice; give thinner slices or check the units"};
+                                 " um), no light crosses a slice; reduce the slice height or check the units"};
   }
 }
 

@@ -123,7 +123,7 @@ class SimTic final : public device::UsbLink {
   }
 
   void slow_to(std::int32_t speed) {
-    if (speed != 0) throw Error{Fault::protocol, name_ + ": turns to positions only"};
+    if (speed != 0) throw Error{Fault::protocol, name_ + ": velocity commands are not supported"};
     to_position_ = false;
     motor_.halt();
     note("slowing");

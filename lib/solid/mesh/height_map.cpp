@@ -51,7 +51,7 @@ HeightMap height_map(const model::TriangleSoup& mesh, double pixel_mm) {
   const double height = std::ceil((box.high[1] - box.low[1]) / pixel_mm) + 3;
   if (!(width * height <= 1e8)) {
     throw Error{Fault::data, "height map: " + format_number(width) + " x " + format_number(height) + " pixels of " +
-                                 format_number(pixel_mm) + " mm are too many; take larger ones"};
+                                 format_number(pixel_mm) + " mm exceed the limit; use a larger pixel"};
   }
   HeightMap map{Image(static_cast<int>(width), static_cast<int>(height), std::numeric_limits<float>::quiet_NaN()),
                 pixel_mm, 0.5 * (box.low[0] + box.high[0] - (width - 1) * pixel_mm),

@@ -1,4 +1,4 @@
-// What is odd about the size of a part that has been sliced, in words for its user.
+// Plausibility warnings on the size of a sliced part.
 #pragma once
 
 #include <string>

@@ -47,7 +47,7 @@ TEST_CASE("Old samples are forgotten and too few are not a line") {
   CHECK(fit.at(8).angle_deg == doctest::Approx(7));
 }
 
-TEST_CASE("Lines go out and come back") {
+TEST_CASE("Lines of samples are written and read back unchanged") {
   const AngleSample sample{123.4567891, -12.34567, 0.00123};
   const AngleSample back = parse_angle_line(to_line(sample), 1);
   CHECK(back.t_s == sample.t_s);

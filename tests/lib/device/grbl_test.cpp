@@ -42,7 +42,7 @@ TEST_CASE("GRBL: refuses motion before homing") {
   print();
 }
 
-TEST_CASE("GRBL: each user homes, whether or not the board greets him; only homing unlocks it") {
+TEST_CASE("GRBL: each process homes, with or without a start-up message; only homing unlocks the board") {
   for (const bool resets : {true, false}) {
     CAPTURE(resets);
     SimGcsSettings sim;

@@ -77,7 +77,7 @@ TEST_CASE("the crash of a child is a one-line error, and this process continues"
 #endif
 }
 
-TEST_CASE("a child's own error, and the parent's, keep their words") {
+TEST_CASE("error messages of child and parent pass unchanged") {
   const auto whose = [](Fault fault) {
     return error_of(
         [&] {

@@ -150,7 +150,7 @@ TEST_CASE("the bound is below the exact optimum of the linear program, and near 
   CHECK(checked(it, proof) == doctest::Approx(proof.least).epsilon(1e-4));
 }
 
-TEST_CASE("part that rays light beside all void bears no weight, and the rest is still proved") {
+TEST_CASE("part voxels on rays that meet no void have weight 0, and the bound on the rest holds") {
   const Case it{32, 24, ringed_target()};
   const Certificate proof = certify(it.problem, *it.light, it.light_of("apg", 20));
   CHECK(proof.least > 0.1);

@@ -74,7 +74,7 @@ TEST_CASE("more slices than a pass come out in order, each as if alone") {
   CHECK(worst < 1e-5F * largest);
 }
 
-TEST_CASE("a slice that the part only grazes is printed from half coverage on") {
+TEST_CASE("a slice barely touched by the part is printed from half coverage on") {
   auto cut = [](float coverage) {
     auto slice = vam::oracle::wheel(size);
     for (float& v : slice) v *= coverage;

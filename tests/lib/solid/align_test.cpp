@@ -159,7 +159,7 @@ TEST_CASE("shrinkage is measured with the scale") {
   CHECK(solid::align(print, reference, surface, options).transform.scale == doctest::Approx(1 / 0.97).epsilon(1e-4));
 }
 
-TEST_CASE("debris pulls with constant force from 2.5 times the deviation on [HUB64]") {
+TEST_CASE("the influence of debris is bounded from 2.5 times the deviation on [HUB64]") {
   // A cube of 10 mm and a plate of 2.5 x 2.5 mm that floats 2 mm before its face x = 5: the share p of the points that
   // is the plate's pulls the cube by t along x, where both forces are in balance. Each force is the area times the
   // distance times the weight min(1, bound / distance).

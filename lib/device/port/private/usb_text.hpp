@@ -1,4 +1,4 @@
-// What a USB device says of itself.
+// Descriptor strings of a USB device.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Private to the array files: what a NumPy file says of itself (numpy.lib.format, versions 1.0 to 3.0).
+// Private to the array files: the header of a NumPy file (numpy.lib.format, versions 1.0 to 3.0).
 #pragma once
 
 #include <array>

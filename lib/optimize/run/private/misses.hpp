@@ -1,4 +1,4 @@
-// Where a finished print goes wrong: outside the part's box, and slice by slice.
+// Location of wrong voxels in a finished print: outside the part's box, and slice by slice.
 #pragma once
 
 #include <cstdint>
