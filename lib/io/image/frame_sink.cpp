@@ -71,7 +71,7 @@ class VideoSink : public FrameSink {
                        join(options.info.history, "\n")}) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
-    for (const auto& frame : frames) writer_.write(frame.levels);
+    writer_.write(count_of(frames), [&](int i) -> const GreyImage& { return frames[i].levels; });
   }
   void commit() override { writer_.commit(); }
 
