@@ -55,11 +55,12 @@ class GreyLevels {
   [[nodiscard]] float intensity(int level) const { return intensity_[level]; }
 
  private:
-  int bits_;
-  [[nodiscard]] std::size_t not_below(float intensity) const;
+  [[nodiscard]] int nearest(float intensity) const;
 
+  int bits_;
   std::vector<float> intensity_;  // rising with the level
-  std::vector<int> first_;        // of each of equal steps of intensity: the first level that is not below it
+  std::vector<float> least_;      // wanted intensity from which on a higher level than this one is the nearest
+  std::vector<int> first_;        // of each of equal steps of intensity: the nearest level to its begin
 };
 
 /// Intensity of an image, summed, and the pixels that were clipped.
