@@ -188,12 +188,18 @@ void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& imag
   image.width = intensity.width;
   image.height = intensity.height;
   image.bits = levels.bits();
-  image.values.assign(intensity.size(), static_cast<std::uint16_t>(levels.level(0)));
-  for (int y = 0; y < image.height; ++y) {
-    if (is_dark(intensity, y)) continue;
-    const float* from = intensity.row(y);
-    std::uint16_t* to = image.values.data() + image.index(0, y);
-    for (int x = 0; x < image.width; ++x) {
+  image.values.resize(intensity.size());
+  put_levels(intensity, 0, 0, levels, image);
+}
+
+void put_levels(const Image& part, int left, int top, const GreyLevels& levels, GreyImage& image) {
+  const auto dark = static_cast<std::uint16_t>(levels.level(0));
+  for (int y = 0; y < part.height; ++y) {
+    std::uint16_t* to = image.values.data() + image.index(left, top + y);
+    std::fill_n(to, part.width, dark);
+    if (is_dark(part, y)) continue;
+    const float* from = part.row(y);
+    for (int x = 0; x < part.width; ++x) {
       if (from[x] != 0) to[x] = static_cast<std::uint16_t>(levels.level(from[x]));
     }
   }

@@ -82,6 +82,8 @@ LightTally limit_to_full(Image& image, float scale);
 /// Every pixel's nearest level, in the memory of a former image. Intensities are fractions of full; beyond what the
 /// projector can do they are clamped.
 void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& image);
+/// Those of a part of the image; the rest stays as it is.
+void put_levels(const Image& part, int left, int top, const GreyLevels& levels, GreyImage& image);
 
 /// What the projector gives for these levels, as fractions of full intensity.
 [[nodiscard]] Image to_intensity(const GreyImage& image, const GreyLevels& levels);

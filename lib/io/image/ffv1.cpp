@@ -12,14 +12,14 @@ constexpr std::size_t tail_bytes = 3 + 1 + 4;  // of a slice: its size, its stat
 
 }  // namespace
 
-Ffv1Frames::Ffv1Frames(int width, int height, Checksum checksum) : width_(width), checksum_(checksum) {
+Ffv1Frames::Ffv1Frames(int width, int height, Checksum checksum) : checksum_(checksum) {
   for (int y = 0; y < slices; ++y) {
     for (int x = 0; x < slices; ++x) {
       Part& part = parts_.emplace_back();
-      part.x = width * x / slices;
-      part.y = height * y / slices;
-      part.width = width * (x + 1) / slices - part.x;
-      part.height = height * (y + 1) / slices - part.y;
+      part.place.left = width * x / slices;
+      part.place.top = height * y / slices;
+      part.place.width = width * (x + 1) / slices - part.place.left;
+      part.place.height = height * (y + 1) / slices - part.place.top;
     }
   }
 }
@@ -41,33 +41,25 @@ std::optional<Ffv1Frames> Ffv1Frames::like(const Bytes& packet, int width, int h
   if (width < 2 * slices || height < 2 * slices) return std::nullopt;
   Ffv1Frames made(width, height, checksum);
   const GreyImage image = trial(width, height);
-  const Bytes pixels(image.values.begin(), image.values.end());
   std::size_t end = packet.size();
   for (auto part = made.parts_.rbegin(); part != made.parts_.rend(); ++part) {
     if (end < tail_bytes) return std::nullopt;
     const std::uint8_t* tail = packet.data() + end - tail_bytes;
     const std::size_t size = std::size_t{tail[0]} << 16 | std::size_t{tail[1]} << 8 | tail[2];
-    const std::size_t codes = made.codes(*part, pixels.data()).size();
-    if (size < codes || size + tail_bytes > end) return std::nullopt;
+    Bytes codes;
+    append_ffv1_codes(image, part->place, codes);
+    if (size < codes.size() || size + tail_bytes > end) return std::nullopt;
     end -= size + tail_bytes;
-    part->head.assign(packet.data() + end, packet.data() + end + (size - codes));
+    part->head.assign(packet.data() + end, packet.data() + end + (size - codes.size()));
   }
-  if (end != 0 || made.packet(pixels.data()) != packet) return std::nullopt;
+  if (end != 0 || made.packet(image) != packet) return std::nullopt;
   return made;
 }
 
-Bytes Ffv1Frames::codes(const Part& part, const std::uint8_t* pixels) const {
-  Bytes codes;
-  append_ffv1_codes(pixels + static_cast<std::ptrdiff_t>(part.y) * width_ + part.x, width_, part.width, part.height,
-                    codes);
-  return codes;
-}
-
-void Ffv1Frames::append(const Part& part, const std::uint8_t* pixels, Bytes& packet) const {
+void Ffv1Frames::append(const Part& part, const GreyImage& image, Bytes& packet) const {
   const std::size_t begin = packet.size();
   packet.insert(packet.end(), part.head.begin(), part.head.end());
-  append_ffv1_codes(pixels + static_cast<std::ptrdiff_t>(part.y) * width_ + part.x, width_, part.width, part.height,
-                    packet);
+  append_ffv1_codes(image, part.place, packet);
   const std::size_t size = packet.size() - begin;
   for (const int shift : {16, 8, 0}) packet.push_back(static_cast<std::uint8_t>(size >> shift));
   packet.push_back(0);
@@ -75,9 +67,9 @@ void Ffv1Frames::append(const Part& part, const std::uint8_t* pixels, Bytes& pac
   for (const int shift : {0, 8, 16, 24}) packet.push_back(static_cast<std::uint8_t>(sum >> shift));
 }
 
-Bytes Ffv1Frames::packet(const std::uint8_t* pixels) const {
+Bytes Ffv1Frames::packet(const GreyImage& image) const {
   Bytes packet;
-  for (const Part& part : parts_) append(part, pixels, packet);
+  for (const Part& part : parts_) append(part, image, packet);
   return packet;
 }
 

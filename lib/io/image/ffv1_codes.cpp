@@ -186,17 +186,20 @@ class RowCoder {
 
 }  // namespace
 
-void append_ffv1_codes(const std::uint8_t* pixels, std::ptrdiff_t stride, int width, int height, Bytes& codes) {
+void append_ffv1_codes(const GreyImage& image, const PixelRect& slice, Bytes& codes) {
   RowCoder coder(codes);
-  const std::size_t padded = static_cast<std::size_t>(width) + 2;
+  const int gain = 255 / image.full();
+  const std::size_t padded = static_cast<std::size_t>(slice.width) + 2;
   Bytes rows(2 * padded, 0);
   std::uint8_t* above = rows.data() + 1;
   std::uint8_t* here = above + padded;
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0; y < slice.height; ++y) {
     here[-1] = above[0];
-    above[width] = above[width - 1];
-    std::memcpy(here, pixels + y * stride, static_cast<std::size_t>(width));
-    coder.row(above, here, width);
+    above[slice.width] = above[slice.width - 1];
+    const std::uint16_t* levels = image.values.data() + image.index(slice.left, slice.top + y);
+    std::transform(levels, levels + slice.width, here,
+                   [gain](std::uint16_t level) { return static_cast<std::uint8_t>(level * gain); });
+    coder.row(above, here, slice.width);
     std::swap(above, here);
   }
   coder.flush();

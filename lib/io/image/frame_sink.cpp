@@ -57,6 +57,7 @@ class StackSink : public FrameSink {
       writer_.write(frame.intensity, info);
     }
   }
+  [[nodiscard]] bool takes_intensity() const override { return true; }
   void commit() override { writer_.commit(); }
 
  private:

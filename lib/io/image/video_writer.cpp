@@ -187,12 +187,6 @@ struct VideoWriter::State {
     av::api().av_packet_unref(packet.get());
   }
 
-  [[nodiscard]] Bytes packed(const GreyImage& image) const {
-    Bytes pixels(image.values.size());
-    fill_row(image.values.data(), static_cast<int>(pixels.size()), pixels.data());
-    return alone->packet(pixels.data());
-  }
-
   void put(Bytes& bytes) {
     packet->data = bytes.data();
     packet->size = static_cast<int>(bytes.size());
@@ -273,7 +267,7 @@ void VideoWriter::write(int count, const std::function<const GreyImage&(int)>& i
   for (int i = 0; i < count; ++i) s.require_format(image(i));
   if (s.alone) {
     std::vector<Bytes> packets(static_cast<std::size_t>(count));
-    parallel_for(count, [&](int i) { packets[static_cast<std::size_t>(i)] = s.packed(image(i)); });
+    parallel_for(count, [&](int i) { packets[static_cast<std::size_t>(i)] = s.alone->packet(image(i)); });
     for (Bytes& packet : packets) s.put(packet);
     return;
   }

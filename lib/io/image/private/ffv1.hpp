@@ -6,15 +6,16 @@
 #include <optional>
 #include <vector>
 
+#include "base/pixel_rect.hpp"
 #include "base/pixels.hpp"
 
 namespace vam::io {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Appends the codes of a slice's pixels, width x height of them in rows that are `stride` apart. What is dark around
-/// the light costs an eighth of a look at each pixel: libavcodec spent 5 ns on it.
-void append_ffv1_codes(const std::uint8_t* pixels, std::ptrdiff_t stride, int width, int height, Bytes& codes);
+/// Appends the codes of a slice of an image of up to 8 bits, whose full level becomes 255. What is dark around the
+/// light costs an eighth of a look at each pixel: libavcodec spends 5 ns on it.
+void append_ffv1_codes(const GreyImage& image, const PixelRect& slice, Bytes& codes);
 
 /// Makes the packets that libavcodec's encoder makes, each frame alone, so that frames can be encoded side by side.
 /// Version 3, 2 x 2 slices with checksums, every frame a key frame.
@@ -30,19 +31,17 @@ class Ffv1Frames {
   /// Nothing if the packet is not what this would make, as another release of the library may have it.
   [[nodiscard]] static std::optional<Ffv1Frames> like(const Bytes& packet, int width, int height, Checksum checksum);
 
-  /// `pixels` are width x height without gaps. Many threads may ask at once.
-  [[nodiscard]] Bytes packet(const std::uint8_t* pixels) const;
+  /// Many threads may ask at once.
+  [[nodiscard]] Bytes packet(const GreyImage& image) const;
 
  private:
   struct Part {
-    int x = 0, y = 0, width = 0, height = 0;
+    PixelRect place;
     Bytes head;
   };
   Ffv1Frames(int width, int height, Checksum checksum);
-  [[nodiscard]] Bytes codes(const Part& part, const std::uint8_t* pixels) const;
-  void append(const Part& part, const std::uint8_t* pixels, Bytes& packet) const;
+  void append(const Part& part, const GreyImage& image, Bytes& packet) const;
 
-  int width_;
   Checksum checksum_;
   std::vector<Part> parts_;
 };
