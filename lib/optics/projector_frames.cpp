@@ -161,24 +161,47 @@ void FrameComposer::check() const {
   check_rows(dark);
 }
 
-void FrameComposer::add_row(const Slice& slice, int angle, float weight, float* row) const {
-  if (slice.width == 0) return;
+void FrameComposer::add_row(const Slice& slice, int angle, float weight, const PixelRect& part, float* row) const {
+  const int begin = std::max(slice.first, part.left);
+  const int end = std::min(slice.first + slice.width, part.left + part.width);
   const int wrapped = (angle % info_.height + info_.height) % info_.height;
   const int a = repeats_ ? wrapped : std::clamp(angle, 0, info_.height - 1);
   const float* from = slice.values.data() + product(a, slice.width);
-  float* to = row + slice.first;
-  for (int x = 0; x < slice.width; ++x) to[x] += weight * from[x];
+  for (int x = begin; x < end; ++x) row[x - part.left] += weight * from[x - slice.first];
+}
+
+PixelRect FrameComposer::lit() const {
+  const double reach = slice_mm() / place_.pixel_mm + 2;  // of a slice, in rows: to the next one, and half a row
+  int left = place_.columns;
+  int right = 0;
+  double top = place_.rows;
+  double bottom = -1;
+  for (const Slice& slice : slices_) {
+    if (slice.width == 0) continue;
+    left = std::min(left, slice.first);
+    right = std::max(right, slice.first + slice.width);
+    top = std::min(top, row_of(slice.z_mm) - reach);
+    bottom = std::max(bottom, row_of(slice.z_mm) + reach);
+  }
+  if (right <= left) return {0, 0, 1, 1};
+  const int first = std::clamp(floor_int(top), 0, place_.rows - 1);
+  const int last = std::clamp(floor_int(bottom) + 1, first, place_.rows - 1);
+  return {left, first, right - left, last + 1 - first};
 }
 
 Image FrameComposer::frame(double angle_deg, double span_deg, Image former) const {
+  return frame(angle_deg, span_deg, {0, 0, place_.columns, place_.rows}, std::move(former));
+}
+
+Image FrameComposer::frame(double angle_deg, double span_deg, const PixelRect& part, Image former) const {
   Image image = std::move(former);
-  image.width = place_.columns;
-  image.height = place_.rows;
-  image.values.assign(product(place_.columns, place_.rows), 0.0F);
+  image.width = part.width;
+  image.height = part.height;
+  image.values.assign(product(part.width, part.height), 0.0F);
   const Taps angles = sample_taps((angle_deg - info_.angle_start_deg) / info_.angle_step_deg,
                                   span_deg / std::abs(info_.angle_step_deg));
   const int count = count_of(slices_);
-  for (int r = 0; r < place_.rows; ++r) {
+  for (int r = part.top; r < part.top + part.height; ++r) {
     const double z_mm = (place_.axis_row - r) * place_.pixel_mm;
     const double position = (z_mm - slices_.front().z_mm) / slice_mm();
     if (position < -0.5 || position > count - 0.5)
@@ -187,7 +210,8 @@ Image FrameComposer::frame(double angle_deg, double span_deg, Image former) cons
     for (std::size_t s = 0; s < taps.weights.size(); ++s) {
       const Slice& slice = slices_[std::clamp(taps.first + static_cast<int>(s), 0, count - 1)];
       for (std::size_t a = 0; a < angles.weights.size(); ++a) {
-        add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], image.row(r));
+        add_row(slice, angles.first + static_cast<int>(a), taps.weights[s] * angles.weights[a], part,
+                image.row(r - part.top));
       }
     }
   }
@@ -218,6 +242,13 @@ void orient(Image& image, const std::string& orientation) {
       std::swap_ranges(image.row(y), image.row(y) + width, image.row(image.height - 1 - y));
     }
   }
+}
+
+PixelRect oriented(const PixelRect& part, int columns, int rows, const std::string& orientation) {
+  PixelRect turned = part;
+  if (orientation == "flip-columns" || orientation == "rotate-180") turned.left = columns - part.left - part.width;
+  if (orientation == "flip-rows" || orientation == "rotate-180") turned.top = rows - part.top - part.height;
+  return turned;
 }
 
 model::StackInfo frames_info(const model::StackInfo& sinogram, const FramePlace& place, const FrameSchedule& schedule,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/image.hpp"
+#include "base/pixel_rect.hpp"
 #include "model/printer.hpp"
 #include "model/stack.hpp"
 
@@ -60,6 +61,11 @@ class FrameComposer {
   /// slices to rows. The stack is repeated turn by turn, but for poses that do not return to the first one: beyond the
   /// ends the last frame holds. The image is made in the memory of a former one. Many threads may ask at once.
   [[nodiscard]] Image frame(double angle_deg, double span_deg, Image former = {}) const;
+  /// The same of a part of the frame only.
+  [[nodiscard]] Image frame(double angle_deg, double span_deg, const PixelRect& part, Image former) const;
+
+  /// All pixels that are lit in some frame are in it, and at least one.
+  [[nodiscard]] PixelRect lit() const;
 
  private:
   struct Slice {
@@ -71,7 +77,7 @@ class FrameComposer {
   };
   void check_columns(float dark) const;
   void check_rows(float dark) const;
-  void add_row(const Slice& slice, int angle, float weight, float* row) const;
+  void add_row(const Slice& slice, int angle, float weight, const PixelRect& part, float* row) const;
   [[nodiscard]] double row_of(double z_mm) const { return place_.axis_row - z_mm / place_.pixel_mm; }
 
   [[nodiscard]] double slice_mm() const { return slices_.size() > 1 ? info_.row_mm : place_.pixel_mm; }
@@ -95,6 +101,9 @@ class FrameComposer {
 /// Flips columns (left-right), rows (up-down) or both, for a projector that is mounted that way: "normal",
 /// "flip-columns", "flip-rows" or "rotate-180".
 void orient(Image& image, const std::string& orientation);
+
+/// Where a part of an image of columns x rows is thereafter.
+[[nodiscard]] PixelRect oriented(const PixelRect& part, int columns, int rows, const std::string& orientation);
 
 /// The stack that frames make: kind, space, size, pitches, angles, poses; row_mm is negative while row 0 is the
 /// uppermost.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
@@ -117,28 +118,44 @@ GreyLevels::GreyLevels(const Response& response, int bits) : bits_(bits) {
   for (int level = 0; level <= last; ++level) {
     intensity_.push_back(static_cast<float>(response.intensity(static_cast<double>(level) / last)));
   }
+  // The nearest level rises with the intensity: so the least float of each is found by halving what floats there are.
+  float from = 0;
+  for (int level = 0; level < nearest(intensity_.back()); ++level) {
+    auto low = std::bit_cast<std::uint32_t>(from);
+    auto high = std::bit_cast<std::uint32_t>(intensity_.back());
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if (nearest(std::bit_cast<float>(middle)) > level) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    from = std::bit_cast<float>(low);
+    least_.push_back(from);
+  }
+  least_.resize(intensity_.size(), std::numeric_limits<float>::infinity());
   const int steps = 4 * count();
   for (int step = 0; step <= steps; ++step) {  // one too low, for rounding
-    const float least = static_cast<float>(step - 1) / static_cast<float>(steps);
-    first_.push_back(static_cast<int>(first_at_least(intensity_, least)));
+    first_.push_back(nearest(static_cast<float>(step - 1) / static_cast<float>(steps)));
   }
 }
 
-/// `intensity` from 0 to the last level's: the first level that is not below, by few comparisons.
-std::size_t GreyLevels::not_below(float intensity) const {
-  const auto steps = static_cast<float>(first_.size() - 1);
-  auto level = static_cast<std::size_t>(first_[static_cast<std::size_t>(intensity * steps)]);
-  while (intensity_[level] < intensity) ++level;
-  return level;
-}
-
-int GreyLevels::level(float intensity) const {
+int GreyLevels::nearest(float intensity) const {
   if (!(intensity > intensity_.front())) return 0;
-  const std::size_t above = not_below(std::min(intensity, intensity_.back()));
+  const std::size_t above = first_at_least(intensity_, std::min(intensity, intensity_.back()));
   const float below = intensity_[above - 1];
   const bool lower = intensity - below <= intensity_[above] - intensity && intensity < intensity_.back();
   // Of several levels of the same intensity, the lowest.
-  return static_cast<int>(lower ? not_below(below) : above);
+  return static_cast<int>(lower ? first_at_least(intensity_, below) : above);
+}
+
+int GreyLevels::level(float intensity) const {
+  if (!(intensity > 0)) return 0;
+  const float held = std::min(intensity, 1.0F);
+  auto level = static_cast<std::size_t>(first_[static_cast<std::size_t>(held * static_cast<float>(first_.size() - 1))]);
+  while (held >= least_[level]) ++level;
+  return static_cast<int>(level);
 }
 
 LightTally& LightTally::operator+=(const LightTally& other) {
@@ -171,12 +188,18 @@ void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& imag
   image.width = intensity.width;
   image.height = intensity.height;
   image.bits = levels.bits();
-  image.values.assign(intensity.size(), static_cast<std::uint16_t>(levels.level(0)));
-  for (int y = 0; y < image.height; ++y) {
-    if (is_dark(intensity, y)) continue;
-    const float* from = intensity.row(y);
-    std::uint16_t* to = image.values.data() + image.index(0, y);
-    for (int x = 0; x < image.width; ++x) {
+  image.values.resize(intensity.size());
+  put_levels(intensity, 0, 0, levels, image);
+}
+
+void put_levels(const Image& part, int left, int top, const GreyLevels& levels, GreyImage& image) {
+  const auto dark = static_cast<std::uint16_t>(levels.level(0));
+  for (int y = 0; y < part.height; ++y) {
+    std::uint16_t* to = image.values.data() + image.index(left, top + y);
+    std::fill_n(to, part.width, dark);
+    if (is_dark(part, y)) continue;
+    const float* from = part.row(y);
+    for (int x = 0; x < part.width; ++x) {
       if (from[x] != 0) to[x] = static_cast<std::uint16_t>(levels.level(from[x]));
     }
   }

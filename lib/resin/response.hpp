@@ -55,11 +55,12 @@ class GreyLevels {
   [[nodiscard]] float intensity(int level) const { return intensity_[level]; }
 
  private:
-  int bits_;
-  [[nodiscard]] std::size_t not_below(float intensity) const;
+  [[nodiscard]] int nearest(float intensity) const;
 
+  int bits_;
   std::vector<float> intensity_;  // rising with the level
-  std::vector<int> first_;        // of each of equal steps of intensity: the first level that is not below it
+  std::vector<float> least_;      // wanted intensity from which on a higher level than this one is the nearest
+  std::vector<int> first_;        // of each of equal steps of intensity: the nearest level to its begin
 };
 
 /// Intensity of an image, summed, and the pixels that were clipped.
@@ -81,6 +82,8 @@ LightTally limit_to_full(Image& image, float scale);
 /// Every pixel's nearest level, in the memory of a former image. Intensities are fractions of full; beyond what the
 /// projector can do they are clamped.
 void to_levels(const Image& intensity, const GreyLevels& levels, GreyImage& image);
+/// Those of a part of the image; the rest stays as it is.
+void put_levels(const Image& part, int left, int top, const GreyLevels& levels, GreyImage& image);
 
 /// What the projector gives for these levels, as fractions of full intensity.
 [[nodiscard]] Image to_intensity(const GreyImage& image, const GreyLevels& levels);

@@ -29,6 +29,10 @@ data = open("video.raw", "rb").read()
 print(*[sum(data[512 * n:512 * n + 512]) for n in (0, 1, 35)], end=" ")
 PY
 same "video and images have the same pixels" images.sums video.sums
+packets() { ffmpeg -v error -i "$1" "$2" "$3" -level 3 -slices 4 -slicecrc 1 -g 1 -f framecrc - | grep -v '^#' | cut -d, -f5-; }
+packets print.mkv -c:v copy >own.packets
+packets print.mkv -c:v ffv1 >libav.packets
+same "and the bytes of FFmpeg's encoder" own.packets libav.packets
 
 # The printer that it was computed for.
 fails 65 'part.exr: computed for another printer: projector.axis_column 31.5, now 32; vial.radius_mm 12.7, now 6; compute it for this printer, .* --accept-printer' \

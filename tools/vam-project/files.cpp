@@ -26,8 +26,8 @@ void write_turns(const cli::App& app, const Options& options, const model::Print
   facts.info.extra["vam:printer"] = io::printer_settings(printer);
   facts.info.history.push_back(app.history());
   const auto sink = io::open_frame_sink(options.output, facts);
-  const Frames frames = frames_of(light, schedule);
   const Dithering dithering = dithering_of(options, 360 / schedule.step_deg, turns);
+  const Frames frames = frames_of(light, schedule, dithering);
   const auto tally =
       show(frames, static_cast<float>(options.multiplier / peak), projector, app.given("--bits"), dithering, *sink);
   Json report = figures(frames, projector.bits, peak, tally);

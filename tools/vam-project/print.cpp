@@ -57,7 +57,7 @@ void play_turns(const cli::App& app, const Options& options, const model::Printe
   const Dithering dithering = dithering_of(options, frames, turns);
   const auto schedule = optics::frame_schedule(frames, 360, std::max(1, dithering.turns));
   LiveSink sink(live, [&] { return live.play(frames, printer.stage.speed_deg_s, turns); });
-  const Frames shown = frames_of(light, schedule);
+  const Frames shown = frames_of(light, schedule, dithering);
   const auto tally = show(shown, static_cast<float>(options.multiplier / peak), printer.projector, app.given("--bits"),
                           dithering, sink);
   Json report = figures(shown, printer.projector.bits, peak, tally);

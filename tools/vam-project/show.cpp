@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -59,23 +60,63 @@ class DitheredFrames {
   std::vector<float> carried_;
 };
 
+/// Puts what is lit of each frame into its place in the whole one, which is dark elsewhere and stays so.
+class Whole {
+ public:
+  Whole(const Frames& frames, const model::Projector& projector, const resin::GreyLevels& levels)
+      : part_(frames.lit), columns_(projector.columns), rows_(projector.rows), levels_(levels) {
+    if (part_) part_ = optics::oriented(*part_, columns_, rows_, projector.orientation);
+  }
+
+  void put_levels(const Image& light, GreyImage& image) const {
+    if (!part_) return resin::to_levels(light, levels_, image);
+    if (image.values.empty()) {
+      image = GreyImage(columns_, rows_, levels_.bits());
+      std::fill(image.values.begin(), image.values.end(), static_cast<std::uint16_t>(levels_.level(0)));
+    }
+    resin::put_levels(light, part_->left, part_->top, levels_, image);
+  }
+
+  [[nodiscard]] Image intensity(Image light) const {
+    if (!part_) return light;
+    Image whole(columns_, rows_);
+    for (int y = 0; y < light.height; ++y)
+      std::copy_n(light.row(y), light.width, whole.row(part_->top + y) + part_->left);
+    return whole;
+  }
+
+  [[nodiscard]] long pixels(const Image& light) const {
+    return part_ ? static_cast<long>(columns_) * rows_ : static_cast<long>(light.size());
+  }
+
+ private:
+  std::optional<PixelRect> part_;
+  int columns_;
+  int rows_;
+  const resin::GreyLevels& levels_;
+};
+
 }  // namespace
 
 resin::LightTally show(const Frames& frames, float scale, const model::Projector& projector, bool quantise,
                        const Dithering& dithering, io::FrameSink& sink) {
   const resin::GreyLevels levels(tool::response_of(projector), projector.bits);
   DitheredFrames dithered(levels, dithering);
+  const Whole whole(frames, projector, levels);
   std::vector<resin::LightTally> tallies(frames.count);
   const auto develop = [&](int n, io::ProjectorFrame& frame) {
     if (!frames.in_order) frame.intensity = frames.light(n, std::move(frame.intensity));
     frame.time_s = n / frames.fps;
     frame.angle_deg = n * frames.step_deg;
     tallies[n] = resin::limit_to_full(frame.intensity, scale);
+    tallies[n].pixels = whole.pixels(frame.intensity);
     optics::orient(frame.intensity, projector.orientation);
-    if (dithering.turns == 0) resin::to_levels(frame.intensity, levels, frame.levels);
+    if (dithering.turns == 0) whole.put_levels(frame.intensity, frame.levels);
   };
   const auto as_shown = [&](io::ProjectorFrame& frame) {
-    if (quantise) frame.intensity = resin::to_intensity(frame.levels, levels);
+    if (!sink.takes_intensity()) return;
+    frame.intensity =
+        quantise ? resin::to_intensity(frame.levels, levels) : whole.intensity(std::move(frame.intensity));
   };
   Progress progress("projecting", frames.count);
   std::vector<io::ProjectorFrame> shown(static_cast<std::size_t>(std::min(2 * threads(), frames.count)));

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "base/image.hpp"
 #include "base/json_fwd.hpp"
+#include "base/pixel_rect.hpp"
 #include "io/image/frame_sink.hpp"
 #include "model/printer.hpp"
 #include "resin/response.hpp"
@@ -18,6 +20,7 @@ struct Frames {
   /// The light of frame n, in the memory of a former one. Called once for every n: in order, or by many threads at
   /// once.
   std::function<Image(int n, Image former)> light;
+  std::optional<PixelRect> lit;  // the part of every frame that light() gives; the rest is dark
   bool in_order = false;
 };
 

@@ -60,7 +60,7 @@ Frames frames_of(const SliceStack& stack, double fps, const Options& options, co
                                                           options.row_offset);
   const auto response = std::make_shared<resin::Response>(tool::response_of(projector));
   const auto dark = static_cast<float>(response->intensity(0));
-  Frames frames{stack.info.count, fps, 0, {}, true};
+  Frames frames{stack.info.count, fps, 0, {}, {}, true};
   frames.light = [=, grey = is_grey(stack.info), next = stack.next, name = stack.name](int, const Image&) {
     Image slice;
     if (!next(slice)) throw Error{Fault::bug, name + ": fewer slices than announced"};

@@ -16,13 +16,11 @@ namespace vam::project {
 namespace {
 
 template <class Source>
-Light read_light(io::StackReader& reader, const std::shared_ptr<Source>& source) {
+void read_into(Source& source, io::StackReader& reader) {
   Progress progress("reading", reader.info().count);
   Image slice;
-  for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source->add(slice, about.z_mm);
-  source->check();
-  return {[source](double angle, double span, Image former) { return source->frame(angle, span, std::move(former)); },
-          static_cast<double>(source->peak())};
+  for (model::ImageInfo about; reader.next(slice, about); progress.tick()) source.add(slice, about.z_mm);
+  source.check();
 }
 
 }  // namespace
@@ -31,15 +29,23 @@ Light read_light(const Options& options, io::StackReader& reader, const model::P
   const auto& info = reader.info();
   const double right = options.column_offset;
   const double down = options.row_offset;
+  const PixelRect whole{0, 0, projector.columns, projector.rows};
   if (options.flatland_mm) {
     io::require(options.input, info, model::Kind::sinogram, model::Space::virtual_);
     const auto canvas = optics::flatland_canvas(projector, right, down);
-    return read_light(reader,
-                      std::make_shared<optics::FlatlandSlice>(options.input, info, canvas, *options.flatland_mm));
+    const auto slice = std::make_shared<optics::FlatlandSlice>(options.input, info, canvas, *options.flatland_mm);
+    read_into(*slice, reader);
+    return {[slice](double angle, double span, const PixelRect&, const Image&) { return slice->frame(angle, span); },
+            static_cast<double>(slice->peak()), whole, whole};
   }
   io::require(options.input, info, model::Kind::sinogram, model::Space::projector);
   const auto place = optics::frame_place(projector, right, down);
-  return read_light(reader, std::make_shared<optics::FrameComposer>(options.input, info, place));
+  const auto composer = std::make_shared<optics::FrameComposer>(options.input, info, place);
+  read_into(*composer, reader);
+  return {[composer](double angle, double span, const PixelRect& part, Image former) {
+            return composer->frame(angle, span, part, std::move(former));
+          },
+          static_cast<double>(composer->peak()), composer->lit(), whole};
 }
 
 Dithering dithering_of(const Options& options, double frames_per_turn, double turns) {
@@ -56,9 +62,15 @@ Dithering dithering_of(const Options& options, double frames_per_turn, double tu
   return {n, round_int(frames_per_turn)};
 }
 
-Frames frames_of(const Light& light, const optics::FrameSchedule& schedule) {
-  return {schedule.count, schedule.fps, schedule.step_deg,
-          [&](int n, Image former) { return light.frame(schedule.angle_deg(n), schedule.step_deg, std::move(former)); },
+Frames frames_of(const Light& light, const optics::FrameSchedule& schedule, const Dithering& dithering) {
+  const PixelRect part = dithering.turns > 0 ? light.whole : light.lit;
+  return {schedule.count,
+          schedule.fps,
+          schedule.step_deg,
+          [&light, &schedule, part](int n, Image former) {
+            return light.frame(schedule.angle_deg(n), schedule.step_deg, part, std::move(former));
+          },
+          part,
           false};
 }
 

@@ -13,8 +13,10 @@ namespace vam::project {
 
 /// What to show around a stage angle, over a span of angles, in the units of the stack whose largest value is peak.
 struct Light {
-  std::function<Image(double angle_deg, double span_deg, Image former)> frame;
+  std::function<Image(double angle_deg, double span_deg, const PixelRect& part, Image former)> frame;
   double peak = 0;
+  PixelRect lit;    // what is beside it is always dark
+  PixelRect whole;  // frame
 };
 
 /// Reads the whole stack: a projector's, or with --flatland one slice of a virtual one. Throws Fault::data for another
@@ -25,7 +27,7 @@ struct Light {
 /// divide the turns of the print.
 [[nodiscard]] Dithering dithering_of(const Options& options, double frames_per_turn, double turns);
 
-/// The light stays the caller's.
-[[nodiscard]] Frames frames_of(const Light& light, const optics::FrameSchedule& schedule);
+/// Whole ones for error diffusion, or else what is lit of them. The light stays the caller's.
+[[nodiscard]] Frames frames_of(const Light& light, const optics::FrameSchedule& schedule, const Dithering& dithering);
 
 }  // namespace vam::project

@@ -57,6 +57,7 @@ class StackSink : public FrameSink {
       writer_.write(frame.intensity, info);
     }
   }
+  [[nodiscard]] bool takes_intensity() const override { return true; }
   void commit() override { writer_.commit(); }
 
  private:
@@ -71,7 +72,7 @@ class VideoSink : public FrameSink {
                        join(options.info.history, "\n")}) {}
 
   void write(std::span<const ProjectorFrame> frames) override {
-    for (const auto& frame : frames) writer_.write(frame.levels);
+    writer_.write(count_of(frames), [&](int i) -> const GreyImage& { return frames[i].levels; });
   }
   void commit() override { writer_.commit(); }
 

@@ -28,6 +28,8 @@ class FrameSink {
   FrameSink& operator=(const FrameSink&) = delete;
   /// The next frames, in order. Throws Error: no_output, io.
   virtual void write(std::span<const ProjectorFrame> frames) = 0;
+  /// Whether the frames must have their intensity, beside the levels.
+  [[nodiscard]] virtual bool takes_intensity() const { return false; }
   /// After the last one; what was written appears under its name, whole. If it is not called, nothing is left.
   virtual void commit() = 0;
 };

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "base/parallel.hpp"
 #include "io/image/private/av_handles.hpp"
+#include "io/image/private/ffv1.hpp"
 #include "io/image/private/video.hpp"
 #include "io/stream/stream.hpp"
 
@@ -72,6 +75,10 @@ std::vector<std::uint8_t> stored_bytes(int bits) {
   return bytes;
 }
 
+std::uint32_t checksum(const std::uint8_t* bytes, std::size_t count) {
+  return av::api().av_crc(av::api().av_crc_get_table(AV_CRC_32_IEEE), 0, bytes, count);
+}
+
 }  // namespace
 
 struct VideoWriter::State {
@@ -87,6 +94,7 @@ struct VideoWriter::State {
   av::AvFrame frame{av::api().av_frame_alloc()};
   av::Packet packet{av::api().av_packet_alloc()};
   std::int64_t written = 0;
+  std::optional<Ffv1Frames> alone;  // frames of which each is encoded by one thread
 
   State(const std::string& path, const VideoFormat& wanted)
       : format(wanted),
@@ -164,6 +172,42 @@ struct VideoWriter::State {
     check(av::api().av_frame_get_buffer(frame.get(), 0), "video frame");
   }
 
+  // Before the first frame.
+  void try_alone() {
+    if (!lossless || wide) return;
+    const GreyImage trial = Ffv1Frames::trial(format.width, format.height);
+    for (int y = 0; y < trial.height; ++y) {
+      const std::uint16_t* from = trial.values.data() + trial.index(0, y);
+      std::transform(from, from + trial.width, frame->data[0] + static_cast<std::ptrdiff_t>(y) * frame->linesize[0],
+                     [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
+    }
+    check(av::api().avcodec_send_frame(codec.get(), frame.get()), "video encoding");
+    check(av::api().avcodec_receive_packet(codec.get(), packet.get()), "video encoding");
+    alone = Ffv1Frames::like({packet->data, packet->data + packet->size}, format.width, format.height, checksum);
+    av::api().av_packet_unref(packet.get());
+  }
+
+  void put(Bytes& bytes) {
+    packet->data = bytes.data();
+    packet->size = static_cast<int>(bytes.size());
+    packet->flags |= AV_PKT_FLAG_KEY;
+    packet->pts = packet->dts = written++;
+    put_packet();
+  }
+
+  void put_packet() {
+    packet->stream_index = 0;
+    packet->duration = 1;
+    av::api().av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
+    check(av::api().av_interleaved_write_frame(container, packet.get()), "writing the video");
+  }
+
+  void require_format(const GreyImage& image) const {
+    if (image.width == format.width && image.height == format.height && image.bits == format.bits) return;
+    throw Error{Fault::bug,
+                sink.file.name() + ": frame " + std::to_string(written) + " has another size or depth than the video"};
+  }
+
   void fill_row(const std::uint16_t* from, int width, std::uint8_t* row) const {
     if (format.bits == 8) {  // as they are: many at once
       std::transform(from, from + width, row, [](std::uint16_t level) { return static_cast<std::uint8_t>(level); });
@@ -195,10 +239,7 @@ struct VideoWriter::State {
       const int status = av::api().avcodec_receive_packet(codec.get(), packet.get());
       if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
       check(status, "video encoding");
-      packet->stream_index = 0;
-      packet->duration = 1;
-      av::api().av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
-      check(av::api().av_interleaved_write_frame(container, packet.get()), "writing the video");
+      put_packet();
     }
   }
 };
@@ -212,20 +253,30 @@ VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   state_->open_container();
   state_->open_codec();
   state_->open_stream();
+  state_->try_alone();
 }
 
 VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::write(const GreyImage& image) {
+  write(1, [&](int) -> const GreyImage& { return image; });
+}
+
+void VideoWriter::write(int count, const std::function<const GreyImage&(int)>& image) {
   State& s = *state_;
-  if (image.width != s.format.width || image.height != s.format.height || image.bits != s.format.bits) {
-    throw Error{Fault::bug, s.sink.file.name() + ": frame " + std::to_string(s.written) +
-                                " has another size or depth than the video"};
+  for (int i = 0; i < count; ++i) s.require_format(image(i));
+  if (s.alone) {
+    std::vector<Bytes> packets(static_cast<std::size_t>(count));
+    parallel_for(count, [&](int i) { packets[static_cast<std::size_t>(i)] = s.alone->packet(image(i)); });
+    for (Bytes& packet : packets) s.put(packet);
+    return;
   }
-  s.check(av::api().av_frame_make_writable(s.frame.get()), "video frame");
-  s.fill(image);
-  s.frame->pts = s.written++;
-  s.send(s.frame.get());
+  for (int i = 0; i < count; ++i) {
+    s.check(av::api().av_frame_make_writable(s.frame.get()), "video frame");
+    s.fill(image(i));
+    s.frame->pts = s.written++;
+    s.send(s.frame.get());
+  }
 }
 
 void VideoWriter::commit() {

@@ -2,12 +2,14 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
 #include "base/error.hpp"
+#include "io/image/private/ffv1.hpp"
 #include "lib/io/scratch.hpp"
 
 using vam::GreyImage;
@@ -56,6 +58,55 @@ TEST_CASE("FFV1 is lossless at every depth, and keeps rate, count and comment") 
     }
     CHECK(count == 20);
     CHECK(wrong == 0);
+  }
+}
+
+// The bytes of libavcodec are what the tests of vam-project compare with.
+TEST_CASE("FFV1 packets are made only like ones that are understood") {
+  const auto sum = [](const std::uint8_t*, std::size_t) { return std::uint32_t{0x01020304}; };
+  const GreyImage trial = Ffv1Frames::trial(64, 48);
+  Bytes packet;
+  for (const int part : {0, 1, 2, 3}) {
+    Bytes slice{0xab, 0xcd};  // a head
+    append_ffv1_codes(trial, {part % 2 * 32, part / 2 * 24, 32, 24}, slice);
+    const std::size_t size = slice.size();
+    for (const std::size_t byte : {size >> 16, size >> 8, size, std::size_t{0}, std::size_t{4}, std::size_t{3},
+                                   std::size_t{2}, std::size_t{1}}) {
+      slice.push_back(static_cast<std::uint8_t>(byte));
+    }
+    packet.insert(packet.end(), slice.begin(), slice.end());
+  }
+  const auto made = Ffv1Frames::like(packet, 64, 48, sum);
+  REQUIRE(made);
+  CHECK(made->packet(trial) == packet);
+  for (const std::size_t cut : {std::size_t{1}, std::size_t{9}, packet.size() - 1, packet.size()}) {
+    CHECK_FALSE(Ffv1Frames::like({packet.data(), packet.data() + packet.size() - cut}, 64, 48, sum));
+  }
+  for (std::size_t at = 2; at < packet.size(); at += 7) {  // behind the first head
+    Bytes other = packet;
+    other[at] ^= 1;
+    const auto from_other = Ffv1Frames::like(other, 64, 48, sum);
+    if (from_other) CHECK(from_other->packet(trial) == other);  // it was in another head
+  }
+}
+
+TEST_CASE("FFV1 in colours of noise, and of sizes that are no multiple of anything") {
+  const scratch::Folder folder;
+  for (const std::array size : {std::array{5, 4}, {3, 3}, {67, 35}, {130, 5}}) {
+    const auto [width, height] = size;
+    CAPTURE(size[0]);
+    GreyImage sent(width, height, 8);
+    for (std::size_t i = 0; i < sent.values.size(); ++i) {
+      sent.values[i] = static_cast<std::uint16_t>(i % 3 == 0 ? i * 2654435761U >> 8 & 0xff : i / 40 % 2 * 255);
+    }
+    VideoWriter writer(folder / "n.mkv", {width, height, 8, 16, ""});
+    writer.write(3, [&](int) -> const GreyImage& { return sent; });
+    writer.commit();
+    VideoReader reader(folder / "n.mkv");
+    GreyImage image;
+    int count = 0;
+    for (; reader.next(image); ++count) CHECK(image.values == sent.values);
+    CHECK(count == 3);
   }
 }
 

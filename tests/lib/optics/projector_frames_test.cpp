@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -111,6 +112,41 @@ TEST_CASE("a frame that spans several angles is their mean, so a turn of frames 
   double wanted = 0;
   for (int a = 0; a < 12; ++a) wanted += static_cast<double>(labelled(info, 0)(7, a)) * 30;
   CHECK(shown == doctest::Approx(wanted));
+}
+
+TEST_CASE("what is lit holds all light of every frame, and is composed as in the whole frame") {
+  for (const double pitch_mm : {0.03, 0.1, 0.35, 0.8}) {
+    for (const double axis_row : {12.0, 14.3}) {
+      CAPTURE(pitch_mm);
+      const StackInfo info = sinograms(20, 12, 3, 0.1, pitch_mm, -pitch_mm);
+      FrameComposer composer("part.exr", info, {20, 26, 0.1, axis_row, 0.25});
+      for (int k = 0; k < 3; ++k)
+        composer.add(k == 1 ? labelled(info, k) : Image(20, 12), info.z_start_mm + k * pitch_mm);
+      const vam::PixelRect lit = composer.lit();
+      CHECK(lit.width == 17);  // 16 and one for the quarter column
+      for (const double angle_deg : {0.0, 100.0}) {
+        Image whole = composer.frame(angle_deg, 45);
+        const Image part = composer.frame(angle_deg, 45, lit, Image(3, 3, 7));
+        for (int y = 0; y < lit.height; ++y) {
+          CHECK(std::equal(part.row(y), part.row(y) + lit.width, whole.row(lit.top + y) + lit.left));
+          std::fill_n(whole.row(lit.top + y) + lit.left, lit.width, 0.0F);
+        }
+        CHECK(std::all_of(whole.values.begin(), whole.values.end(), [](float value) { return value == 0; }));
+      }
+    }
+  }
+}
+
+TEST_CASE("a part of an image is where its pixels are when it is turned") {
+  Image image(7, 5);
+  image(2, 1) = image(3, 1) = 1;
+  for (const std::string how : {"normal", "flip-columns", "flip-rows", "rotate-180"}) {
+    Image turned = image;
+    orient(turned, how);
+    const vam::PixelRect part = vam::optics::oriented({2, 1, 2, 1}, 7, 5, how);
+    CHECK(turned(part.left, part.top) == 1);
+    CHECK(turned(part.left + 1, part.top) == 1);
+  }
 }
 
 TEST_CASE("finer slices are averaged over a row, coarser ones interpolated; light per row is kept") {

@@ -87,6 +87,25 @@ TEST_CASE("levels are nearest in intensity, by brute force over every level") {
   }
 }
 
+TEST_CASE("the level changes at the float at which the next one becomes nearer, also along flat parts") {
+  for (const Response& response : {Response(), Response(0.1), Response(gamma_table(2.2)),
+                                   Response({"flat", {0, 1, 2, 3, 4}, {0.1, 0.1, 0.5, 0.5, 0.5}})}) {
+    for (const int bits : {1, 3, 8}) {
+      const GreyLevels levels(response, bits);
+      const auto miss = [&](int level, float wanted) { return std::abs(levels.intensity(level) - wanted); };
+      for (int level = 0; level + 1 < levels.count(); ++level) {
+        const float middle = (levels.intensity(level) + levels.intensity(level + 1)) / 2;
+        for (const float wanted : {std::nextafter(middle, 0.0F), middle, std::nextafter(middle, 2.0F)}) {
+          const int got = levels.level(wanted);
+          CHECK(miss(got, wanted) <= std::min(miss(level, wanted), miss(level + 1, wanted)));
+          const bool lowest = got == 0 || levels.intensity(got - 1) < levels.intensity(got);
+          CHECK(lowest);
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("every level maps to itself") {
   const GreyLevels levels(Response(), 8);
   for (int level = 0; level < 256; ++level) CHECK(levels.level(levels.intensity(level)) == level);

@@ -1,6 +1,7 @@
 // Video: FFV1 in Matroska, lossless, which may be printed from; H.264 in MP4, for looking at.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -29,6 +30,8 @@ class VideoWriter {
   VideoWriter(const std::string& path, const VideoFormat& format);
   ~VideoWriter();
   void write(const GreyImage& frame);
+  /// Frames 0 .. count - 1, encoded side by side where the format allows it.
+  void write(int count, const std::function<const GreyImage&(int)>& frame);
   void commit();
 
  private:
