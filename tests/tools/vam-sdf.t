@@ -18,6 +18,12 @@ holds 'the deviation is outwards' "$(json rigid.json print_to_design.mean_mm) > 
 head -c 400 moved.ply | grep -aq scalar_distance; report $? 'the PLY has the scalar CloudCompare reads'
 is 'the histogram is of the whole area' "$(awk -F, 'NR > 1 { s += $3 } END { printf "%.0f", s }' moved.csv)" 100
 
+# Half a bar could be anywhere along it.
+box 20 4 3 >bar.off
+awk 'NR < 3 { print; next } NF == 3 { print $1 * 0.5 + 1, $2, $3; next } { print }' bar.off >half.off
+fails 65 'fits in two places' vam-sdf half.off bar.off
+quiet 'which is said to be right by its place' vam-sdf half.off bar.off --align icp
+
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
 quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --report volume.json
