@@ -55,6 +55,13 @@ void declare(cli::App& app, Options& options) {
   app.option("-o,--output", "FILE.ply", options.output,
              "Write the aligned print with distances and colours at its vertices.")
       .writes({".ply"});
+  app.option("--volume", "FILE.vdb", options.volume,
+             "Write how far the print is outside the design, in mm around the design's surface, for vam-slice "
+             "--compensate.")
+      .writes({".vdb"});
+  app.option("--volume-voxel", "MM", options.volume_voxel_mm, cli::positive, "Voxel of --volume.")
+      .default_is("1/100 of the design's largest dimension")
+      .needs({"--volume"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
   app.option("--resin", "FILE", options.resin_record,

@@ -145,6 +145,9 @@ void deviation(const cli::App& app, const Options& options) {
       options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
   if (!options.output.empty()) write_coloured(options.output, print, design, limit_mm, app.history());
   if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
+  if (!options.volume.empty()) {
+    write_deviation_volume(app, options, print, design_mesh, found.print_to_design.rms_mm);
+  }
   Json figures = metrology::to_json(found);
   figures["alignment"] = facts(options, alignment);
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);
