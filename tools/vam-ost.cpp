@@ -30,7 +30,11 @@ std::vector<std::string> description() {
       "weighted accordingly, and a gap of more than 15 degrees is an error. A uniform background is fitted and "
       "subtracted. Specks on window or lens, which stay in place, and bubbles, which drift through the field of "
       "view, are distinguished from the print because the values of a ray and of its reverse, half a turn later, "
-      "differ; they are replaced by the value of the other ray, and --report states their fractions. Image rows run "
+      "differ; they are replaced by the value of the other ray, and --report states their fractions. The run-out of "
+      "the "
+      "vial, by which its axis circles about that of the stage, is fitted to the same pairs of rays and removed where "
+      "it "
+      "exceeds three standard deviations. Image rows run "
       "downwards along the axis; z = 0 "
       "is the row at the height of the lens, camera.axis_row or the middle one.",
       "With a gelation threshold I_p (--isovalue, or --resin with a record of vam-calibrate resin) the print is { "
@@ -118,6 +122,7 @@ void declare_reconstruction(cli::App& app, Options& o) {
   app.was("--keep-negative", "keep");
   app.flag("--no-refraction", o.no_refraction,
            "Neglect refraction and perspective: image columns are parallel rays (for comparison).");
+  app.flag("--keep-run-out", o.keep_run_out, "Take the vial's axis for that of the stage: run-out is not fitted.");
 }
 
 void declare_print(cli::App& app, Options& o) {

@@ -11,39 +11,42 @@ using sdf_tool::HeightOptions;
 using sdf_tool::Options;
 
 cli::Manual manual() {
-  return {"vam-sdf",
-          "measure the deviation of a print from its design",
-          {"vam-sdf reads the print (a mesh, or a volume whose isosurface at --isovalue is used) and the design (a "
-           "mesh, or a target volume), aligns them, and measures signed distances: positive where the print is outside "
-           "the design, the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points "
-           "distributed evenly over the area, in both directions: from the print to the design, and from the design to "
-           "the print, which alone reveals missing pieces.",
-           "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
-           "simulated dose can be compared with the original mesh.",
-           "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
-           "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
-           "it. With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
-           "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
-           "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
-           "hold.",
-           "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
-           "levelled by the plane through its base, the outline of the design at half height is aligned with that of "
-           "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared."},
-          {{"Compare two boxes of slightly different size:",
-            "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
-            "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
-            "deviation.json"},
-           {"Check a tolerance in a script:",
-            "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
-           {"Compare an embossed badge that is 1 % too small with its design:",
-            "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
-            "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
-            "--pixel 0.1 -o outline.png --plot section.png"}},
-          {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
-           "the triangles are exact; extreme percentiles depend on --samples.",
-           "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and "
-           "table S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
-          {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
+  return {
+      "vam-sdf",
+      "measure the deviation of a print from its design",
+      {"vam-sdf reads the print (a mesh, or a volume whose isosurface at --isovalue is used) and the design (a "
+       "mesh, or a target volume), aligns them, and measures signed distances: positive where the print is outside "
+       "the design, the convention of MeshLab, CloudCompare and Open3D. Statistics are computed from points "
+       "distributed evenly over the area, in both directions: from the print to the design, and from the design to "
+       "the print, which alone reveals missing pieces.",
+       "A volume is read in its own coordinate system; the stretch in z applied by vam-slice is removed, so that a "
+       "simulated dose can be compared with the original mesh.",
+       "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
+       "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
+       "it. A print that covers less than 6/7 of the design is taken for a part of it: poses all over the design are "
+       "tried, cut faces do not pull, and where the part fits in two places, which are not the same by symmetry, it is "
+       "an error (status 65). With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
+       "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
+       "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
+       "hold.",
+       "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
+       "levelled by the plane through its base, the outline of the design at half height is aligned with that of "
+       "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared."},
+      {{"Compare two boxes of slightly different size:",
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
+        "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
+        "deviation.json"},
+       {"Check a tolerance in a script:",
+        "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
+       {"Compare an embossed badge that is 1 % too small with its design:",
+        "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
+        "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
+        "--pixel 0.1 -o outline.png --plot section.png"}},
+      {"Signs are determined by the generalised winding number, so that a design with holes is valid. Distances to "
+       "the triangles are exact; extreme percentiles depend on --samples.",
+       "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and "
+       "table S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
+      {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
 }
 
 void declare(cli::App& app, Options& options) {
@@ -52,6 +55,13 @@ void declare(cli::App& app, Options& options) {
   app.option("-o,--output", "FILE.ply", options.output,
              "Write the aligned print with distances and colours at its vertices.")
       .writes({".ply"});
+  app.option("--volume", "FILE.vdb", options.volume,
+             "Write how far the print is outside the design, in mm around the design's surface, for vam-slice "
+             "--compensate.")
+      .writes({".vdb"});
+  app.option("--volume-voxel", "MM", options.volume_voxel_mm, cli::positive, "Voxel of --volume.")
+      .default_is("1/100 of the design's largest dimension")
+      .needs({"--volume"});
   app.option("--isovalue", "VALUE", options.isovalue, cli::any, "Isovalue of a print volume's surface, in its units.");
   app.was("--level");
   app.option("--resin", "FILE", options.resin_record,

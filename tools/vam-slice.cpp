@@ -88,7 +88,8 @@ void run(const cli::App& app, Options& options) {
   solid::Writable room = options.extent == "resin" ? solid::whole_resin(printer)
                                                    : solid::writable(printer, optics::writable_radius_mm(printer));
   if (options.any_height) room.low_mm = -(room.high_mm = solid::any_height_mm);
-  solid::Part part = part_of(options, room);
+  slice_tool::Correction correction;
+  solid::Part part = part_of(options, room, correction);
   std::optional<solid::Part> insert = insert_of(options, part, room);
   const double lift_mm = slice_tool::lift_mm(options, printer, part, room);
   part = solid::lifted(std::move(part), lift_mm);
@@ -108,6 +109,9 @@ void run(const cli::App& app, Options& options) {
   warn_of_size(app, options, part, content, grid, room);
   Json report = solid::figures(part, content, grid, options.placement.stretch_z, room);
   report["place"] = lift_figures(options, lift_mm);
+  if (!correction.rms_mm.empty()) {
+    report["compensation"] = {{"rms_mm", correction.rms_mm}, {"applied", correction.applied}};
+  }
   if (opaque) {
     report["insert"] = slice_tool::insert_figures(volumes.front(), *opaque, *insert, options);
     volumes.push_back(std::move(*opaque));

@@ -18,6 +18,31 @@ holds 'the deviation is outwards' "$(json rigid.json print_to_design.mean_mm) > 
 head -c 400 moved.ply | grep -aq scalar_distance; report $? 'the PLY has the scalar CloudCompare reads'
 is 'the histogram is of the whole area' "$(awk -F, 'NR > 1 { s += $3 } END { printf "%.0f", s }' moved.csv)" 100
 
+# Half a bar could be anywhere along it.
+box 20 4 3 >bar.off
+awk 'NR < 3 { print; next } NF == 3 { print $1 * 0.5 + 1, $2, $3; next } { print }' bar.off >half.off
+fails 65 'fits in two places' vam-sdf half.off bar.off
+quiet 'which is said to be right by its place' vam-sdf half.off bar.off --align icp
+
+# A print that stands out by 0.2 mm on all sides corrects its design.
+box 8 6 4 >design.off
+awk 'NR < 3 { print; next } NF == 3 { print $1 + ($1 > 0 ? 0.2 : -0.2), $2 + ($2 > 0 ? 0.2 : -0.2), $3 + ($3 > 0 ? 0.2 : -0.2); next } { print }' design.off >grown.off
+quiet 'the deviation as a volume' vam-sdf grown.off design.off --align none --volume first.vdb
+quiet 'is taken off the design' vam-slice design.off --compensate first.vdb --damping 1 --voxel 0.1 --stretch-z 1 -o next.vdb --report next.json
+is 'by this round' "$(json next.json compensation.applied)" 1
+quiet 'and its surface' vam-sdf next.vdb grown.off --isovalue 0.5 --align icp --report inset.json
+# 0.2 mm inside the design, 0.4 mm inside the print; rounded edges are a little nearer.
+holds 'is as far inside' "$(json inset.json print_to_design.mean_mm) < -0.37 && $(json inset.json print_to_design.mean_mm) > -0.41"
+quiet 'a print that is worse' vam-sdf design.off design.off --align none --volume none.vdb
+ok 'what came after the best print is left' vam-slice design.off --compensate none.vdb --compensate first.vdb --voxel 0.2 -o settled.vdb
+grep -q 'has settled' .log/err; report $? 'and said'
+fails 65 'another design' vam-slice grown.off --compensate first.vdb --voxel 0.2 -o x.vdb
+fails 65 'RMS deviation|no grid' vam-slice design.off --compensate next.vdb --voxel 0.2 -o x.vdb
+fails 64 'meshes only' vam-slice --shape sphere:diameter=6 --compensate first.vdb --voxel 0.2 -o x.vdb
+fails 64 'damping' vam-slice design.off --damping 0.5 --voxel 0.2 -o x.vdb
+fails 64 'volume-voxel' vam-sdf grown.off design.off --volume-voxel 0.1
+fails 66 'missing' vam-slice design.off --compensate missing.vdb --voxel 0.2 -o x.vdb
+
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
 quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --report volume.json

@@ -18,6 +18,7 @@ struct Options {
   std::optional<double> pixel_mm, axis_column, tilt_deg;
   metrology::OstOptions how;
   bool no_refraction = false;
+  bool keep_run_out = false;
   std::string negative = "clip";
   std::optional<double> isovalue;
   std::optional<double> pieces_mm3;

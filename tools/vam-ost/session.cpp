@@ -113,6 +113,7 @@ Json Session::figures(const model::Volume& volume) const {
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
   json["dirt"] = dirt();
+  json["run_out"] = metrology::to_json(run_out_);
   return json;
 }
 
@@ -135,12 +136,30 @@ void Session::set_up(std::span<const metrology::CameraView> views, double stack_
   how.refraction = !options_.no_refraction;
   if (printer_.camera.axis_row) how.axis_row = binned(*printer_.camera.axis_row, options_.binning);
   how.non_negative = options_.negative == "clip";
-  rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
-                                                       axis_.pose, how);
+  const auto stand = [&] {
+    rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
+                                                         axis_.pose, how);
+  };
+  stand();
+  if (!options_.keep_run_out) {
+    run_out_ = rig_->find_run_out(views);
+    if (run_out_.seen()) {
+      how.run_out_mm = run_out_.mm;
+      if (!axis_is_given()) axis_.pose.column = run_out_.column;
+      if (!axis_is_given()) axis_.column_sigma = run_out_.column_sigma;
+      stand();
+    }
+  }
   note("axis at column " + format_number(captured(axis_.pose.column, options_.binning), 6) + " +- " +
        format_number(axis_.column_sigma * options_.binning, 2) + " px, tilt " +
        format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +
        format_number(axis_.tilt_sigma_rad * deg_per_rad, 2) + " deg");
+  if (run_out_.seen()) {
+    note("run-out of the vial " + format_number(run_out_.size_mm(), 3) + " +- " +
+         format_number(run_out_.size_sigma_mm(), 2) + " mm, removed");
+  }
 }
+
+bool Session::axis_is_given() const { return options_.axis_column || printer_.camera.axis_column; }
 
 }  // namespace vam::ost_tool

@@ -44,6 +44,7 @@ class Session {
   void say_dirt() const;
   void place_axis(std::span<const metrology::CameraView> views);
   [[nodiscard]] bool certain() const;
+  [[nodiscard]] bool axis_is_given() const;
   void refine_axis(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm);
 
@@ -52,6 +53,7 @@ class Session {
   model::Printer printer_;
   metrology::CameraFields fields_;
   metrology::AxisEstimate axis_;
+  metrology::RunOut run_out_;
   metrology::Dirt dirt_;
   std::unique_ptr<metrology::OstReconstructor> rig_;
   int width_ = 0;

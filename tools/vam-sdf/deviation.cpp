@@ -23,11 +23,31 @@ namespace vam::sdf_tool {
 
 namespace {
 
+// A part of a print must not be measured at a place where it only might be.
+void require_unique(const Options& options, const solid::Alignment& found) {
+  if (found.rival) {
+    throw Error{Fault::data, options.print + ": is a part of the design and fits in two places, " +
+                                 format_number(found.rival->apart_mm, 3) + " mm apart, with " +
+                                 format_number(100 * found.rival->best_match, 3) + " and " +
+                                 format_number(100 * found.rival->match, 3) +
+                                 " % of its surface; move it near the right one and give --align icp"};
+  }
+  constexpr double complete = 0.8;
+  if (found.overlap < complete) {
+    note("the print covers only " + format_number(100 * found.overlap, 3) +
+         " % of the design; aligned as a part of it");
+  }
+}
+
 solid::Alignment align(const Options& options, const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
                        const solid::Surface& design) {
   solid::AlignOptions how;
   how.with_scale = options.scale;
-  if (options.align == "full") return solid::align(print, design_mesh, design, how);
+  if (options.align == "full") {
+    const solid::Alignment found = solid::align(print, design_mesh, design, how);
+    require_unique(options, found);
+    return found;
+  }
   if (options.align == "icp") return solid::refine(print, design, how);
   solid::Alignment as_it_is;
   as_it_is.converged = true;
@@ -90,6 +110,7 @@ Json facts(const Options& options, const solid::Alignment& alignment) {
   return {{"method", options.align},
           {"scale", alignment.transform.scale},
           {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
+          {"overlap", options.align == "full" ? Json(alignment.overlap) : Json()},
           {"matrix", alignment.transform.matrix()}};
 }
 
@@ -124,6 +145,9 @@ void deviation(const cli::App& app, const Options& options) {
       options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
   if (!options.output.empty()) write_coloured(options.output, print, design, limit_mm, app.history());
   if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
+  if (!options.volume.empty()) {
+    write_deviation_volume(app, options, print, design_mesh, found.print_to_design.rms_mm);
+  }
   Json figures = metrology::to_json(found);
   figures["alignment"] = facts(options, alignment);
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);

@@ -28,6 +28,8 @@ struct Options {
   std::optional<double> limit_mm;
   std::string require;
   std::string report;
+  std::string volume;
+  double volume_voxel_mm = 0;
 };
 
 /// vam-sdf height.
@@ -55,6 +57,10 @@ struct HeightOptions {
 [[nodiscard]] model::TriangleSoup read_print(const std::string& path, std::optional<double> isovalue,
                                              std::optional<double> least_mm3,
                                              std::optional<metrology::BodyCount>& bodies);
+
+/// The deviation around the design's surface as a volume, for vam-slice --compensate. `print` is aligned.
+void write_deviation_volume(const cli::App& app, const Options& options, const model::TriangleSoup& print,
+                            const model::TriangleSoup& design, double rms_mm);
 
 /// Print against design.
 void deviation(const cli::App& app, const Options& options);

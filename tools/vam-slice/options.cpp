@@ -71,6 +71,12 @@ void declare(cli::App& app, Options& options) {
       .form();
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
              "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically.");
+  app.option("--compensate", "SDF.vdb", options.compensate,
+             "Correct the mesh by the deviation of its print, a volume of vam-sdf --volume against the same mesh. Once "
+             "for each round, in their order; rounds from the first that was no better are not applied.")
+      .reads();
+  app.option("--damping", "FRACTION", options.damping, {0.05, 1}, "Fraction of each deviation that is corrected.")
+      .needs({"--compensate"});
   app.option("--voxel", "MM", options.voxel_mm, cli::positive, "Edge of a voxel, and of an image pixel.");
   app.default_is("projector.pixel_mm");
   app.choice("--extent", options.extent, {"part", "writable", "resin"},
@@ -113,6 +119,7 @@ void check(const cli::App& app, const Options& options) {
   if (!options.shape.empty() || is_folder(options.input)) {
     if (app.given("--unit")) throw Error{Fault::usage, "--unit: applies to meshes only"};
     if (app.given("--fill")) throw Error{Fault::usage, "--fill: applies to meshes only"};
+    if (app.given("--compensate")) throw Error{Fault::usage, "--compensate: applies to meshes only"};
   }
   if (is_folder(options.input)) {
     for (const char* flag :

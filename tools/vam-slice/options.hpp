@@ -25,6 +25,8 @@ struct Options {
   std::optional<double> clearance_mm;  // the insert is cut out of the part
   std::string fill = "auto";
   std::optional<double> voxel_mm;
+  std::vector<std::string> compensate;
+  double damping = 0.8;
   std::string extent = "part";
   std::string unit = "mm";
   std::string up = "z";

@@ -35,10 +35,10 @@ solid::Part image_part(const Options& options) {
 
 }  // namespace
 
-solid::Part part_of(const Options& options, const solid::Writable& room) {
+solid::Part part_of(const Options& options, const solid::Writable& room, Correction& correction) {
   if (!options.shape.empty()) return solid::shape_part(options.shape, options.placement, room);
   if (is_folder(options.input)) return image_part(options);
-  model::TriangleSoup mesh = io::read_mesh(options.input);
+  model::TriangleSoup mesh = corrected(io::read_mesh(options.input), options, correction);
   const std::string subject = io::input_name(options.input);
   const solid::Affine map = solid::place(mesh, options.placement, room, subject);
   return solid::mesh_part(std::move(mesh), subject, map, fill_mode(options));

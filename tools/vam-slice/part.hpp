@@ -1,14 +1,26 @@
 // What is to be sliced: a mesh, images or a shape, and what it is printed around.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
+#include "model/mesh.hpp"
 #include "solid/voxel/part.hpp"
 #include "vam-slice/options.hpp"
 
 namespace vam::slice_tool {
 
-[[nodiscard]] solid::Part part_of(const Options& options, const solid::Writable& room);
+/// What the prints before said of the design.
+struct Correction {
+  std::vector<double> rms_mm;  // of each round
+  std::size_t applied = 0;     // of them
+};
+
+/// The mesh displaced by the deviations of the rounds that help.
+[[nodiscard]] model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, Correction& correction);
+
+[[nodiscard]] solid::Part part_of(const Options& options, const solid::Writable& room, Correction& correction);
 
 /// Of its own size, where the options put it.
 [[nodiscard]] std::optional<solid::Part> insert_of(const Options& options, const solid::Part& part,

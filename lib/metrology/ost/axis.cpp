@@ -1,6 +1,7 @@
 #include "metrology/ost/axis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -68,6 +69,9 @@ double at(const float* row, int width, double x) {
   return (1 - f) * static_cast<double>(row[low]) + f * static_cast<double>(row[low + 1]);
 }
 
+using Pull = std::array<double, 2>;  // on column and tilt
+constexpr int ranges = 16;
+
 // Normal equations of the residuals r = M(c + x, y) - M(c - x, y) in column and tilt. A change of the tilt moves the
 // point (x, y) by (y, -x): without the second part a wide body would seem to lean the other way.
 struct Normal {
@@ -75,14 +79,17 @@ struct Normal {
   double cr = 0, tr = 0, rr = 0;
   double noise_cc = 0, noise_tt = 0;  // what slopes of variance 1 add to cc and tt
   long count = 0;
+  std::array<std::array<Pull, ranges>, ranges> pulls{};  // of the ranges of rows and of offsets
 
-  void add(double by_column, double by_tilt, double r, double weight) {
+  void add(double by_column, double by_tilt, double r, double weight, Pull& pull) {
     cc += weight * by_column * by_column;
     ct += weight * by_column * by_tilt;
     tt += weight * by_tilt * by_tilt;
     cr += weight * by_column * r;
     tr += weight * by_tilt * r;
     rr += weight * r * r;
+    pull[0] += weight * by_column * r;
+    pull[1] += weight * by_tilt * r;
   }
 };
 
@@ -93,6 +100,7 @@ Normal normal_of(const Image& image, double column, double bound) {
   for (int y = 1; y + 1 < image.height; ++y) {
     const float* rows[3] = {image.row(y - 1), image.row(y), image.row(y + 1)};
     const double along = y - middle;
+    auto& pulls = normal.pulls[y * ranges / image.height];
     for (int pixel = 0; pixel + 0.5 < reach; ++pixel) {
       const double x = pixel + 0.5;
       const double right = column + x;
@@ -101,13 +109,37 @@ Normal normal_of(const Image& image, double column, double bound) {
       const double r = m(1, right) - m(1, left);
       const double by_column = 0.5 * (m(1, right + 1) - m(1, right - 1)) - 0.5 * (m(1, left + 1) - m(1, left - 1));
       const double by_row = 0.5 * (m(2, right) - m(0, right)) + 0.5 * (m(2, left) - m(0, left));
-      normal.add(by_column, along * by_column - x * by_row, r, std::min(1.0, bound / (std::abs(r) + 1e-300)));
+      normal.add(by_column, along * by_column - x * by_row, r, std::min(1.0, bound / (std::abs(r) + 1e-300)),
+                 pulls[std::min(ranges - 1, static_cast<int>(ranges * x / reach))]);
       normal.noise_cc += 1;
       normal.noise_tt += along * along + x * x;
       ++normal.count;
     }
   }
   return normal;
+}
+
+// Variances of column and tilt by how much ranges of rows and of offsets disagree: what is the same in all rows or at
+// all offsets errs alike. Both, less what both count.
+Pull disagreement(const Normal& n, double cc, double tt, double left) {
+  Pull by_rows{}, by_offsets{}, by_both{};
+  const auto add = [&](const Pull& pull, Pull& to) {
+    to[0] += std::pow((tt * pull[0] - n.ct * pull[1]) / left, 2);
+    to[1] += std::pow((cc * pull[1] - n.ct * pull[0]) / left, 2);
+  };
+  for (int i = 0; i < ranges; ++i) {
+    Pull rows{}, offsets{};
+    for (int j = 0; j < ranges; ++j) {
+      for (std::size_t u = 0; u < rows.size(); ++u) {
+        rows[u] += n.pulls[i][j][u];
+        offsets[u] += n.pulls[j][i][u];
+      }
+      add(n.pulls[i][j], by_both);
+    }
+    add(rows, by_rows);
+    add(offsets, by_offsets);
+  }
+  return {by_rows[0] + by_offsets[0] - by_both[0], by_rows[1] + by_offsets[1] - by_both[1]};
 }
 
 [[noreturn]] void refuse(const Image& image) {
@@ -145,8 +177,9 @@ AxisEstimate find_axis(const Image& mean_view) {
     const double tt = std::max(n.tt - noise2 * n.noise_tt, 1e-6 * n.tt);
     const double left = std::max(cc * tt - n.ct * n.ct, 1e-6 * cc * tt);
     const double variance = 4 * std::numbers::pi * blur_px * blur_px * n.rr / static_cast<double>(n.count);
-    estimate.column_sigma = std::sqrt(variance * tt / left);
-    estimate.tilt_sigma_rad = std::sqrt(variance * cc / left);
+    const Pull ranges_say = disagreement(n, cc, tt, left);
+    estimate.column_sigma = std::sqrt(std::max(variance * tt / left, ranges_say[0]));
+    estimate.tilt_sigma_rad = std::sqrt(std::max(variance * cc / left, ranges_say[1]));
     if (std::abs(column) < 1e-3 && std::abs(tilt) < 1e-5) break;
   }
   return estimate;

@@ -11,18 +11,15 @@
 #include "base/per_slice.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
-#include "metrology/ost/private/back_projection.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
-#include "metrology/ost/private/heights.hpp"
 #include "metrology/ost/private/mlem.hpp"
+#include "metrology/ost/private/ost_state.hpp"
 #include "model/circle.hpp"
 #include "model/magnification.hpp"
 #include "optics/chief_ray.hpp"
-#include "optics/resample.hpp"
 #include "optics/skew_ray.hpp"
 #include "optics/writable_radius.hpp"
 #include "tomo/filter.hpp"
-#include "tomo/radon.hpp"
 
 namespace vam::metrology {
 
@@ -56,38 +53,6 @@ void scale(std::vector<Slab>& slabs, float factor) {
 }
 
 }  // namespace
-
-struct OstReconstructor::State {
-  OstOptions options;
-  AxisPose axis;
-  Eye eye;
-  optics::Detector detector;  // virtual, pitch = voxel
-  double absorption_per_mm = 0;
-  double azimuth_rad = 0;
-  int direction = 1;
-  model::Grid grid;
-
-  [[nodiscard]] tomo::ParallelGeometry geometry(int angles) const {
-    return {.nx = grid.nx,
-            .ny = grid.ny,
-            .columns = detector.columns,
-            .angles = angles,
-            .axis_x = 0.5 * (grid.nx - 1),
-            .axis_y = 0.5 * (grid.ny - 1),
-            .angle_start_rad = 0,
-            .angle_step_rad = 2 * std::numbers::pi / angles,
-            .alpha_per_px = -absorption_per_mm * grid.voxel_mm};
-  }
-
-  [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
-  [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
-                                                     std::span<const double> heights_mm) const;
-  [[nodiscard]] ClimbingRays rays(int angles) const;
-  [[nodiscard]] int half_width(double voxel_mm) const;
-  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
-  void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
-  void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
-};
 
 OstReconstructor::OstReconstructor(const model::Printer& printer, double pixel_mm, int columns, int rows,
                                    const AxisPose& axis, const OstOptions& options)
@@ -235,7 +200,10 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     const int count = std::min(slices_a_pass, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
     const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
-    auto seen = camera_sinograms(views, turn, s.axis, rows, heights_mm.size());
+    auto level = level_views(views, s.axis, rows);
+    undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
+    auto seen = camera_sinograms(level, turn);
+    level.clear();
     if (dirt.has_background) subtract(seen, dirt.background);
     auto sinograms = s.virtual_sinograms(seen, heights_mm);
     seen.clear();

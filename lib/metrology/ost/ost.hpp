@@ -9,6 +9,7 @@
 
 #include "metrology/ost/axis.hpp"
 #include "metrology/ost/dirt.hpp"
+#include "metrology/ost/run_out.hpp"
 #include "metrology/ost/views.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
@@ -23,6 +24,7 @@ struct OstOptions {
   bool non_negative = true;        // negative densities become 0
   int mlem_iterations = 0;         // iterations of MLEM [SV82] after FBP, for noisy views
   std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
+  RunOutVector run_out_mm{};       // of the vial, removed from the views
   double radius_mm = 0;            // of the reconstructed cylinder; 0: all that the camera sees through the vial
 };
 
@@ -38,6 +40,10 @@ class OstReconstructor {
   ~OstReconstructor();
 
   [[nodiscard]] const model::Grid& grid() const;
+
+  /// What the views of a turn say of run-out and axis, from where this rig has them. Not determined where the resin
+  /// absorbs (a line is not the same from its other end), without refraction and in a bath of the resin's index.
+  [[nodiscard]] RunOut find_run_out(std::span<const CameraView> views) const;
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
   /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.

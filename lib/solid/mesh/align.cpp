@@ -5,7 +5,9 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "base/stats/median.hpp"
 #include "solid/mesh/private/align_starts.hpp"
+#include "solid/mesh/private/overlap_search.hpp"
 
 namespace vam::solid {
 
@@ -40,12 +42,18 @@ struct Pairs {
   std::vector<Vector3d> foot;
   std::vector<Vector3d> normal;
   std::vector<double> distance;  // along the normal
-  double rms = 0;                // full distances
+  std::vector<double> far;       // full distances
+  double rms = 0;                // of them, cut off at `reach`
 };
 
-Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Surface& reference) {
+// `reach` of points that are no part of what can match, for parts of a print.
+constexpr double everywhere = 1e300;
+
+Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Surface& reference,
+              double reach = everywhere) {
   const std::size_t n = points.size();
-  Pairs pairs{std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<double>(n), 0};
+  Pairs pairs{std::vector<Vector3d>(n), std::vector<Vector3d>(n), std::vector<Vector3d>(n),
+              std::vector<double>(n),   std::vector<double>(n),   0};
   constexpr std::size_t chunk = 256;
   const auto chunks = static_cast<int>((n + chunk - 1) / chunk);
   parallel_for(chunks, [&](int c) {
@@ -58,10 +66,11 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Sur
       pairs.foot[i] = to_eigen(foot.point);
       pairs.normal[i] = to_eigen(foot.normal);
       pairs.distance[i] = (pairs.moved[i] - pairs.foot[i]).dot(pairs.normal[i]);
+      pairs.far[i] = (pairs.moved[i] - pairs.foot[i]).norm();
     }
   });
   double sum = 0;
-  for (std::size_t i = 0; i < n; ++i) sum += (pairs.moved[i] - pairs.foot[i]).squaredNorm();
+  for (const double far : pairs.far) sum += std::pow(std::min(far, reach), 2);
   pairs.rms = std::sqrt(sum / static_cast<double>(n));
   return pairs;
 }
@@ -69,20 +78,29 @@ Pairs pair_up(const std::vector<Vector3d>& points, const Motion& pose, const Sur
 // The bound of [HUB64]: farther points pull with constant force, so that debris turns the pose little. Not lower: to a
 // bound below the print's own growth or shrinkage, opposite faces that both stand out say nothing about where the
 // middle is.
-double huber_bound(const Pairs& pairs) { return 2.5 * pairs.rms + 1e-12; }
+double huber_weight(double far, double rms) { return std::min(1.0, (2.5 * rms + 1e-12) / (far + 1e-300)); }
+
+// The biweight of [BT74] for a part of a print, of which the cut faces lie inside the reference and match nothing.
+double part_weight(double far, double deviation) {
+  const double at = far / (4.685 * deviation + 1e-12);
+  return at < 1 ? (1 - at * at) * (1 - at * at) : 0.0;
+}
+
+// Standard deviation of normal distances with this median of their magnitudes.
+double deviation_of(const Pairs& pairs) { return 1.4826 * stats::median(pairs.far); }
 
 // One Gauss-Newton step of the point-to-plane error [CM92; physics §13.3], linearised about `centre`: unknowns are
 // rotation vector, shift and relative scale. Returns how far the step moves the farthest point.
-double step(const Pairs& pairs, bool with_scale, Motion& pose) {
+double step(const Pairs& pairs, bool with_scale, bool part, Motion& pose) {
   const Vector3d centre = mean_of(pairs.moved);
-  const double bound = huber_bound(pairs);
+  const double deviation = part ? deviation_of(pairs) : 0.0;
   Matrix7d normal = Matrix7d::Zero();
   Vector7d right = Vector7d::Zero();
   double reach = 0;
   for (std::size_t i = 0; i < pairs.moved.size(); ++i) {
     const Vector3d arm = pairs.moved[i] - centre;
     reach = std::max(reach, arm.norm());
-    const double weight = std::min(1.0, bound / ((pairs.moved[i] - pairs.foot[i]).norm() + 1e-300));
+    const double weight = part ? part_weight(pairs.far[i], deviation) : huber_weight(pairs.far[i], pairs.rms);
     Vector7d row;
     row << arm.cross(pairs.normal[i]), pairs.normal[i], with_scale ? arm.dot(pairs.normal[i]) : 0.0;
     normal += weight * row * row.transpose();
@@ -114,21 +132,22 @@ double step(const Pairs& pairs, bool with_scale, Motion& pose) {
 }
 
 Alignment run_icp(const std::vector<Vector3d>& points, const Surface& reference, const AlignOptions& options,
-                  int max_iterations, double size, Motion& pose) {
+                  int max_iterations, double size, Motion& pose, double reach = everywhere) {
   Alignment result;
+  const bool part = reach < everywhere;
   constexpr int patience = 3;  // pairs at edges change sides for ever: where the error rests, so may we
   double best = 1e300;
   int idle = 0;
   for (result.iterations = 0; result.iterations < max_iterations; ++result.iterations) {
-    const Pairs pairs = pair_up(points, pose, reference);
+    const Pairs pairs = pair_up(points, pose, reference, reach);
     idle = pairs.rms < best * (1 - 1e-4) ? 0 : idle + 1;
     best = std::min(best, pairs.rms);
-    if (step(pairs, options.with_scale, pose) < options.tolerance * size || idle == patience) {
+    if (step(pairs, options.with_scale, part, pose) < options.tolerance * size || idle == patience) {
       result.converged = true;
       break;
     }
   }
-  result.rms_mm = pair_up(points, pose, reference).rms;
+  result.rms_mm = pair_up(points, pose, reference, reach).rms;
   result.transform = to_similarity(pose);
   return result;
 }
@@ -156,38 +175,204 @@ Alignment refine(const model::TriangleSoup& print, const Surface& reference, con
                  bounding_box(print).largest_side(), pose);
 }
 
-Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh, const Surface& reference,
-                const AlignOptions& options) {
-  const std::vector<Vector3d> all = points_of(print, options.samples);
-  const std::vector<Vector3d> few = points_of(print, 200);
-  const double size = bounding_box(reference_mesh).largest_side();
-  AlignOptions rigid = options;
-  rigid.with_scale = false;
+namespace {
 
-  struct Start {
-    double rms;
-    Motion pose;
+struct Start {
+  double rms;
+  Motion pose;
+};
+
+// Fewer and fewer starts are refined more and more.
+template <class RmsOf>
+void keep_best(std::vector<Start>& starts, std::size_t count, const RmsOf& rms_of) {
+  parallel_for(count_of(starts), [&](int i) {
+    Start& start = starts[i];
+    start.rms = rms_of(start.pose);
+  });
+  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
+  starts.resize(std::min(starts.size(), count));
+}
+
+// What alignments of one print have in common.
+struct Task {
+  const model::TriangleSoup& print;
+  const Surface& reference;
+  const AlignOptions& options;
+  Box box;
+  std::vector<Vector3d> all;   // samples of the print
+  std::vector<Vector3d> some;  // fewer
+  std::vector<Vector3d> few;
+  std::vector<Vector3d> reference_points;
+
+  [[nodiscard]] double size() const { return box.largest_side(); }
+};
+
+Alignment align_whole(const Task& task, Motion& pose) {
+  AlignOptions rigid = task.options;
+  rigid.with_scale = false;
+  const auto icp = [&](const auto& points, const AlignOptions& how, int most, Motion& start) {
+    return run_icp(points, task.reference, how, most, task.size(), start).rms_mm;
   };
   std::vector<Start> starts;
-  for (const Motion& pose : starting_poses(all, points_of(reference_mesh, options.samples), options.with_scale)) {
-    starts.push_back({0, pose});
-  }
-  // Fewer and fewer starts are refined more and more.
-  const auto keep = [&](std::size_t count, const auto& rms_of) {
-    parallel_for(count_of(starts), [&](int i) {
-      Start& start = starts[i];
-      start.rms = rms_of(start.pose);
-    });
-    std::sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.rms < b.rms; });
-    starts.resize(std::min(starts.size(), count));
-  };
-  keep(96, [&](Motion& pose) { return pair_up(few, pose, reference).rms; });
-  keep(12, [&](Motion& pose) { return run_icp(few, reference, rigid, 6, size, pose).rms_mm; });
-  keep(3, [&](Motion& pose) { return run_icp(few, reference, rigid, 20, size, pose).rms_mm; });
+  for (const Motion& start : starting_poses(task.all, task.reference_points, task.options.with_scale))
+    starts.push_back({0, start});
+  keep_best(starts, 96, [&](Motion& start) { return pair_up(task.few, start, task.reference).rms; });
+  keep_best(starts, 12, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
+  keep_best(starts, 3, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
   // The best at a tenth of the points, then all points from there.
-  const std::vector<Vector3d> some = points_of(print, std::max(400, options.samples / 10));
-  keep(1, [&](Motion& pose) { return run_icp(some, reference, options, options.max_iterations, size, pose).rms_mm; });
-  return run_icp(all, reference, options, options.max_iterations, size, starts.front().pose);
+  keep_best(starts, 1, [&](Motion& start) { return icp(task.some, task.options, task.options.max_iterations, start); });
+  pose = starts.front().pose;
+  return run_icp(task.all, task.reference, task.options, task.options.max_iterations, task.size(), pose);
+}
+
+// Share of the reference's points that have a sample of the print within 4 % of the size, about twice the distance
+// between samples.
+double overlap_of(const Task& task, const Motion& pose) {
+  constexpr double near = 0.04;
+  constexpr std::size_t asked = 1000;
+  std::vector<Vector3d> moved;
+  for (const Vector3d& p : task.all) moved.push_back(pose(p));
+  const std::size_t every = std::max<std::size_t>(1, task.reference_points.size() / asked);
+  const auto count = static_cast<int>(task.reference_points.size() / every);
+  const double most2 = std::pow(near * task.size(), 2);
+  std::vector<char> covered(count);
+  parallel_for(count, [&](int i) {
+    const Vector3d& q = task.reference_points[i * every];
+    covered[i] =
+        std::any_of(moved.begin(), moved.end(), [&](const Vector3d& p) { return (p - q).squaredNorm() < most2; }) ? 1
+                                                                                                                  : 0;
+  });
+  return static_cast<double>(std::count(covered.begin(), covered.end(), char{1})) / std::max(1, count);
+}
+
+double apart(const Task& task, const Motion& a, const Motion& b) {
+  double sum = 0;
+  for (const Vector3d& p : task.few) sum += (a(p) - b(p)).norm();
+  return sum / static_cast<double>(task.few.size());
+}
+
+// Motions that lay the reference onto itself, within 2 % of its size.
+std::vector<Motion> symmetries(const Task& task) {
+  constexpr double alike = 0.02;
+  std::vector<Vector3d> few;
+  const std::size_t every = std::max<std::size_t>(1, task.reference_points.size() / 300);
+  for (std::size_t i = 0; i < task.reference_points.size(); i += every) few.push_back(task.reference_points[i]);
+  std::vector<Motion> found;
+  std::vector<Motion> starts = starting_poses(task.reference_points, task.reference_points, false);
+  std::vector<char> symmetric(starts.size());
+  AlignOptions rigid = task.options;
+  rigid.with_scale = false;
+  parallel_for(count_of(starts), [&](int i) {
+    run_icp(few, task.reference, rigid, 15, task.size(), starts[i]);  // principal axes of a cube are any
+    const Pairs pairs = pair_up(few, starts[i], task.reference);
+    symmetric[i] = *std::max_element(pairs.far.begin(), pairs.far.end()) < alike * task.size() ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (symmetric[i] != 0) found.push_back(starts[i]);
+  }
+  return found;
+}
+
+// Is the print at one pose where it is at the other, but for symmetries of the reference and its own? Its samples then
+// have one of the other pose within 4 % of the size.
+bool is_same_place(const Task& task, const Motion& one, const Motion& other, const std::vector<Motion>& symmetric) {
+  constexpr double near = 0.04;
+  const double most2 = std::pow(near * task.size(), 2);
+  std::vector<Vector3d> there;
+  for (const Vector3d& p : task.all) there.push_back(other(p));
+  return std::any_of(symmetric.begin(), symmetric.end(), [&](const Motion& motion) {
+    return std::all_of(task.few.begin(), task.few.end(), [&](const Vector3d& p) {
+      const Vector3d here = motion(one(p));
+      return std::any_of(there.begin(), there.end(),
+                         [&](const Vector3d& q) { return (here - q).squaredNorm() < most2; });
+    });
+  });
+}
+
+// The best of poses that lie 5 % of the size apart.
+void keep_distinct(const Task& task, std::vector<Start>& starts, std::size_t count) {
+  constexpr double another = 0.05;
+  std::vector<Start> kept;
+  for (const Start& start : starts) {
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const Start& other) {
+      return apart(task, start.pose, other.pose) < another * task.size();
+    });
+    if (!known) kept.push_back(start);
+    if (kept.size() == count) break;
+  }
+  starts = std::move(kept);
+}
+
+// Share of the samples that match within this distance.
+double matching(const Pairs& pairs, double within_mm) {
+  const auto count = std::count_if(pairs.far.begin(), pairs.far.end(), [&](double far) { return far < within_mm; });
+  return static_cast<double>(count) / static_cast<double>(pairs.far.size());
+}
+
+// The other pose in which most samples match, if nine tenths as many do as in the best: how much of a part is broken
+// off, and matches nothing, is not known so well.
+std::optional<Rival> rival_of(const Task& task, const std::vector<Start>& starts) {
+  constexpr double as_well = 0.9;
+  constexpr double another = 0.02;  // of the size, that samples lie apart
+  const Motion& best = starts.front().pose;
+  const Pairs pairs = pair_up(task.some, best, task.reference);
+  const double within_mm = std::max(4 * deviation_of(pairs), 2e-3 * task.size());
+  std::vector<Motion> symmetric;
+  Rival rival;
+  rival.best_match = matching(pairs, within_mm);
+  for (const Start& start : starts) {
+    const double apart_mm = apart(task, best, start.pose);
+    if (apart_mm < another * task.size()) continue;
+    const double match = matching(pair_up(task.some, start.pose, task.reference), within_mm);
+    if (match <= rival.match || match < as_well * rival.best_match) continue;
+    if (symmetric.empty()) symmetric = symmetries(task);
+    if (is_same_place(task, best, start.pose, symmetric)) continue;
+    rival = {to_similarity(start.pose), match, rival.best_match, apart_mm};
+  }
+  return rival.match > 0 ? std::optional(rival) : std::nullopt;
+}
+
+Alignment align_part(const Task& task, const Motion& whole) {
+  constexpr double reach = 0.05;  // of the size
+  const double reach_mm = reach * task.size();
+  AlignOptions rigid = task.options;
+  rigid.with_scale = false;
+  const auto icp = [&](const auto& points, const AlignOptions& how, int most, Motion& start) {
+    return run_icp(points, task.reference, how, most, task.size(), start, reach_mm).rms_mm;
+  };
+  std::vector<Start> starts{{0, whole}};
+  for (const Motion& start : overlapping_poses(task.few, task.box, task.reference, 400)) starts.push_back({0, start});
+  keep_best(starts, 200, [&](Motion& start) { return icp(task.few, rigid, 6, start); });
+  keep_distinct(task, starts, 80);
+  keep_best(starts, 80, [&](Motion& start) { return icp(task.few, rigid, 20, start); });
+  keep_distinct(task, starts, 24);
+  keep_best(starts, 24,
+            [&](Motion& start) { return icp(task.some, task.options, task.options.max_iterations, start); });
+  Motion pose = starts.front().pose;
+  Alignment found =
+      run_icp(task.all, task.reference, task.options, task.options.max_iterations, task.size(), pose, reach_mm);
+  found.overlap = overlap_of(task, pose);
+  found.rival = rival_of(task, starts);
+  return found;
+}
+
+}  // namespace
+
+Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh, const Surface& reference,
+                const AlignOptions& options) {
+  const Task task{print,
+                  reference,
+                  options,
+                  bounding_box(reference_mesh),
+                  points_of(print, options.samples),
+                  points_of(print, std::max(400, options.samples / 10)),
+                  points_of(print, 200),
+                  points_of(reference_mesh, options.samples)};
+  Motion pose;
+  Alignment whole = align_whole(task, pose);
+  whole.overlap = overlap_of(task, pose);
+  constexpr double complete = 6.0 / 7;
+  return whole.overlap >= complete ? whole : align_part(task, pose);
 }
 
 }  // namespace vam::solid

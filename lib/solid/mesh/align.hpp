@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "base/vector3.hpp"
 #include "model/mesh.hpp"
@@ -28,11 +29,21 @@ struct AlignOptions {
   double tolerance = 1e-6;  // stop when a step moves no point by more than this part of the size, or helps no more
 };
 
+/// Another pose of a part of a print that fits as well as the best.
+struct Rival {
+  Similarity transform;
+  double match = 0;       // share of the samples that lie on the reference, within 4 deviations of the best pose
+  double best_match = 0;  // in the best pose
+  double apart_mm = 0;    // mean distance of the samples in the two poses
+};
+
 struct Alignment {
   Similarity transform;
   double rms_mm = 0;   // distance of the samples to the reference after alignment
   int iterations = 0;  // of the final ICP
   bool converged = false;
+  double overlap = 1;          // share of the reference's surface that has the print within 4 % of the size
+  std::optional<Rival> rival;  // of a part of a print, where there is one
 };
 
 /// Only ICP, from where the print is.
@@ -40,6 +51,10 @@ struct Alignment {
 
 /// Centroids and principal axes of both surfaces give the starts: all 24 proper ways to lay the axes onto each other,
 /// and turns about the axes that symmetry leaves undetermined; a short ICP ranks them, the best go on to the end.
+/// Where these leave more than a seventh of the reference uncovered, the print is taken for a part: poses all over the
+/// reference are tried, far points do not pull [BT74], and the best pose has a rival if another one, which no symmetry
+/// of the reference explains, matches nine
+/// tenths as many points.
 [[nodiscard]] Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
                               const Surface& reference, const AlignOptions& options);
 

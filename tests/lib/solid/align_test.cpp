@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "base/random.hpp"
 #include "lib/meshes.hpp"
 #include "solid/mesh/private/winding.hpp"
 #include "solid/mesh/surface.hpp"
@@ -181,4 +184,98 @@ TEST_CASE("the influence of debris is bounded from 2.5 times the deviation on [H
   const auto found = solid::refine(print, solid::Surface(cube), {});
   CHECK(-found.transform.shift_mm[0] == doctest::Approx(t).epsilon(0.015));
   CHECK(std::abs(found.transform.shift_mm[1]) < 0.01 * t);
+}
+
+namespace {
+
+// What is left of the solid below a plane through it, closed by the cut: 48 to 57 % of the volume, as it prints: at
+// voxels, rough by `rough_mm`.
+TriangleSoup part_of(const solid::Field& field, const model::Grid& grid, const Vector3& normal, double share,
+                     double rough_mm, std::uint64_t seed) {
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  solid::cover(field, grid, 0, grid.nz, volume.values.data());
+  std::vector<std::pair<double, std::size_t>> along;
+  double total = 0;
+  for (std::size_t i = 0; i < volume.values.size(); ++i) {
+    if (volume.values[i] == 0) continue;
+    const auto n = static_cast<int>(i);
+    const Vector3 p{grid.x_mm(n % grid.nx), grid.y_mm(n / grid.nx % grid.ny), grid.z_mm(n / grid.nx / grid.ny)};
+    along.emplace_back(dot(p, normal), i);
+    total += static_cast<double>(volume.values[i]);
+  }
+  std::sort(along.begin(), along.end());
+  double kept = 0;
+  for (const auto& [height, i] : along) {
+    if (kept > share * total) volume.values[i] = 0;
+    kept += static_cast<double>(volume.values[i]);
+  }
+  TriangleSoup mesh = solid::isosurface(volume, 0.5);
+  for (auto& p : mesh.points) {
+    for (double& v : p) v += 2 * rough_mm * (unit_interval(seed = scrambled(seed)) - 0.5);
+  }
+  return mesh;
+}
+
+struct Design {
+  solid::Field field;
+  model::Grid grid;
+  TriangleSoup mesh;
+};
+
+Design design_of(const char* shape, const std::array<int, 3>& voxels, double voxel_mm) {
+  Design design{solid::make_shape(shape),
+                model::centred_grid(voxels[0], voxels[1], voxels[2], voxel_mm, -0.5 * voxel_mm * (voxels[2] - 1)),
+                {}};
+  model::Volume volume{design.grid, std::vector<float>(design.grid.size())};
+  solid::cover(design.field, design.grid, 0, design.grid.nz, volume.values.data());
+  design.mesh = solid::isosurface(volume, 0.5);
+  return design;
+}
+
+// Worst distance of the print's points from where they belong, back by the inverse of their turn.
+double misplaced_mm(const TriangleSoup& right, const TriangleSoup& print, const solid::Similarity& found) {
+  double worst = 0;
+  for (std::size_t i = 0; i < print.points.size(); ++i)
+    worst = std::max(worst, length(found(print.points[i]) - right.points[i]));
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("48 to 57 % of a print lie where they belong, ten of ten") {
+  const Design boat = design_of("boat:length=10", {60, 60, 60}, 0.2);
+  const solid::Surface surface(boat.mesh);
+  REQUIRE(solid::bounding_box(boat.mesh).largest_side() > 8);
+  for (std::uint64_t draw = 0; draw < 10; ++draw) {
+    CAPTURE(draw);
+    std::uint64_t seed = scrambled(draw + 1);
+    const auto next = [&] { return unit_interval(seed = scrambled(seed)); };
+    Vector3 normal{next() - 0.5, next() - 0.5, next() - 0.5};
+    normal = (1 / length(normal)) * normal;
+    const TriangleSoup right =
+        part_of(boat.field, boat.grid, normal, 0.48 + 0.01 * static_cast<double>(draw), 0.05, draw);
+    const Vector3 axis{next() - 0.5, next() - 0.5, next() - 0.5};
+    const TriangleSoup print = moved(right, turn(axis, 360 * next(), {30, -12, 4}));
+    const auto found = solid::align(print, boat.mesh, surface, {});
+    const double off_mm = misplaced_mm(right, print, found.transform);
+    MESSAGE("part ", draw, " off by ", off_mm, " mm, overlap ", found.overlap, ", rival ", found.rival.has_value());
+    CHECK((off_mm < 0.1 || found.rival.has_value()));  // half a voxel, or said
+    CHECK(found.overlap < 0.75);
+  }
+}
+
+TEST_CASE("half a bar lies anywhere along it: ambiguous; half a cube in any corner: the same by symmetry") {
+  TriangleSoup bar;
+  test::add_box({0, 0, 0}, {20, 4, 3}, bar);
+  TriangleSoup half;
+  test::add_box({2, 0, 0}, {12, 4, 3}, half);
+  const auto along = solid::align(moved(half, turn({1, 2, 3}, 77, {5, 5, 5})), bar, solid::Surface(bar), {});
+  REQUIRE(along.rival);
+  CHECK(along.rival->apart_mm > 0.4);
+  TriangleSoup cube;
+  test::add_box({0, 0, 0}, {10, 10, 10}, cube);
+  TriangleSoup slab;
+  test::add_box({0, 0, 0}, {10, 10, 5}, slab);
+  const auto corner = solid::align(moved(slab, turn({1, 2, 3}, 77, {5, 5, 5})), cube, solid::Surface(cube), {});
+  CHECK(!corner.rival);
 }

@@ -1,7 +1,6 @@
 // Views of a turn, row by row, to what one height shows at every angle.
 #pragma once
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -11,8 +10,23 @@
 
 namespace vam::metrology {
 
-/// Sinograms in camera columns x even angles, one for each height of `rows`.
-[[nodiscard]] std::vector<Image> camera_sinograms(std::span<const CameraView> views, const AngleGrid& turn,
-                                                  const AxisPose& axis, const LevelRows& rows, std::size_t heights);
+/// What each view shows at the heights of `rows`: camera columns x heights, the axis upright.
+[[nodiscard]] std::vector<Image> level_views(std::span<const CameraView> views, const AxisPose& axis,
+                                             const LevelRows& rows);
+
+/// How the vial's place moves the columns of one view: what is at column x for a vial in its place is seen at
+/// x + shift + stretch (x - axis column).
+struct ColumnMotion {
+  double shift_px = 0;
+  double stretch = 0;
+
+  [[nodiscard]] double at(double from_axis_px) const { return shift_px + stretch * from_axis_px; }
+};
+
+/// Undoes the motion of each view (cubic [KEYS81]); beyond the image its last column. Nothing where there is none.
+void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion, double axis_column);
+
+/// Sinograms in camera columns x even angles, one for each row of the level views.
+[[nodiscard]] std::vector<Image> camera_sinograms(std::span<const Image> level, const AngleGrid& turn);
 
 }  // namespace vam::metrology

@@ -1,0 +1,37 @@
+// What the turning vial's place does to the views, from lines that are seen from both of their ends.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "base/image.hpp"
+#include "metrology/ost/private/camera_sinograms.hpp"
+
+namespace vam::metrology {
+
+inline constexpr int pair_unknowns = 3;  // an offset of the axis, and the run-out along x and y of the part, in columns
+using PairVector = std::array<double, pair_unknowns>;
+
+/// Motion of the columns of each view by one unit of each unknown.
+struct PairBasis {
+  std::array<std::vector<ColumnMotion>, pair_unknowns> motion;
+  double axis_column = 0;
+};
+
+/// With one standard deviation each.
+struct PairFit {
+  PairVector value{};
+  PairVector sigma{};
+  bool converged = false;
+};
+
+/// Fits the motion after which each line looks alike from both of its ends. `level` has a view each, columns x heights;
+/// `sinograms_of` takes views to virtual sinograms, linearly, the axis in their middle. Gauss-Newton on the
+/// differences, far ones weighted down [HUB64]; standard deviations from the scatter between ranges of angle and of
+/// offset, as the errors of neighbouring lines are not independent [physics §8].
+[[nodiscard]] PairFit fit_line_pairs(const std::vector<Image>& level, const PairBasis& basis,
+                                     const std::function<std::vector<Image>(const std::vector<Image>&)>& sinograms_of);
+
+}  // namespace vam::metrology

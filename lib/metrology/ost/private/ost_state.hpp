@@ -1,0 +1,51 @@
+// What a rig is, between the files that use it.
+#pragma once
+
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "metrology/ost/ost.hpp"
+#include "metrology/ost/private/back_projection.hpp"
+#include "metrology/ost/private/camera_sinograms.hpp"
+#include "metrology/ost/private/heights.hpp"
+#include "optics/resample.hpp"
+#include "tomo/radon.hpp"
+
+namespace vam::metrology {
+
+struct OstReconstructor::State {
+  OstOptions options;
+  AxisPose axis;
+  Eye eye;
+  optics::Detector detector;  // virtual, pitch = voxel
+  double absorption_per_mm = 0;
+  double azimuth_rad = 0;
+  int direction = 1;
+  model::Grid grid;
+
+  [[nodiscard]] tomo::ParallelGeometry geometry(int angles) const {
+    return {.nx = grid.nx,
+            .ny = grid.ny,
+            .columns = detector.columns,
+            .angles = angles,
+            .axis_x = 0.5 * (grid.nx - 1),
+            .axis_y = 0.5 * (grid.ny - 1),
+            .angle_start_rad = 0,
+            .angle_step_rad = 2 * std::numbers::pi / angles,
+            .alpha_per_px = -absorption_per_mm * grid.voxel_mm};
+  }
+
+  [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
+  [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
+                                                     std::span<const double> heights_mm) const;
+  /// What a run-out of (x, y) mm in the frame of the part does to the columns of views at these stage angles.
+  [[nodiscard]] std::vector<ColumnMotion> motion(std::span<const double> angles_deg, double x_mm, double y_mm) const;
+  [[nodiscard]] ClimbingRays rays(int angles) const;
+  [[nodiscard]] int half_width(double voxel_mm) const;
+  void clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part, Dirt& found) const;
+  void weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const;
+  void refine_slices(std::span<const Image> sinograms, int first, model::Volume& volume) const;
+};
+
+}  // namespace vam::metrology

@@ -1,0 +1,29 @@
+// Run-out: the axis of the vial beside that of the stage, seen in the views themselves.
+#pragma once
+
+#include <array>
+
+#include "base/json_fwd.hpp"
+
+namespace vam::metrology {
+
+/// From the axis of the stage to that of the vial, in the frame of the part.
+using RunOutVector = std::array<double, 2>;
+
+/// What was found, with one standard deviation.
+struct RunOut {
+  bool determined = false;  // the rest is without meaning when it is not
+  RunOutVector mm{};
+  RunOutVector sigma_mm{};
+  double column = 0;  // of the stage's axis, found together with it
+  double column_sigma = 0;
+
+  [[nodiscard]] double size_mm() const;
+  [[nodiscard]] double size_sigma_mm() const;  // along its direction, or of a part where the size is 0
+  /// More than three standard deviations from 0 with a sigma that lets it be removed.
+  [[nodiscard]] bool seen() const;
+};
+
+[[nodiscard]] Json to_json(const RunOut& found);
+
+}  // namespace vam::metrology

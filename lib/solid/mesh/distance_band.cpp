@@ -1,0 +1,78 @@
+#include "solid/mesh/distance_band.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+
+namespace vam::solid {
+
+namespace {
+
+constexpr int edge = 6;  // voxels of a block
+
+struct VoxelSpan {
+  int first;
+  int last;  // beyond
+  [[nodiscard]] double middle() const { return 0.5 * (first + last - 1); }
+};
+
+VoxelSpan span_of(int block, int voxels) { return {block * edge, std::min(voxels, (block + 1) * edge)}; }
+
+// Signed distances at points along a way: the side is asked for only where it may have changed, as a distance does not
+// change by more than the way.
+class WayAlong {
+ public:
+  explicit WayAlong(const Surface& surface) : surface_(surface) {}
+
+  double operator()(const Vector3& point) {
+    const Foot foot = surface_.closest(point, start_);
+    start_ = foot.triangle;
+    const double distance = length(point - foot.point);
+    const bool may_cross = !begun_ || distance + distance_ <= length(point - point_) * (1 + 1e-9);
+    if (may_cross) outside_ = surface_.signed_distance(point) > 0;
+    begun_ = true;
+    distance_ = distance;
+    point_ = point;
+    return outside_ ? distance : -distance;
+  }
+
+ private:
+  const Surface& surface_;
+  bool begun_ = false;
+  bool outside_ = true;
+  int start_ = 0;
+  double distance_ = 0;
+  Vector3 point_{};
+};
+
+}  // namespace
+
+model::Volume distance_band(const Surface& surface, const model::Grid& grid, double band_mm) {
+  model::Volume volume{grid, std::vector<float>(grid.size())};
+  const auto blocks = [](int voxels) { return (voxels + edge - 1) / edge; };
+  const int across = blocks(grid.nx);
+  const int along = blocks(grid.ny);
+  const double reach_mm = band_mm + 0.5 * std::sqrt(3.0) * edge * grid.voxel_mm;
+  parallel_for(across * along * blocks(grid.nz), [&](int n) {
+    const VoxelSpan x = span_of(n % across, grid.nx);
+    const VoxelSpan y = span_of(n / across % along, grid.ny);
+    const VoxelSpan z = span_of(n / across / along, grid.nz);
+    WayAlong at(surface);
+    const double middle = at({grid.x_mm(x.middle()), grid.y_mm(y.middle()), grid.z_mm(z.middle())});
+    const bool far = std::abs(middle) > reach_mm;
+    for (int k = z.first; k < z.last; ++k) {
+      for (int j = y.first; j < y.last; ++j) {
+        float* row = volume.slice(k) + std::ptrdiff_t{j} * grid.nx;
+        for (int i = x.first; i < x.last; ++i) {
+          const double distance = far ? middle : at({grid.x_mm(i), grid.y_mm(j), grid.z_mm(k)});
+          row[i] = static_cast<float>(std::clamp(distance, -band_mm, band_mm));
+        }
+      }
+    }
+  });
+  return volume;
+}
+
+}  // namespace vam::solid

@@ -1,0 +1,60 @@
+// vam-slice --compensate: the deviations of prints, taken off the design before it is placed.
+#include <cmath>
+#include <cstdlib>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/text.hpp"
+#include "io/vdb/vdb.hpp"
+#include "solid/voxel/compensation.hpp"
+#include "vam-slice/part.hpp"
+
+namespace vam::slice_tool {
+
+namespace {
+
+double rms_of(const io::SparseVolume& volume, const std::string& path) {
+  const auto found = volume.metadata.find("vam:rms_mm");
+  if (found == volume.metadata.end()) {
+    throw Error{Fault::data, path + ": has no RMS deviation (vam:rms_mm); give volumes of vam-sdf --volume"};
+  }
+  return std::strtod(found->second.c_str(), nullptr);
+}
+
+// But for the rounding of the file.
+bool is_same(const model::Grid& a, const model::Grid& b) {
+  const auto near = [&](std::size_t axis) {
+    return std::abs(a.origin_mm[axis] - b.origin_mm[axis]) < 1e-3 * a.voxel_mm;
+  };
+  return a.nx == b.nx && a.ny == b.ny && a.nz == b.nz && near(0) && near(1) && near(2);
+}
+
+}  // namespace
+
+model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, Correction& correction) {
+  if (options.compensate.empty()) return mesh;
+  std::vector<model::Volume> rounds;
+  for (const std::string& path : options.compensate) {
+    const io::SparseVolume sparse = io::read_volume(path, "sdf");
+    correction.rms_mm.push_back(rms_of(sparse, path));
+    rounds.push_back({sparse.grid(), std::vector<float>(sparse.grid().size())});
+    sparse.read_slices(0, sparse.grid().nz, rounds.back().values.data());
+  }
+  // Surfaces of sharp steps lie within a tenth of a voxel; their RMS is known to half of that.
+  const model::Grid grid = rounds.front().grid;
+  constexpr double uncertainty = 0.05;  // voxels
+  correction.applied = solid::rounds_to_apply(correction.rms_mm, uncertainty * grid.voxel_mm);
+  if (correction.applied < rounds.size()) {
+    warn("compensation has settled: the print after " + std::to_string(correction.applied) +
+         " corrections was the best, RMS " + format_number(correction.rms_mm[correction.applied], 4) +
+         " mm; the later ones are not applied");
+    rounds.resize(correction.applied);
+  }
+  if (!is_same(solid::deviation_grid(mesh, grid.voxel_mm), grid)) {
+    throw Error{Fault::data, options.compensate.front() + ": is the deviation from another design than " +
+                                 options.input + "; give vam-sdf the same mesh"};
+  }
+  return solid::compensated(mesh, rounds, options.damping);
+}
+
+}  // namespace vam::slice_tool
