@@ -11,6 +11,7 @@
 #include "model/circle.hpp"
 #include "model/dose_metrics.hpp"
 #include "optics/writable_radius.hpp"
+#include "plot/save.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
 #include "vam-view/options.hpp"
@@ -20,10 +21,9 @@ namespace {
 using namespace vam;
 using view_tool::Options;
 
-void write_figure(const Options& options, const plot::ImageFigure& figure, const io::ImageText& text) {
-  if (!options.plain) return io::write_png(options.output, plot::draw(figure), text);
-  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.colours, figure.low, figure.high),
-                text);
+void write_figure(const Options& options, const plot::ImageFigure& figure, const std::string& history) {
+  if (!options.plain) return plot::save(options.output, plot::draw(figure), history, options.dpi);
+  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.scale), {{"Comment", history}});
 }
 
 io::SparseVolume target_for(const Options& options) {
@@ -43,30 +43,33 @@ std::string grid_of(const Options& options) {
   return has_grid(options.input, "target") && has_grid(options.input, "insert") ? "target" : "";
 }
 
-void show_sections(const Options& options, const io::SparseVolume& volume, const io::ImageText& text) {
+void show_sections(const Options& options, const io::SparseVolume& volume, const std::string& history) {
   std::optional<io::SparseVolume> target;
   std::optional<io::SparseVolume> insert;
   if (!options.target.empty()) target.emplace(target_for(options));
   const std::string& with = options.target.empty() ? options.input : options.target;
   if (volume.name() != "insert" && has_grid(with, "insert")) insert.emplace(io::read_volume(with, "insert"));
   write_figure(options,
-               plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr), text);
+               plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr),
+               history);
 }
 
-void show_volume(const Options& options, const io::ImageText& text) {
+void show_volume(const Options& options, const std::string& history) {
   const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
     const model::Printer printer = tool::load_printer(options.printer);
-    const io::SparseVolume target = target_for(options);
+    io::SparseVolume target = target_for(options);
+    target.extend_to(volume.grid());
     const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
     const auto circle = model::writable_circle(volume.grid(), optics::judged_radius_mm(printer, farthest_mm));
-    return io::write_png(options.output, plot::draw(plot::dose_histogram(volume, target, circle, options.view)), text);
+    return plot::save(options.output, plot::draw(plot::dose_histogram(volume, target, circle, options.view)), history,
+                      options.dpi);
   }
-  show_sections(options, volume, text);
+  show_sections(options, volume, history);
 }
 
-void show_images(const Options& options, io::FileType type, const io::ImageText& text) {
+void show_images(const Options& options, io::FileType type, const std::string& history) {
   if (options.histogram || !options.target.empty()) {
     throw Error{Fault::data, options.input + ": --dose-histogram and --target require a volume (VDB), not images"};
   }
@@ -76,20 +79,20 @@ void show_images(const Options& options, io::FileType type, const io::ImageText&
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
-  write_figure(options, plot::view_images(*images, options.view), text);
+  write_figure(options, plot::view_images(*images, options.view), history);
 }
 
 void run(const cli::App& app, Options& options) {
   if (tool::print_printer(options.printer)) return;
   check(options);
+  if (app.given("--title")) options.view.title = options.title;
   options.view.name = options.input == "-" ? "stdin" : options.input.substr(options.input.find_last_of('/') + 1);
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
-  const io::ImageText text{{"Comment", app.history()}};
   const io::FileType type = io::file_type(options.input);
-  if (type == io::FileType::volume) return show_volume(options, text);
-  show_images(options, type, text);
+  if (type == io::FileType::volume) return show_volume(options, app.history());
+  show_images(options, type, app.history());
 }
 
 }  // namespace

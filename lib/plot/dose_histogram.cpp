@@ -77,9 +77,9 @@ Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target
     (label == Label::part ? inside : outside).add(static_cast<double>(value));
   });
   Plot plot;
-  plot.title = options.name + ": dose inside and outside the part";
+  plot.title = options.title.value_or(options.name + ": dose inside and outside the part");
   plot.x = {views::with_unit("dose", dose.units), low, high, false};
-  plot.y = {"voxels inside, and outside (%)", 0, 0, false};
+  plot.y = {"voxels inside, and outside (%)", 0, 0, true};
   const auto bars_out = outside.done();
   const auto bars_in = inside.done();
   plot.series = {{"outside the part", bars_out.edges, bars_out.percent, paint::blue, SeriesStyle::bars},

@@ -14,7 +14,8 @@
 namespace vam::plot {
 
 struct ViewOptions {
-  std::string name;  // of the file, for titles
+  std::string name;                       // of the file, for titles
+  std::optional<std::string> title = {};  // of the figure, instead of one that says what is seen
   Plane plane = Plane::axial;
   std::optional<double> at;   // mm across the plane; z of a slice in mm or stage angle of a frame in degrees
   int sheet = 1;              // number of images, evenly spread

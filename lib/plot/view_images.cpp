@@ -43,7 +43,6 @@ void set_axes(ImageFigure& figure, const model::StackInfo& info) {
   constexpr double turn_ticks_deg = 45;
   if (sinogram && std::abs(step) * info.height > 180) figure.y.step = turn_ticks_deg;
   figure.square_pixels = !sinogram;
-  if (!sinogram && info.pixel_mm > 0) figure.pixel_mm = info.pixel_mm;
 }
 
 // Keeps what is to be shown while the stack goes by.
@@ -103,12 +102,11 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   if (info.units.starts_with("fraction")) found.high = 1;
   views::choose_colours(figure, options, found, !sinogram);
   set_axes(figure, info);
-  figure.value_label = views::with_unit(sinogram ? "sinogram" : "intensity", info.units);
+  figure.scale.label = views::with_unit(sinogram ? "sinogram" : "intensity", info.units);
   figure.size = options.size;
-  figure.title = options.name + (sinogram ? ": sinogram" : ": frame");
-  figure.title += figure.panels.size() == 1
-                      ? (sinogram ? " at " : ", ") + figure.panels[0].caption
-                      : std::string(sinogram ? "s, columns to the right, angles down" : "s, oriented as in the file");
+  const std::string seen = options.name + (sinogram ? ": sinogram" : ": frame");
+  figure.title = options.title.value_or(
+      seen + (figure.panels.size() == 1 ? (sinogram ? " at " : ", ") + figure.panels[0].caption : "s"));
   return figure;
 }
 

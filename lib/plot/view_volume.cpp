@@ -59,14 +59,12 @@ void label(ImageFigure& figure, const io::SparseVolume& volume, const ViewOption
   const double half = 0.5 * grid.voxel_mm;
   figure.x = {std::string(axes.right) + " (mm)", first.x - half, first.x - half + shape.width * grid.voxel_mm, false};
   figure.y = {std::string(axes.up) + " (mm)", first.y - half, first.y - half + shape.height * grid.voxel_mm, false};
-  figure.value_label = is_coverage(volume.name()) ? volume.name() + " (covered fraction)"
+  figure.scale.label = is_coverage(volume.name()) ? volume.name() + " (covered fraction)"
                                                   : views::with_unit(volume.name(), volume.units);
-  figure.pixel_mm = grid.voxel_mm;
   figure.size = options.size;
-  figure.title = options.name + ": " + volume.name() + ", " + plane_name(options.plane);
-  figure.title += figure.panels.size() == 1
-                      ? " section at " + figure.panels[0].caption
-                      : " sections, " + std::string(axes.right) + " to the right, " + axes.up + " up";
+  const std::string seen = options.name + ": " + volume.name() + ", " + plane_name(options.plane);
+  figure.title = options.title.value_or(
+      seen + (figure.panels.size() == 1 ? " section at " + figure.panels[0].caption : " sections"));
 }
 
 }  // namespace

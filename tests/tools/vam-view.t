@@ -26,6 +26,11 @@ is "one pixel a value" "$($png size slice.png)" "64 60 8 3"
 is "columns to the right, angles down" "$($png get slice.png 44 0) $($png get slice.png 19 30)" "255 255 255 255 255 255"
 is "from a pipe" "$(vam-view --at 0.52 --plain --colours grey <sino.exr >piped.png; $png sum piped.png)" "$($png sum slice.png)"
 
+# The dose of a small part, with a margin around it
+vam-slice --shape cylinder --voxel 0.4 -o small.vdb
+vam-sinogram small.vdb --angles 24 --filter ram-lak -o small.exr; vam-dose small.exr --like small.vdb -o wider.vdb
+ok "the histogram of a dose with a margin" vam-view wider.vdb --target small.vdb --dose-histogram -o wider.png
+
 # Frames of a projector, as EXR, images and video: the same pixels
 small_printer >printer.toml
 $exr make projector.exr space=projector width=64 height=36 count=3
@@ -44,6 +49,20 @@ ok "the outline of the part" vam-view part.vdb --target part.vdb -o outlined.png
 holds "the outline is drawn" "$($png sum outlined.png) != $($png sum axial.png)"
 ok "the histogram" vam-view part.vdb --grid target --target part.vdb --dose-histogram -o histogram.png
 is "the histogram is a figure" "$($png size histogram.png)" "900 600 8 3"
+
+# Files for papers
+ok "twice the density" vam-view part.vdb --dpi 192 -o fine.png
+is "twice the pixels" "$($png size fine.png | cut -d' ' -f1)" "$((2 * $($png size axial.png | cut -d' ' -f1)))"
+density() { python3 -c 'import struct,sys; b=open(sys.argv[1],"rb").read(); i=b.index(b"pHYs"); print(*struct.unpack(">IIB",b[i+4:i+13]))' "$1"; }
+is "pixels per metre: 192 and 96 per inch" "$(density fine.png); $(density axial.png)" "7559 7559 1; 3780 3780 1"
+ok "PDF" vam-view part.vdb --target part.vdb -o axial.pdf
+is "a page of vectors and text, with its command" "$(head -c 5 axial.pdf) $(grep -a -c '/Subject (vam-view .* -o axial.pdf)' axial.pdf) $(grep -a -E -q '/Subtype */(TrueType|Type1)' axial.pdf && echo fonts)" "%PDF- 1 fonts"
+vam-view part.vdb --target part.vdb -o again.pdf; sed s/again.pdf/axial.pdf/ again.pdf >renamed.pdf
+same "the same bytes again" renamed.pdf axial.pdf
+ok "SVG" vam-view part.vdb --title 'a < b' -o axial.svg
+is "well-formed, with its command" "$(python3 -c 'import xml.etree.ElementTree as e; r=e.parse("axial.svg").getroot(); print(r.tag[-3:], r[0].text[:8])')" "svg vam-view"
+vam-view part.vdb --title '' -o untitled.png
+holds "no title takes no room" "$($png size untitled.png | cut -d' ' -f2) < $($png size axial.png | cut -d' ' -f2)"
 
 # NRRD
 ok "export of a volume" vam-view part.vdb --export part.nrrd
@@ -79,6 +98,9 @@ fails 65 'target' vam-view part.vdb --grid dose -o x.png
 fails 65 'require a volume' vam-view sino.exr --dose-histogram -o x.png
 mkdir hollow
 fails 65 'no PNG or TIFF' vam-view hollow -o x.png
+fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
+fails 64 'jpg' vam-view part.vdb -o x.jpg
+fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
 fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd

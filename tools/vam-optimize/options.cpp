@@ -140,14 +140,15 @@ void declare_duration(cli::App& app, Options& options) {
                " iterations without success. The optimisation takes several times as long.");
   app.option("--tradeoff", "FILE", options.tradeoff,
              readers("--max-intensity") +
-                 "write the Pareto front of print duration and process window, as CSV or as an image (FILE.png), for "
+                 "write the Pareto front of print duration and process window, as CSV or as a figure (.png, .pdf or "
+                 ".svg), for "
                  "at least " +
                  std::to_string(optimize::front_points) + " maximum intensities, from " +
                  format_number(optimize::shortest_of_even) + " times the even intensity upwards in steps of " +
                  format_number(100 * (optimize::front_raising.factor - 1)) + " %. Takes " +
                  std::to_string(optimize::front_iterations) +
                  " iterations; the projections written are those of the last maximum intensity.")
-      .writes({".csv", ".png"});
+      .writes({".csv", ".png", ".pdf", ".svg"});
 }
 
 void declare_proof(cli::App& app, Options& options) {

@@ -82,7 +82,7 @@ std::string convergence(const std::string& path) {
   curves.x.label = "iteration";
   curves.y.label = "VER, process window / largest dose";
   curves.series = {window, errors};
-  return plot::page_figure("Convergence", plot::page_image(plot::draw(curves), "figures over the iterations"),
+  return plot::page_figure("Convergence", plot::page_image(plot::draw(curves).image(), "figures over the iterations"),
                            file_name(path) + ": the part prints if the process window is positive.");
 }
 

@@ -7,14 +7,16 @@ cli::Manual manual() {
       "vam-view",
       "draw a volume, a sinogram, frames or a video as an image",
       {"vam-view recognises a file by its content, not by its name: an OpenVDB volume (part, dose, scatter, distance), "
-       "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It writes one "
-       "PNG with axes in mm or degrees, a colour bar with the unit, and a scale bar if the pixel size is known.",
+       "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It draws it "
+       "with "
+       "axes in mm or degrees and a colour bar with the unit, as PNG, PDF or SVG.",
        "For a volume it shows a section: axial (x to the right, y up), coronal (x to the right, z up) or sagittal (y "
        "to the right, z up), the middle one or the one at --at. For sinograms it shows the middle slice, detector bins "
        "to the right and stage angles downwards; for frames the first one, oriented as in the file. --sheet N shows N "
        "of them, evenly spaced.",
        "--target draws the surface of the part (coverage 1/2) as a line over the dose. --dose-histogram instead shows "
-       "the distributions of dose inside and outside the part, each as a percentage of its voxels: if they overlap, no "
+       "the distributions of dose inside and outside the part, each as a percentage of its voxels (logarithmic): if "
+       "they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
@@ -27,10 +29,11 @@ cli::Manual manual() {
         "part.vdb --sheet 9 -o sheet.png"},
        {"Its filtered sinogram:",
         "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-view sino.exr -o sino.png"},
+       {"A section for a paper:", "vam-view part.vdb --title '' --image-size 320 -o part.pdf"},
        {"Values for ParaView:", "vam-view part.vdb --export part.nrrd"}},
       {"Memory: the volume as stored in its file and the images shown; stacks are read one image at a time.",
-       "Pixels are enlarged by integer factors, so that each voxel is a square of the same size; reduced images are "
-       "averaged after colour mapping.",
+       "Pixels are enlarged by integer factors at 96 pixels per inch, so that each voxel is a square of the same size; "
+       "reduced images are averaged after colour mapping.",
        "Source: the histogram follows Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, "
        "fig S6."},
       {"vam-dose", "vam-project", "vam-score", "vam-sinogram", "vam-slice"}};

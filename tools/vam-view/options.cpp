@@ -2,12 +2,15 @@
 
 #include "base/error.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/save.hpp"
 
 namespace vam::view_tool {
 
 void declare(cli::App& app, Options& options) {
   app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.").reads();
-  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes({".png"});
+  app.option("-o,--output", "FILE", options.output,
+             "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name; - is PNG to standard output.")
+      .writes(plot::figure_endings());
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
@@ -33,6 +36,9 @@ void declare(cli::App& app, Options& options) {
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
       .was("--size");
+  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; it has 96 of --image-size.");
+  app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
+  app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");
   cli::add_printer(app, options.printer);
 }
@@ -43,6 +49,8 @@ void check(const Options& options) {
   if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
   if (options.plain && (view.sheet > 1 || options.histogram))
     throw Error{Fault::usage, "--plain: shows one image only; omit --sheet and --dose-histogram"};
+  if (options.plain && plot::is_figure(options.output) && !options.output.ends_with(".png"))
+    throw Error{Fault::usage, "--plain: writes pixels; --output must end in .png"};
   if (!options.exported.empty() && options.output != "-") {
     throw Error{Fault::usage, "--export: writes the values instead of the image; omit --output"};
   }

@@ -17,6 +17,8 @@ struct Options {
   std::string plane = "axial";
   std::string target;
   std::string exported;
+  std::string title;
+  double dpi = plot::screen_dpi;
   bool histogram = false;
   bool plain = false;
   plot::ViewOptions view;

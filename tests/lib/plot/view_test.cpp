@@ -158,13 +158,16 @@ TEST_CASE("a figure shows every voxel as a square of its colour, right way up") 
   CHECK(figure.x.low == doctest::Approx(-2));
   CHECK(figure.x.high == doctest::Approx(2));
   CHECK(figure.y.low == doctest::Approx(-1.5));
-  CHECK(figure.high == 1);
-  const auto image = draw(figure);
+  CHECK(figure.scale.high == 1);
+  const auto image = draw(figure).image();
   keep(image, "voxel.png");
-  // Image at (92, 52), 90 pixels a voxel: the bright one is at the upper right.
-  CHECK(image(92 + 7 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 1));
-  CHECK(image(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
-  CHECK(image(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
+  // 90 pixels a voxel: the bright one is at the upper right.
+  const Spot corner = panel_box(figure, 0).first;
+  const int left = static_cast<int>(corner.x);
+  const int top = static_cast<int>(corner.y);
+  CHECK(image(left + 7 * 90 + 45, top + 45) == colour(ColourMap::viridis, 1));
+  CHECK(image(left + 6 * 90 + 45, top + 45) == colour(ColourMap::viridis, 0.25));
+  CHECK(image(left + 7 * 90 + 45, top + 90 + 45) == colour(ColourMap::viridis, 0.25));
   options.at = 9.0;
   CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }, vam::Fault::data),
             "no axial section at 9 mm; it reaches from 0 mm to 1.5 mm"));
@@ -198,7 +201,7 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   }
   CHECK(plot.markers[0].words == "minimum inside 0.9");
   CHECK(plot.markers[1].words == "maximum outside 0.2");
-  keep(draw(plot), "dose-histogram.png");
+  keep(draw(plot).image(), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
             "the dose has 40 x 40 x 40 voxels, but the target has 8 x 8 x 8"));
@@ -279,5 +282,5 @@ TEST_CASE("an insert is hatched, and hides what is behind it from the angles tha
   const ImageFigure figure = view_volume(target, nullptr, {}, &insert);
   CHECK(figure.panels[0].hatched(40, 40) == 1);
   CHECK(!figure.hatched_name.empty());
-  keep(draw(figure), "insert.png");
+  keep(draw(figure).image(), "insert.png");
 }
