@@ -31,6 +31,28 @@ vam-slice --shape cylinder --voxel 0.4 -o small.vdb
 vam-sinogram small.vdb --angles 24 --filter ram-lak -o small.exr; vam-dose small.exr --like small.vdb -o wider.vdb
 ok "the histogram of a dose with a margin" vam-view wider.vdb --target small.vdb --dose-histogram -o wider.png
 
+ok "what it cures" vam-view wider.vdb --target small.vdb --cure-map --sheet 4 -o cure.png
+ok "at another threshold" vam-view wider.vdb --target small.vdb --cure-map --threshold 0.2 -o cure2.png
+holds "another map" "$($png sum cure.png) != $($png sum cure2.png)"
+ok "the print beside the target" vam-view wider.vdb --target small.vdb --render -o print.png
+ok "a body" vam-view small.vdb --render -o body.pdf
+ok "the same dose twice" vam-view wider.vdb --compare wider.vdb -o same.png
+box 2 3 1 >box.off
+ok "a mesh" vam-view box.off -o box.png
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \
+  'property uchar red' 'property uchar green' 'property uchar blue' 'element face 1' 'property list uchar int vertex_indices' \
+  end_header '0 0 0 0 0 255' '4 0 0 0 0 255' '2 0 2 0 0 255' '3 0 1 2' >blue.ply
+ok "a coloured mesh" vam-view blue.ply -o blue.png
+holds "in blue" "$($png get blue.png 420 420 | awk '{ print ($1 < 5 && $2 < 5 && $3 > 80) }')"
+printf '%s\n' iteration,ver,pw 1,0.1,-0.2 2,0.05,-0.1 3,0,0.02 >trace.csv
+ok "a trace" vam-view trace.csv -o trace.svg
+ok "two traces" vam-view trace.csv --compare trace.csv -o traces.png
+fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
+fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
+fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.png
+fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
+fails 65 'require a volume' vam-view trace.csv --dose-histogram -o x.png
+
 # Frames of a projector, as EXR, images and video: the same pixels
 small_printer >printer.toml
 $exr make projector.exr space=projector width=64 height=36 count=3
@@ -82,7 +104,7 @@ is "with its axes" "$(strings -n 6 sino.nrrd | grep -E '^(sizes|spacings|units)'
 # Wrong inputs
 fails 66 'none.vdb' vam-view none.vdb -o x.png
 echo hello >text.txt
-fails 65 'neither a volume' vam-view text.txt -o x.png
+fails 65 'not a mesh of a known format' vam-view text.txt -o x.png
 : >empty
 fails 65 'is empty' vam-view empty -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'

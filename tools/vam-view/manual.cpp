@@ -5,7 +5,7 @@ namespace vam::view_tool {
 cli::Manual manual() {
   return {
       "vam-view",
-      "draw a volume, a sinogram, frames or a video as an image",
+      "draw volumes, sinograms, frames, videos, meshes and traces as figures",
       {"vam-view recognises a file by its content, not by its name: an OpenVDB volume (part, dose, scatter, distance), "
        "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It draws it "
        "with "
@@ -19,16 +19,28 @@ cli::Manual manual() {
        "they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
+       "--cure-map shows what prints at a threshold: cured as wanted (grey), missing (blue) and overcured (vermilion). "
+       "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
+       "surface of any grid. --compare shows two volumes beside each other in the same colours, and by how much the "
+       "second is more. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
+       "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
        "orange, more saturated with the number of angles (for a horizontal parallel beam).",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "
-       "signed values in blue, white and red, with zero in the middle. --export writes the values as NRRD for "
+       "signed values in blue, white and red, with zero in the middle. The colours end where one pixel in 1000 is "
+       "beyond; the legend states how many are, and the extreme. Sinograms are cropped to the columns that are lit. "
+       "--export writes the values as NRRD for "
        "ParaView, 3D Slicer or numpy."},
       {{"Side view of a part, and a contact sheet of nine slices:",
         "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-view part.vdb --plane coronal -o side.png && vam-view "
         "part.vdb --sheet 9 -o sheet.png"},
        {"Its filtered sinogram:",
         "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-view sino.exr -o sino.png"},
+       {"What a dose prints, in a section and in three dimensions:",
+        "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-dose sino.exr --like part.vdb -o dose.vdb && "
+        "vam-view "
+        "dose.vdb --target part.vdb --cure-map -o cure.png && vam-view dose.vdb --target part.vdb --render -o "
+        "print.png"},
        {"A section for a paper:", "vam-view part.vdb --title '' --image-size 320 -o part.pdf"},
        {"Values for ParaView:", "vam-view part.vdb --export part.nrrd"}},
       {"Memory: the volume as stored in its file and the images shown; stacks are read one image at a time.",
