@@ -67,6 +67,15 @@ void declare_constraints(cli::App& app, Options& options) {
   app.flag("--grey-target", options.demands.grey,
            "The target specifies a dose (or response) for every voxel, to be met within --band.");
   app.was("--grey");
+  app.choice("--void", options.void_rule, {"met", "below", "free"},
+             "--grey-target: void, where the target is 0, must be 0 within --band (met) or not exceed --dose-low "
+             "(below), or is unconstrained (free).")
+      .needs({"--grey-target"});
+  app.option("--void-weight", "W", options.void_weight, cli::positive,
+             "Relative cost of an error in the void; that in the part is 1. Multiplies --weights.");
+  app.option("--void-band", "EPSILON", options.void_band, cli::non_negative, "--grey-target: --band in the void.")
+      .needs({"--grey-target"});
+  app.default_is("--band");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
              readers("--band", ", --grey-target") + "maximum deviation of the resin's response from the target.");
   app.option("--band-volume", "FILE", options.band_volume,
