@@ -9,6 +9,7 @@
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
 #include "moved.hpp"
+#include "plot/save.hpp"
 #include "printer.hpp"
 #include "vam-ost/print.hpp"
 #include "vam-ost/session.hpp"
@@ -136,8 +137,9 @@ void declare_print(cli::App& app, Options& o) {
   app.option("--mesh", "FILE", o.mesh, "Write the surface at I_p (" + join(io::written_mesh_endings(), " or ") + ").")
       .writes(io::written_mesh_endings())
       .needs({"--isovalue", "--resin"});
-  app.option("--projections", "FILE.png", o.projections, "Write sum projections of volume, print and target.")
-      .writes({".png"});
+  app.option("--projections", "FILE", o.projections,
+             "Write sum projections of volume, print and target (.png, .pdf or .svg).")
+      .writes(plot::figure_endings());
   app.option("--target", "FILE.vdb", o.target,
              "Volume of the part to compare the print with, in the same coordinate system.")
       .was("--reference")

@@ -1,4 +1,5 @@
 // vam-score: scores a dose against its target.
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -57,11 +58,45 @@ void require_files_for_outputs(const Options& options) {
   }
 }
 
+void require_met(const std::vector<model::Condition>& conditions,
+                 const std::function<double(const std::string&)>& value) {
+  const auto failures = model::unmet(conditions, value);
+  if (!failures.empty()) throw Error{Fault::judged, join(failures, "; ")};
+}
+
+std::vector<model::Condition> conditions_of(const Options& options) {
+  if (options.require.empty()) return {};
+  return model::parse_conditions(options.require, options.grey ? score::GreyScore::names() : score::Score::names());
+}
+
+void score_grey(Options& options, const model::Printer& printer, const std::vector<model::Condition>& conditions) {
+  const Inputs in = read(options);
+  score::GreyOptions how = options.grey_how;
+  const double farthest_mm = io::farthest_mm(in.target(), model::coverage_rounding);
+  how.circle = model::writable_circle(in.target().grid(), optics::judged_radius_mm(printer, farthest_mm));
+  how.void_rule = options.void_rule == "met"     ? score::VoidRule::met
+                  : options.void_rule == "below" ? score::VoidRule::below
+                                                 : score::VoidRule::free;
+  const model::Grid& grid = in.target().grid();
+  score::GreyScore result(how, grid.nx, grid.ny);
+  std::vector<float> dose(grid.slice_size());
+  std::vector<float> wanted(grid.slice_size());
+  for (int k = 0; k < grid.nz; ++k) {
+    in.dose().read_slices(k, 1, dose.data());
+    in.target().read_slices(k, 1, wanted.data());
+    result.add(dose.data(), wanted.data(), 1);
+  }
+  io::write_report(options.report, "vam-score-grey/1", result.figures());
+  if (options.report != "-") io::write_text("-", result.table());
+  require_met(conditions, [&](const std::string& name) { return result.figure(name); });
+}
+
 void run(const cli::App& app, Options& options) {
-  std::vector<model::Condition> conditions;
-  if (!options.require.empty()) conditions = model::parse_conditions(options.require, score::Score::names());
+  check(app, options);
+  const std::vector<model::Condition> conditions = conditions_of(options);
   const model::Printer printer = tool::load_printer(options.printer);
   if (tool::print_printer(options.printer, printer, "-")) return;
+  if (options.grey) return score_grey(options, printer, conditions);
   require_files_for_outputs(options);
   const Inputs in = read(options);
   tool::settle_exposure(options.how, in.dose(), in.target(), printer);
@@ -74,8 +109,7 @@ void run(const cli::App& app, Options& options) {
   if (!options.print.empty()) write_print(options, in.dose(), options.print_at.value_or(result.print_threshold()));
   io::write_report(options.report, "vam-score/1", figures);
   if (options.report != "-") io::write_text("-", result.table());
-  const auto failures = model::unmet(conditions, [&](const std::string& name) { return result.figure(name); });
-  if (!failures.empty()) throw Error{Fault::judged, join(failures, "; ")};
+  require_met(conditions, [&](const std::string& name) { return result.figure(name); });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "cli/app.hpp"
 #include "cli/common.hpp"
 #include "io/mesh/file.hpp"
+#include "plot/save.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace {
@@ -108,11 +109,13 @@ void declare_height(cli::App& app, HeightOptions& options) {
   app.choice("--align", options.align, {"none", "icp", "full"},
              "Alignment of the design with the print: centred (none), refined from there (icp), or from any "
              "orientation (full).");
-  app.option("-o,--output", "FILE.png", options.output, "Write the levelled heights with the design's outline.")
-      .writes({".png"});
+  app.option("-o,--output", "FILE", options.output,
+             "Write the levelled heights with the design's outline (.png, .pdf or .svg).")
+      .writes(plot::figure_endings());
   app.option("--line", "X0,Y0,X1,Y1", options.line, 4, "End points of a section, in pixels from the top left corner.")
       .default_is("the middle column");
-  app.option("--plot", "FILE.png", options.plot, "Plot the heights along the section.").writes({".png"});
+  app.option("--plot", "FILE", options.plot, "Plot the heights along the section (.png, .pdf or .svg).")
+      .writes(plot::figure_endings());
   app.option("--require", "CONDITIONS", options.require,
              "Exit with status 1 unless all conditions hold, on rms and max (mm), iou, shrinkage (%) and height (mm).");
   cli::add_report(app, options.report);

@@ -1,4 +1,4 @@
-// vam-view: images of volumes, stacks, videos and folders, for inspection.
+// vam-view: figures of volumes, stacks, videos, folders, meshes and traces.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -8,22 +8,22 @@
 #include "io/image/image_file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/vdb/nrrd.hpp"
-#include "model/circle.hpp"
-#include "model/dose_metrics.hpp"
-#include "optics/writable_radius.hpp"
+#include "plot/save.hpp"
 #include "plot/view.hpp"
 #include "printer.hpp"
+#include "score_volumes.hpp"
+#include "vam-view/bodies.hpp"
 #include "vam-view/options.hpp"
+#include "vam-view/trace.hpp"
 
 namespace {
 
 using namespace vam;
 using view_tool::Options;
 
-void write_figure(const Options& options, const plot::ImageFigure& figure, const io::ImageText& text) {
-  if (!options.plain) return io::write_png(options.output, plot::draw(figure), text);
-  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.colours, figure.low, figure.high),
-                text);
+void write_figure(const Options& options, const plot::ImageFigure& figure, const std::string& history) {
+  if (!options.plain) return plot::save(options.output, plot::draw(figure), history, options.dpi);
+  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.scale), {{"Comment", history}});
 }
 
 io::SparseVolume target_for(const Options& options) {
@@ -39,57 +39,107 @@ bool has_grid(const std::string& path, const std::string& name) {
 /// A target is shown with its insert.
 std::string grid_of(const Options& options) {
   if (!options.grid.empty()) return options.grid;
-  if (options.histogram) return "dose";
+  if (options.histogram || options.cure || (options.render && !options.target.empty())) return "dose";
   return has_grid(options.input, "target") && has_grid(options.input, "insert") ? "target" : "";
 }
 
-void show_sections(const Options& options, const io::SparseVolume& volume, const io::ImageText& text) {
+plot::ImageFigure sections(const Options& options, const io::SparseVolume& volume) {
   std::optional<io::SparseVolume> target;
   std::optional<io::SparseVolume> insert;
   if (!options.target.empty()) target.emplace(target_for(options));
   const std::string& with = options.target.empty() ? options.input : options.target;
   if (volume.name() != "insert" && has_grid(with, "insert")) insert.emplace(io::read_volume(with, "insert"));
-  write_figure(options,
-               plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr), text);
+  return plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr);
 }
 
-void show_volume(const Options& options, const io::ImageText& text) {
+/// With the target around the dose, and how it is judged.
+struct Judged {
+  io::SparseVolume target;
+  score::ScoreOptions how;
+};
+
+Judged judged(const Options& options, const io::SparseVolume& dose) {
+  Judged made{target_for(options), {}};
+  made.target.extend_to(dose.grid());
+  made.how.threshold = options.threshold;
+  tool::settle_exposure(made.how, dose, made.target, tool::load_printer(options.printer));
+  return made;
+}
+
+double threshold_of(const Options& options, const io::SparseVolume& dose, const Judged& with) {
+  return options.threshold ? *options.threshold : tool::score_volumes(dose, with.target, with.how).print_threshold();
+}
+
+plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& volume) {
+  if (options.cure || (options.render && !options.target.empty())) {
+    const Judged with = judged(options, volume);
+    const double threshold = threshold_of(options, volume, with);
+    return options.cure ? plot::view_cure(volume, with.target, threshold, options.view)
+                        : view_tool::print_figure(volume, with.target, threshold, options.view);
+  }
+  if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view);
+  if (!options.compare.empty()) {
+    const io::SparseVolume other = io::read_volume(options.compare, volume.name());
+    return plot::view_difference(volume, other, view_tool::file_name(options.compare), options.view);
+  }
+  return sections(options, volume);
+}
+
+void show_volume(const Options& options, const std::string& history) {
   const io::SparseVolume volume = io::read_volume(options.input, grid_of(options));
   if (!options.exported.empty()) return io::write_nrrd(options.exported, volume);
   if (options.histogram) {
-    const model::Printer printer = tool::load_printer(options.printer);
-    const io::SparseVolume target = target_for(options);
-    const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
-    const auto circle = model::writable_circle(volume.grid(), optics::judged_radius_mm(printer, farthest_mm));
-    return io::write_png(options.output, plot::draw(plot::dose_histogram(volume, target, circle, options.view)), text);
+    const Judged with = judged(options, volume);
+    const plot::Plot plot = plot::dose_histogram(volume, with.target, with.how.circle, options.view);
+    return plot::save(options.output, plot::draw(plot), history, options.dpi);
   }
-  show_sections(options, volume, text);
+  write_figure(options, volume_figure(options, volume), history);
 }
 
-void show_images(const Options& options, io::FileType type, const io::ImageText& text) {
-  if (options.histogram || !options.target.empty()) {
-    throw Error{Fault::data, options.input + ": --dose-histogram and --target require a volume (VDB), not images"};
+void require_sections(const Options& options, const std::string& what) {
+  if (options.histogram || options.cure || !options.target.empty()) {
+    throw Error{Fault::data,
+                options.input + ": --dose-histogram, --cure-map and --target require a volume (VDB), not " + what};
   }
+}
+
+void show_images(const Options& options, io::FileType type, const std::string& history) {
+  require_sections(options, "images");
+  if (options.render || !options.compare.empty())
+    throw Error{Fault::data, options.input + ": --render and --compare require a volume (VDB), not images"};
   if (!options.exported.empty()) {
     if (type != io::FileType::stack) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
     io::StackReader stack(options.input);
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
-  write_figure(options, plot::view_images(*images, options.view), text);
+  write_figure(options, plot::view_images(*images, options.view), history);
+}
+
+/// A trace of vam-optimize, or else a mesh.
+void show_other(const Options& options, const std::string& history) {
+  if (!options.exported.empty()) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
+  if (options.input.ends_with(".csv")) {
+    require_sections(options, "a trace");
+    return plot::save(options.output, plot::draw(view_tool::trace_plot(options)), history, options.dpi);
+  }
+  require_sections(options, "a mesh");
+  write_figure(options, view_tool::mesh_figure(options.input, options.view), history);
 }
 
 void run(const cli::App& app, Options& options) {
   if (tool::print_printer(options.printer)) return;
   check(options);
-  options.view.name = options.input == "-" ? "stdin" : options.input.substr(options.input.find_last_of('/') + 1);
+  if (app.given("--title")) options.view.title = options.title;
+  options.view.name = view_tool::file_name(options.input);
+  options.view.crop = !options.plain;
   options.view.plane = options.plane == "axial"     ? plot::Plane::axial
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
-  const io::ImageText text{{"Comment", app.history()}};
-  const io::FileType type = io::file_type(options.input);
-  if (type == io::FileType::volume) return show_volume(options, text);
-  show_images(options, type, text);
+  const auto type = io::known_file_type(options.input);
+  if (!type) return show_other(options, app.history());
+  if (*type == io::FileType::volume) return show_volume(options, app.history());
+  show_images(options, *type, app.history());
 }
 
 }  // namespace

@@ -52,29 +52,64 @@ std::string tick_label(double value) { return format_number(value, 6); }
 double PlotFrame::spot_x(double value) const { return left + (right - left) * position(x, value); }
 double PlotFrame::spot_y(double value) const { return bottom - (bottom - top) * position(y, value); }
 
-void draw_axes(Canvas& canvas, const PlotFrame& frame, bool grid) {
-  const int across = std::max(2, static_cast<int>((frame.right - frame.left) / 90));
-  const int up = std::max(2, static_cast<int>((frame.bottom - frame.top) / 60));
+namespace {
+
+std::vector<double> x_ticks(const PlotFrame& frame) {
+  return ticks(frame.x, std::max(2, static_cast<int>((frame.right - frame.left) / 90)));
+}
+
+std::vector<double> y_ticks(const PlotFrame& frame) {
+  return ticks(frame.y, std::max(2, static_cast<int>((frame.bottom - frame.top) / 60)));
+}
+
+double widest_label(const PlotFrame& frame) {
   double widest = 0;
-  for (const double value : ticks(frame.x, across)) {
-    const double x = frame.spot_x(value);
-    if (grid) canvas.line({x, frame.top}, {x, frame.bottom}, paint::light_grey);
-    canvas.line({x, frame.bottom}, {x, frame.bottom + tick_px}, paint::black);
-    canvas.text({x, frame.bottom + tick_px + 4}, tick_label(value), label_size, paint::black, Align::middle,
-                Align::begin);
-  }
-  for (const double value : ticks(frame.y, up)) {
-    const double y = frame.spot_y(value);
-    if (grid) canvas.line({frame.left, y}, {frame.right, y}, paint::light_grey);
-    canvas.line({frame.left - tick_px, y}, {frame.left, y}, paint::black);
-    canvas.text({frame.left - tick_px - 2, y}, tick_label(value), label_size, paint::black, Align::end, Align::middle);
+  for (const double value : y_ticks(frame)) {
     widest = std::max(widest, Canvas::text_width(tick_label(value), label_size));
   }
-  canvas.outline({frame.left, frame.top}, {frame.right, frame.bottom}, paint::black);
-  canvas.text({0.5 * (frame.left + frame.right), frame.bottom + 30}, frame.x.label, label_size, paint::black,
+  return widest;
+}
+
+}  // namespace
+
+double y_axis_room(const PlotFrame& frame) {
+  const double label = frame.y.label.empty() ? 0 : label_size + 10;
+  return tick_px + 4 + widest_label(frame) + label;
+}
+
+void draw_x_axis(Canvas& canvas, const PlotFrame& frame) {
+  for (const double value : x_ticks(frame)) {
+    const double x = frame.spot_x(value);
+    canvas.line({x, frame.bottom}, {x, frame.bottom + tick_px}, paint::black);
+    canvas.text({x, frame.bottom + tick_px + 5}, tick_label(value), label_size, paint::black, Align::middle,
+                Align::begin);
+  }
+  canvas.text({0.5 * (frame.left + frame.right), frame.bottom + 28}, frame.x.label, label_size, paint::black,
               Align::middle, Align::begin);
-  canvas.text({frame.left - tick_px - widest - 12, 0.5 * (frame.top + frame.bottom)}, frame.y.label, label_size,
-              paint::black, Align::middle, Align::end, true);
+}
+
+void draw_y_axis(Canvas& canvas, const PlotFrame& frame) {
+  for (const double value : y_ticks(frame)) {
+    const double y = frame.spot_y(value);
+    canvas.line({frame.left - tick_px, y}, {frame.left, y}, paint::black);
+    canvas.text({frame.left - tick_px - 4, y}, tick_label(value), label_size, paint::black, Align::end, Align::middle);
+  }
+  canvas.text({frame.left - tick_px - 4 - widest_label(frame) - 10, 0.5 * (frame.top + frame.bottom)}, frame.y.label,
+              label_size, paint::black, Align::middle, Align::end, true);
+}
+
+void draw_axes(Canvas& canvas, const PlotFrame& frame, bool grid) {
+  if (grid) {
+    for (const double value : x_ticks(frame)) {
+      canvas.line({frame.spot_x(value), frame.top}, {frame.spot_x(value), frame.bottom}, paint::light_grey);
+    }
+    for (const double value : y_ticks(frame)) {
+      canvas.line({frame.left, frame.spot_y(value)}, {frame.right, frame.spot_y(value)}, paint::light_grey);
+    }
+  }
+  draw_x_axis(canvas, frame);
+  draw_y_axis(canvas, frame);
+  canvas.outline({frame.left, frame.top}, {frame.right, frame.bottom}, paint::black);
 }
 
 }  // namespace vam::plot

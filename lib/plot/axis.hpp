@@ -41,10 +41,17 @@ struct PlotFrame {
   [[nodiscard]] Spot spot(double x_value, double y_value) const { return {spot_x(x_value), spot_y(y_value)}; }
 };
 
-inline constexpr double label_size = 15;
-inline constexpr double title_size = 18;
+inline constexpr double label_size = 13;
+inline constexpr double title_size = 16;
 
 /// Border, ticks, tick labels and axis labels; with grid, faint lines at the ticks across the frame.
 void draw_axes(Canvas& canvas, const PlotFrame& frame, bool grid);
+
+/// The same for each edge alone: ticks, tick labels and the label below, or at the left.
+void draw_x_axis(Canvas& canvas, const PlotFrame& frame);
+void draw_y_axis(Canvas& canvas, const PlotFrame& frame);
+
+inline constexpr double x_axis_room = 44;                  // below a frame
+[[nodiscard]] double y_axis_room(const PlotFrame& frame);  // at its left
 
 }  // namespace vam::plot

@@ -35,15 +35,6 @@ void for_each_voxel(const io::SparseVolume& dose, const io::SparseVolume& target
   }
 }
 
-void check_same_size(const model::Grid& grid, const model::Grid& other, const std::string& name) {
-  if (grid.nx == other.nx && grid.ny == other.ny && grid.nz == other.nz) return;
-  const auto text = [](const model::Grid& g) {
-    return std::to_string(g.nx) + " x " + std::to_string(g.ny) + " x " + std::to_string(g.nz);
-  };
-  throw Error{Fault::data, name + ": the dose has " + text(grid) + " voxels, but the target has " + text(other) +
-                               "; compute the dose on this target"};
-}
-
 struct Sides {
   views::Extremes inside, outside;
 };
@@ -66,7 +57,7 @@ Sides extremes_of(const io::SparseVolume& dose, const io::SparseVolume& target, 
 
 Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target, const model::Circle& circle,
                     const ViewOptions& options) {
-  check_same_size(dose.grid(), target.grid(), options.name);
+  require_same_voxels(dose.grid(), target.grid(), options.name, "compute the dose on this target");
   const auto [inner, outer] = extremes_of(dose, target, circle, options.name);
   const double low = options.low.value_or(std::min({0.0, inner.low, outer.low}));
   const double high = options.high.value_or(std::max(inner.high, outer.high));
@@ -77,9 +68,9 @@ Plot dose_histogram(const io::SparseVolume& dose, const io::SparseVolume& target
     (label == Label::part ? inside : outside).add(static_cast<double>(value));
   });
   Plot plot;
-  plot.title = options.name + ": dose inside and outside the part";
+  plot.title = options.title.value_or(options.name + ": dose inside and outside the part");
   plot.x = {views::with_unit("dose", dose.units), low, high, false};
-  plot.y = {"voxels inside, and outside (%)", 0, 0, false};
+  plot.y = {"voxels inside, and outside (%)", 0, 0, true};
   const auto bars_out = outside.done();
   const auto bars_in = inside.done();
   plot.series = {{"outside the part", bars_out.edges, bars_out.percent, paint::blue, SeriesStyle::bars},

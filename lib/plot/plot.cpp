@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "plot/legend.hpp"
+
 namespace vam::plot {
 
 namespace {
@@ -70,91 +72,67 @@ void draw_points(Canvas& canvas, const PlotFrame& frame, const Series& series) {
 // The bars' filling, or the line along their tops: all fillings come before all lines.
 void draw_bars(Canvas& canvas, const PlotFrame& frame, const Series& series, bool filling) {
   std::vector<Spot> top;
+  if (filling && !series.x.empty())
+    top.push_back({std::clamp(frame.spot_x(series.x[0]), frame.left, frame.right), frame.bottom});
   for (std::size_t i = 0; i < series.y.size(); ++i) {
     const bool visible = shown(frame.y, series.y[i]);
     const double y = visible ? std::clamp(frame.spot_y(series.y[i]), frame.top, frame.bottom) : frame.bottom;
     const double left = std::clamp(frame.spot_x(series.x[i]), frame.left, frame.right);
     const double right = std::clamp(frame.spot_x(series.x[i + 1]), frame.left, frame.right);
-    if (filling) canvas.fill({left, y}, {right, frame.bottom}, series.colour, 0.35);
     top.push_back({left, y});
     top.push_back({right, y});
   }
-  if (!filling) canvas.polyline(top, series.colour, 1.5);
+  if (!filling) return canvas.polyline(top, series.colour, 1.5);
+  if (!top.empty()) top.push_back({top.back().x, frame.bottom});
+  canvas.area(top, series.colour, 0.35);
 }
 
-// Spots of data and markers in the upper part of one half of the frame: where the legend would be in their way.
-int crowd(const PlotFrame& frame, const Plot& plot, bool right_half) {
-  const auto in_the_way = [&](double x, double y) {
-    const bool half = right_half ? x > 0.5 * (frame.left + frame.right) : x < 0.5 * (frame.left + frame.right);
-    return half && y < frame.top + 0.3 * (frame.bottom - frame.top);
-  };
-  int spots = 0;
+Mark mark_of(SeriesStyle style) {
+  return style == SeriesStyle::bars ? Mark::bar : style == SeriesStyle::points ? Mark::dot : Mark::line;
+}
+
+std::vector<LegendEntry> legend_of(const Plot& plot, const PlotFrame& frame) {
+  std::vector<LegendEntry> entries;
   for (const auto& one : plot.series) {
-    for (std::size_t i = 0; i < one.y.size(); ++i) {
-      if (!shown(frame.x, one.x[i]) || !shown(frame.y, one.y[i])) continue;
-      spots += in_the_way(frame.spot_x(one.x[i]), frame.spot_y(one.y[i])) ? 1 : 0;
-    }
+    if (!one.name.empty()) entries.push_back({mark_of(one.style), one.colour, one.name});
   }
-  for (const auto& marker : plot.markers) spots += in_the_way(frame.spot_x(marker.x), frame.top) ? 10 : 0;
-  return spots;
+  for (const auto& marker : plot.markers) {
+    const double x = frame.spot_x(marker.x);
+    if (x >= frame.left && x <= frame.right) entries.push_back({Mark::dashed, marker.colour, marker.words});
+  }
+  for (const std::string& note : plot.notes) entries.push_back({Mark::none, paint::black, note});
+  return entries;
 }
 
-void draw_legend(Canvas& canvas, const PlotFrame& frame, const Plot& plot) {
-  const auto& series = plot.series;
-  double widest = 0;
-  for (const auto& one : series) widest = std::max(widest, Canvas::text_width(one.name, label_size));
-  if (widest == 0) return;
-  constexpr double row = 24;
-  const bool to_the_left = crowd(frame, plot, true) > crowd(frame, plot, false);
-  const double left = to_the_left ? frame.left + 18 : frame.right - widest - 60;
-  double y = frame.top + 20;
-  const auto named = std::count_if(series.begin(), series.end(), [](const Series& one) { return !one.name.empty(); });
-  canvas.fill({left - 8, y - 14}, {left + widest + 44, y + row * static_cast<double>(named) - 10}, paint::white, 0.75);
-  for (const auto& one : series) {
-    if (one.name.empty()) continue;
-    if (one.style == SeriesStyle::bars) {
-      canvas.fill({left, y - 7}, {left + 28, y + 7}, one.colour, 0.35);
-      canvas.outline({left, y - 7}, {left + 28, y + 7}, one.colour);
-    } else if (one.style == SeriesStyle::points) {
-      canvas.disc({left + 14, y}, 4, one.colour);
-    } else {
-      canvas.line({left, y}, {left + 28, y}, one.colour, 2);
-    }
-    canvas.text({left + 36, y}, one.name, label_size);
-    y += row;
-  }
-}
-
-// All lines come before all words, so that no line runs through a word.
 void draw_markers(Canvas& canvas, const PlotFrame& frame, const std::vector<Marker>& markers) {
   for (const auto& marker : markers) {
     const double x = frame.spot_x(marker.x);
     if (x < frame.left || x > frame.right) continue;
     canvas.dashed({x, frame.top}, {x, frame.bottom}, marker.colour, 1.5);
   }
-  double y = frame.top + 20;
-  for (const auto& marker : markers) {
-    const double x = frame.spot_x(marker.x);
-    if (x < frame.left || x > frame.right) continue;
-    const double width = Canvas::text_width(marker.words, label_size);
-    const bool to_the_left = x + width + 12 > frame.left + 0.6 * (frame.right - frame.left);
-    const double left = to_the_left ? x - 8 - width : x + 8;
-    canvas.fill({left - 3, y - 10}, {left + width + 3, y + 10}, paint::white, 0.85);
-    canvas.text({left, y}, marker.words, label_size, marker.colour);
-    y += 22;
-  }
 }
+
+constexpr double right_margin = 28;
+constexpr double top_margin = 24;
+constexpr double title_room = 24;
 
 }  // namespace
 
-RgbImage draw(const Plot& plot) {
-  Canvas canvas(plot.width, plot.height);
-  PlotFrame frame{86,
-                  plot.title.empty() ? 24.0 : 52.0,
-                  plot.width - 28.0,
-                  plot.height - 62.0,
+PlotFrame frame_of(const Plot& plot) {
+  PlotFrame frame{0,
+                  top_margin + (plot.title.empty() ? 0 : title_room),
+                  plot.width - right_margin,
+                  plot.height - x_axis_room - 12,
                   fitted(plot.x, plot.series, &Series::x),
                   fitted(plot.y, plot.series, &Series::y)};
+  frame.left = y_axis_room(frame) + 12;
+  frame.top += legend_height(legend_of(plot, frame), frame.right - frame.left);
+  return frame;
+}
+
+Canvas draw(const Plot& plot) {
+  Canvas canvas(plot.width, plot.height);
+  const PlotFrame frame = frame_of(plot);
   draw_axes(canvas, frame, true);
   for (const auto& series : plot.series) {
     if (series.style == SeriesStyle::bars) draw_bars(canvas, frame, series, true);
@@ -165,9 +143,10 @@ RgbImage draw(const Plot& plot) {
     if (series.style == SeriesStyle::bars) draw_bars(canvas, frame, series, false);
   }
   draw_markers(canvas, frame, plot.markers);
-  draw_legend(canvas, frame, plot);
-  canvas.text({0.5 * (frame.left + frame.right), 26}, plot.title, title_size, paint::black, Align::middle);
-  return canvas.image();
+  const double top = plot.title.empty() ? 0.5 * top_margin : top_margin + 16;
+  draw_legend(canvas, legend_of(plot, frame), {frame.left, top}, frame.right - frame.left);
+  canvas.text({0.5 * (frame.left + frame.right), 24}, plot.title, title_size, paint::black, Align::middle);
+  return canvas;
 }
 
 HistogramBuilder::HistogramBuilder(double low, double high, int bins)

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "base/pixels.hpp"
 #include "plot/axis.hpp"
 
 namespace vam::plot {
@@ -23,7 +22,7 @@ struct Series {
   SeriesStyle style = SeriesStyle::line;
 };
 
-/// A dashed vertical line with words at its upper end.
+/// A dashed vertical line, in the legend.
 struct Marker {
   double x = 0;
   std::string words;
@@ -38,11 +37,14 @@ struct Plot {
   Axis y;
   std::vector<Series> series;
   std::vector<Marker> markers;
+  std::vector<std::string> notes = {};  // more words of the legend
   int width = 900;
   int height = 600;
 };
 
-[[nodiscard]] RgbImage draw(const Plot& plot);
+[[nodiscard]] Canvas draw(const Plot& plot);
+/// Where the curves are: axes with their ends, and the place of the frame on the canvas.
+[[nodiscard]] PlotFrame frame_of(const Plot& plot);
 
 /// Equal bins over [low, high]: edges (one more than bins) and the share of the values in each, in percent of their
 /// number. Values outside count into the first or last bin.

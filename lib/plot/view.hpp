@@ -14,7 +14,8 @@
 namespace vam::plot {
 
 struct ViewOptions {
-  std::string name;  // of the file, for titles
+  std::string name;                       // of the file, for titles
+  std::optional<std::string> title = {};  // of the figure, instead of one that says what is seen
   Plane plane = Plane::axial;
   std::optional<double> at;   // mm across the plane; z of a slice in mm or stage angle of a frame in degrees
   int sheet = 1;              // number of images, evenly spread
@@ -22,6 +23,7 @@ struct ViewOptions {
   std::optional<double> high;
   std::string colours = "auto";  // auto, grey, viridis, diverging
   int size = 720;
+  bool crop = true;  // sinograms to the columns that are lit
 };
 
 /// Sections of a volume: the middle one, the one at `at`, or a sheet. With a target its outline is drawn, and
@@ -32,6 +34,19 @@ struct ViewOptions {
 /// Images of a stack: the middle slice of sinograms, the first frame of frames, the nearest to `at`, or a sheet. Throws
 /// Fault::data when `at` is given and the images have no such coordinate.
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
+
+/// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
+/// are right either way. Throws Fault::data when the grids differ.
+[[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
+                                    const ViewOptions& options);
+
+/// Each section of both volumes, and by how much the second is more. Throws Fault::data when the grids differ.
+[[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,
+                                          const std::string& other_name, const ViewOptions& options);
+
+/// Throws Fault::data when the voxels differ; `what` has them, and the other is `name`.
+void require_same_voxels(const model::Grid& grid, const model::Grid& other, const std::string& name,
+                         const std::string& remedy);
 
 /// Shares of the voxels inside and outside the part over the dose [OST22 fig S6 c, f, i], with the lowest dose inside
 /// and the highest outside. Voxels that the surface cuts, and those outside the writable circle, are left out. Throws

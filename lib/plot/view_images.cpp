@@ -43,7 +43,48 @@ void set_axes(ImageFigure& figure, const model::StackInfo& info) {
   constexpr double turn_ticks_deg = 45;
   if (sinogram && std::abs(step) * info.height > 180) figure.y.step = turn_ticks_deg;
   figure.square_pixels = !sinogram;
-  if (!sinogram && info.pixel_mm > 0) figure.pixel_mm = info.pixel_mm;
+}
+
+struct Columns {
+  int first;
+  int last;
+};
+
+/// From the first to the last column with more than a thousandth of the largest value in any image; all where all are
+/// 0.
+Columns lit_columns(const std::vector<Panel>& panels) {
+  float most = 0;
+  for (const Panel& panel : panels) {
+    for (const float value : panel.values.values) most = std::max(most, std::abs(value));
+  }
+  const int width = panels.front().values.width;
+  Columns lit{width - 1, 0};
+  for (const Panel& panel : panels) {
+    for (int y = 0; y < panel.values.height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (std::abs(panel.values(x, y)) <= 1e-3F * most) continue;
+        lit = {std::min(lit.first, x), std::max(lit.last, x)};
+      }
+    }
+  }
+  return lit.first <= lit.last ? lit : Columns{0, width - 1};
+}
+
+/// Cuts off the dark columns at both sides, but for a margin of a twentieth.
+void crop(ImageFigure& figure) {
+  const int width = figure.panels.front().values.width;
+  const Columns lit = lit_columns(figure.panels);
+  const int margin = 1 + (lit.last - lit.first) / 20;
+  const int first = std::max(0, lit.first - margin);
+  const int last = std::min(width - 1, lit.last + margin);
+  for (Panel& panel : figure.panels) {
+    Image kept(last - first + 1, panel.values.height);
+    for (int y = 0; y < kept.height; ++y) std::copy_n(panel.values.row(y) + first, kept.width, kept.row(y));
+    panel.values = std::move(kept);
+  }
+  const double pitch = (figure.x.high - figure.x.low) / width;
+  figure.x.high = figure.x.low + pitch * (last + 1);
+  figure.x.low += pitch * first;
 }
 
 // Keeps what is to be shown while the stack goes by.
@@ -98,17 +139,14 @@ ImageFigure view_images(io::ImageSource& images, const ViewOptions& options) {
   }
   ImageFigure figure;
   figure.panels = std::move(selection.panels);
-  views::Extremes found;
-  for (const auto& panel : figure.panels) found.add(panel.values);
-  if (info.units.starts_with("fraction")) found.high = 1;
-  views::choose_colours(figure, options, found, !sinogram);
+  views::choose_colours(figure, options, sinogram ? views::Content::amount : views::Content::light);
   set_axes(figure, info);
-  figure.value_label = views::with_unit(sinogram ? "sinogram" : "intensity", info.units);
+  if (sinogram && options.crop) crop(figure);
+  figure.scale.label = views::with_unit(sinogram ? "sinogram" : "intensity", info.units);
   figure.size = options.size;
-  figure.title = options.name + (sinogram ? ": sinogram" : ": frame");
-  figure.title += figure.panels.size() == 1
-                      ? (sinogram ? " at " : ", ") + figure.panels[0].caption
-                      : std::string(sinogram ? "s, columns to the right, angles down" : "s, oriented as in the file");
+  const std::string seen = options.name + (sinogram ? ": sinogram" : ": frame");
+  figure.title = options.title.value_or(
+      seen + (figure.panels.size() == 1 ? (sinogram ? " at " : ", ") + figure.panels[0].caption : "s"));
   return figure;
 }
 

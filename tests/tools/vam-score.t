@@ -34,6 +34,26 @@ is "a PLY with faces" "$(head -c 400 print.ply | grep -ac 'element face')" 1
 quiet "the print as points" vam-score --grid target part.vdb --mesh points.ply --ply-as points
 is "a PLY with dose at every vertex" "$(head -c 600 points.ply | grep -ac 'quality')" 1
 
+# Grey targets: coverage stands for a dose
+quiet "a grey target met" vam-score --grid target part.vdb --grey-target --report grey.json
+is "by all voxels" "$(json grey.json ver) $(json grey.json cv)" "0.0 0.0"
+ok "in words" sh -c 'vam-score --grid target part.vdb --grey-target | grep -q "^verdict  *met: 100 % of [0-9]* voxels are within 0.1 of the target"'
+vam-slice --shape disc-grid --voxel 0.4 -o coarse.vdb
+for rule in met below free; do
+  set -- --grey-target --void $rule --dose-low 0.4 --band 0.3
+  vam-optimize "$@" --angles 60 --iterations 10 --report want-$rule.json coarse.vdb 2>.log/optimize | vam-dose --like coarse.vdb -o $rule.vdb
+  vam-score "$@" $rule.vdb --target coarse.vdb --report is-$rule.json >.log/score
+  # Of two programs, whose doses differ by rounding.
+  holds "void $rule: margin and error rate are those of vam-optimize" \
+    "($(json is-$rule.json pw) - $(json want-$rule.json pw)) ^ 2 < 1e-10 && ($(json is-$rule.json ver) - $(json want-$rule.json ver)) ^ 2 < 1e-8"
+done
+holds "the less is asked of the void, the more is met" \
+  "$(json is-met.json ver) > $(json is-below.json ver) && $(json is-met.json ver) > $(json is-free.json ver)"
+fails 64 'requires --grey-target' vam-score --grid target part.vdb --void free
+fails 64 'does not apply to --grey-target' vam-score --grid target part.vdb --grey-target --surface
+fails 64 "unknown figure 'turns'" vam-score --grid target part.vdb --grey-target --require 'turns<3'
+fails 65 'make both from the same target' vam-score --grid target part.vdb --grey-target --target other.vdb
+
 fails 64 "unknown figure 'vre'" vam-score --grid target part.vdb --require 'vre<=1'
 fails 64 'cured_wrong: the critical dose is not known; give --critical-dose' \
   vam-score --grid target part.vdb --require 'ver<=1,cured_wrong<=1'

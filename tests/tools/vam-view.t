@@ -26,6 +26,33 @@ is "one pixel a value" "$($png size slice.png)" "64 60 8 3"
 is "columns to the right, angles down" "$($png get slice.png 44 0) $($png get slice.png 19 30)" "255 255 255 255 255 255"
 is "from a pipe" "$(vam-view --at 0.52 --plain --colours grey <sino.exr >piped.png; $png sum piped.png)" "$($png sum slice.png)"
 
+# The dose of a small part, with a margin around it
+vam-slice --shape cylinder --voxel 0.4 -o small.vdb
+vam-sinogram small.vdb --angles 24 --filter ram-lak -o small.exr; vam-dose small.exr --like small.vdb -o wider.vdb
+ok "the histogram of a dose with a margin" vam-view wider.vdb --target small.vdb --dose-histogram -o wider.png
+
+ok "what it cures" vam-view wider.vdb --target small.vdb --cure-map --sheet 4 -o cure.png
+ok "at another threshold" vam-view wider.vdb --target small.vdb --cure-map --threshold 0.2 -o cure2.png
+holds "another map" "$($png sum cure.png) != $($png sum cure2.png)"
+ok "the print beside the target" vam-view wider.vdb --target small.vdb --render -o print.png
+ok "a body" vam-view small.vdb --render -o body.pdf
+ok "the same dose twice" vam-view wider.vdb --compare wider.vdb -o same.png
+box 2 3 1 >box.off
+ok "a mesh" vam-view box.off -o box.png
+printf '%s\n' ply 'format ascii 1.0' 'element vertex 3' 'property float x' 'property float y' 'property float z' \
+  'property uchar red' 'property uchar green' 'property uchar blue' 'element face 1' 'property list uchar int vertex_indices' \
+  end_header '0 0 0 0 0 255' '4 0 0 0 0 255' '2 0 2 0 0 255' '3 0 1 2' >blue.ply
+ok "a coloured mesh" vam-view blue.ply -o blue.png
+holds "in blue" "$($png get blue.png 420 420 | awk '{ print ($1 < 5 && $2 < 5 && $3 > 80) }')"
+printf '%s\n' iteration,ver,pw 1,0.1,-0.2 2,0.05,-0.1 3,0,0.02 >trace.csv
+ok "a trace" vam-view trace.csv -o trace.svg
+ok "two traces" vam-view trace.csv --compare trace.csv -o traces.png
+fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map --render -o x.png
+fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
+fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.png
+fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
+fails 65 'require a volume' vam-view trace.csv --dose-histogram -o x.png
+
 # Frames of a projector, as EXR, images and video: the same pixels
 small_printer >printer.toml
 $exr make projector.exr space=projector width=64 height=36 count=3
@@ -45,6 +72,20 @@ holds "the outline is drawn" "$($png sum outlined.png) != $($png sum axial.png)"
 ok "the histogram" vam-view part.vdb --grid target --target part.vdb --dose-histogram -o histogram.png
 is "the histogram is a figure" "$($png size histogram.png)" "900 600 8 3"
 
+# Files for papers
+ok "twice the density" vam-view part.vdb --dpi 192 -o fine.png
+is "twice the pixels" "$($png size fine.png | cut -d' ' -f1)" "$((2 * $($png size axial.png | cut -d' ' -f1)))"
+density() { python3 -c 'import struct,sys; b=open(sys.argv[1],"rb").read(); i=b.index(b"pHYs"); print(*struct.unpack(">IIB",b[i+4:i+13]))' "$1"; }
+is "pixels per metre: 192 and 96 per inch" "$(density fine.png); $(density axial.png)" "7559 7559 1; 3780 3780 1"
+ok "PDF" vam-view part.vdb --target part.vdb -o axial.pdf
+is "a page of vectors and text, with its command" "$(head -c 5 axial.pdf) $(grep -a -c '/Subject (vam-view .* -o axial.pdf)' axial.pdf) $(grep -a -E -q '/Subtype */(TrueType|Type1)' axial.pdf && echo fonts)" "%PDF- 1 fonts"
+vam-view part.vdb --target part.vdb -o again.pdf; sed s/again.pdf/axial.pdf/ again.pdf >renamed.pdf
+same "the same bytes again" renamed.pdf axial.pdf
+ok "SVG" vam-view part.vdb --title 'a < b' -o axial.svg
+is "well-formed, with its command" "$(python3 -c 'import xml.etree.ElementTree as e; r=e.parse("axial.svg").getroot(); print(r.tag[-3:], r[0].text[:8])')" "svg vam-view"
+vam-view part.vdb --title '' -o untitled.png
+holds "no title takes no room" "$($png size untitled.png | cut -d' ' -f2) < $($png size axial.png | cut -d' ' -f2)"
+
 # NRRD
 ok "export of a volume" vam-view part.vdb --export part.nrrd
 python3 - >check <<'PY'
@@ -63,7 +104,7 @@ is "with its axes" "$(strings -n 6 sino.nrrd | grep -E '^(sizes|spacings|units)'
 # Wrong inputs
 fails 66 'none.vdb' vam-view none.vdb -o x.png
 echo hello >text.txt
-fails 65 'neither a volume' vam-view text.txt -o x.png
+fails 65 'not a mesh of a known format' vam-view text.txt -o x.png
 : >empty
 fails 65 'is empty' vam-view empty -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'
@@ -79,6 +120,9 @@ fails 65 'target' vam-view part.vdb --grid dose -o x.png
 fails 65 'require a volume' vam-view sino.exr --dose-histogram -o x.png
 mkdir hollow
 fails 65 'no PNG or TIFF' vam-view hollow -o x.png
+fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
+fails 64 'jpg' vam-view part.vdb -o x.jpg
+fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
 fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd

@@ -5,9 +5,9 @@
 
 #include "base/stats/student.hpp"
 #include "base/text.hpp"
-#include "io/image/image_file.hpp"
 #include "plot/canvas.hpp"
 #include "plot/plot.hpp"
+#include "plot/save.hpp"
 #include "vam-curethrough/figures.hpp"
 
 namespace vam::curethrough {
@@ -47,18 +47,8 @@ RgbImage cure_image(const PlaneFigure& plane) {
   return image;
 }
 
-RgbImage enlarged(const RgbImage& from, int width, int height) {
-  RgbImage to(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) to(x, y) = from(x * from.width / width, y * from.height / height);
-  }
-  return to;
-}
-
 void draw_image(plot::Canvas& canvas, const plot::PlotFrame& frame, const RgbImage& image, const std::string& title) {
-  const int left = static_cast<int>(frame.left);
-  const int top = static_cast<int>(frame.top);
-  canvas.paste(enlarged(image, static_cast<int>(frame.right) - left, static_cast<int>(frame.bottom) - top), left, top);
+  canvas.paste(image, {frame.left, frame.top}, {frame.right, frame.bottom});
   plot::draw_axes(canvas, frame, false);
   canvas.text({frame.left, frame.top - 14}, title, plot::label_size);
 }
@@ -123,7 +113,7 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSe
   constexpr int top = 40;
   constexpr int curve = 300;
   plot::Canvas canvas(3 * left + 2 * width + curve + 20, top + height + 90);
-  const plot::Axis x{"x / pixels", 0, static_cast<double>(plane.light.width)};
+  const plot::Axis x{"x (pixels)", 0, static_cast<double>(plane.light.width)};
   const plot::Axis y{"slice n: platform above, window below", static_cast<double>(plane.light.height), 0};
   const auto frame = [&](int number, int across, const plot::Axis& up) {
     const double start = left + number * (width + left);
@@ -139,7 +129,7 @@ void draw_plane(const std::string& path, const PlaneFigure& plane, const PrintSe
     canvas.text({at, top + height + 74.0}, words, plot::label_size, colour);
     at += plot::Canvas::text_width(words, plot::label_size) + 20;
   }
-  io::write_png(path, canvas.image());
+  plot::save(path, canvas);
 }
 
 void draw_working_curve(const std::string& path, const std::vector<resin::CuredSample>& samples,
@@ -157,16 +147,16 @@ void draw_working_curve(const std::string& path, const std::vector<resin::CuredS
   const LineBand band = band_of(samples, curve, most);
   plot::Plot plot;
   plot.title = "h_a = " + format_number(curve.absorbance_height_um, 4) +
-               " um per decade (log10), D_c = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm3";
-  plot.x = {"exposure E / mJ cm-2", band.at.front(), band.at.back(), true};
-  plot.y = {"cured thickness / um", 0, 1.12 * highest};
+               " µm per decade (log10), D_c = " + format_number(curve.gel_dose_mj_cm3, 4) + " mJ/cm³";
+  plot.x = {"exposure E (mJ/cm²)", band.at.front(), band.at.back(), true};
+  plot.y = {"cured thickness (µm)", 0, 1.12 * highest};
   plot.series = {{"least squares", band.at, band.line, paint::blue, plot::SeriesStyle::line},
                  {format_number(100 * curve.confidence) + " % of the line", band.at, band.low, paint::grey,
                   plot::SeriesStyle::line},
                  {"", band.at, band.high, paint::grey, plot::SeriesStyle::line},
                  {"samples", x[0], y[0], paint::black, plot::SeriesStyle::points}};
   if (!x[1].empty()) plot.series.push_back({"outliers, kept in the fit", x[1], y[1], red, plot::SeriesStyle::points});
-  io::write_png(path, plot::draw(plot));
+  plot::save(path, plot::draw(plot));
 }
 
 void draw_response(const std::string& path, const model::ResponseTable& table) {
@@ -182,7 +172,7 @@ void draw_response(const std::string& path, const model::ResponseTable& table) {
   plot.y = {"intensity", 0, 1.05 * light};
   plot.series = {{"monotone cubic", at, curve, paint::blue, plot::SeriesStyle::line},
                  {"mean readings", table.grey, table.intensity, paint::black, plot::SeriesStyle::points}};
-  io::write_png(path, plot::draw(plot));
+  plot::save(path, plot::draw(plot));
 }
 
 void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& points, double slice_um) {
@@ -213,10 +203,10 @@ void draw_study(const std::string& path, const std::vector<resin::StudyPoint>& p
   plot.y = {"height error, corrected / uncorrected", 0, 1.1 * most};
   for (std::size_t s = 0; s < ratios.size(); ++s) {
     const Rgb colour = colours[s % colours.size()];
-    plot.series.push_back({format_number(heights[s] * slice_um) + " um", factors, ratios[s], colour, {}});
+    plot.series.push_back({format_number(heights[s] * slice_um) + " µm", factors, ratios[s], colour, {}});
     plot.series.push_back({"", factors, ratios[s], colour, plot::SeriesStyle::points});
   }
-  io::write_png(path, plot::draw(plot));
+  plot::save(path, plot::draw(plot));
 }
 
 }  // namespace vam::curethrough

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/text.hpp"
-#include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
 #include "plot/plot.hpp"
+#include "plot/save.hpp"
 #include "vam-optimize/exposure.hpp"
 #include "vam-optimize/sink.hpp"
 
@@ -62,7 +62,7 @@ void add_curve(plot::Plot& plot, const std::string& name, const std::vector<doub
 }
 
 /// Window above, IoU below, over the same axis.
-RgbImage front_figure(const std::vector<FrontPoint>& front, const Plans& plans) {
+plot::Canvas front_figure(const std::vector<FrontPoint>& front, const Plans& plans) {
   const bool timed = std::all_of(plans.begin(), plans.end(), [](const auto& plan) { return plan.has_value(); });
   std::vector<double> x, pw, iou, pw_tolerances;
   for (std::size_t i = 0; i < front.size(); ++i) {
@@ -73,7 +73,7 @@ RgbImage front_figure(const std::vector<FrontPoint>& front, const Plans& plans) 
   }
   plot::Plot windows;
   windows.title = "Process window against print duration, in the projector's grey levels";
-  windows.x.label = timed ? "duration at full grey / s" : "mean / peak intensity (higher: shorter)";
+  windows.x.label = timed ? "duration at full grey (s)" : "mean / peak intensity (higher: shorter)";
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   windows.x.low = *least - 0.05 * std::abs(*most);
   windows.x.high = 1.05 * *most;
@@ -87,9 +87,9 @@ RgbImage front_figure(const std::vector<FrontPoint>& front, const Plans& plans) 
   if (!pw_tolerances.empty()) add_curve(windows, "with all tolerances", x, pw_tolerances, plot::paint::vermilion);
   add_curve(overlaps, "", x, iou, plot::paint::blue);
   plot::Canvas canvas(windows.width, windows.height + overlaps.height);
-  canvas.paste(plot::draw(windows), 0, 0);
-  canvas.paste(plot::draw(overlaps), 0, windows.height);
-  return canvas.image();
+  canvas.place(plot::draw(windows), {0, 0});
+  canvas.place(plot::draw(overlaps), {0, static_cast<double>(windows.height)});
+  return canvas;
 }
 
 }  // namespace
@@ -97,8 +97,8 @@ RgbImage front_figure(const std::vector<FrontPoint>& front, const Plans& plans) 
 void write_front(const std::string& path, const std::vector<FrontPoint>& front, const model::Printer& printer,
                  const model::StackInfo& info, const Options& options) {
   const Plans plans = plans_of(front, printer, info, options);
-  if (!path.ends_with(".png")) return io::write_text(path, front_csv(front, plans));
-  io::write_png(path, front_figure(front, plans));
+  if (!plot::is_figure(path)) return io::write_text(path, front_csv(front, plans));
+  plot::save(path, front_figure(front, plans));
 }
 
 }  // namespace vam::optimize_tool

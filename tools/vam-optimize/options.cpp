@@ -67,6 +67,15 @@ void declare_constraints(cli::App& app, Options& options) {
   app.flag("--grey-target", options.demands.grey,
            "The target specifies a dose (or response) for every voxel, to be met within --band.");
   app.was("--grey");
+  app.choice("--void", options.void_rule, {"met", "below", "free"},
+             "--grey-target: void, where the target is 0, must be 0 within --band (met) or not exceed --dose-low "
+             "(below), or is unconstrained (free).")
+      .needs({"--grey-target"});
+  app.option("--void-weight", "W", options.void_weight, cli::positive,
+             "Relative cost of an error in the void; that in the part is 1. Multiplies --weights.");
+  app.option("--void-band", "EPSILON", options.void_band, cli::non_negative, "--grey-target: --band in the void.")
+      .needs({"--grey-target"});
+  app.default_is("--band");
   app.option("--band", "EPSILON", options.demands.band, {0, 0.5},
              readers("--band", ", --grey-target") + "maximum deviation of the resin's response from the target.");
   app.option("--band-volume", "FILE", options.band_volume,
@@ -140,14 +149,15 @@ void declare_duration(cli::App& app, Options& options) {
                " iterations without success. The optimisation takes several times as long.");
   app.option("--tradeoff", "FILE", options.tradeoff,
              readers("--max-intensity") +
-                 "write the Pareto front of print duration and process window, as CSV or as an image (FILE.png), for "
+                 "write the Pareto front of print duration and process window, as CSV or as a figure (.png, .pdf or "
+                 ".svg), for "
                  "at least " +
                  std::to_string(optimize::front_points) + " maximum intensities, from " +
                  format_number(optimize::shortest_of_even) + " times the even intensity upwards in steps of " +
                  format_number(100 * (optimize::front_raising.factor - 1)) + " %. Takes " +
                  std::to_string(optimize::front_iterations) +
                  " iterations; the projections written are those of the last maximum intensity.")
-      .writes({".csv", ".png"});
+      .writes({".csv", ".png", ".pdf", ".svg"});
 }
 
 void declare_proof(cli::App& app, Options& options) {

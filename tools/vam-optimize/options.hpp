@@ -26,6 +26,9 @@ struct Options {
   double surface_margin_mm = 0;
   std::string weights, band_volume;
   std::string response = "logistic";
+  std::string void_rule = "met";
+  double void_weight = 1;
+  std::optional<double> void_band;
   double softness = 0.05;
   std::optional<int> iterations;  // stopping criteria
   optimize::Limits limits;

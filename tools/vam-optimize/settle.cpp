@@ -99,6 +99,8 @@ void refuse_dither(const Options& options) {
 
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
+  if (options.void_rule != "met" && (app.given("--void-band") || app.given("--void-weight")))
+    throw Error{Fault::usage, "--void " + options.void_rule + ": stands for --void-band or --void-weight; omit these"};
   refuse_unread(app, options, method);
   refuse_poses(options);
   refuse_dither(options);

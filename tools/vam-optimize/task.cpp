@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "io/settings/printer_file.hpp"
 #include "io/vdb/covered.hpp"
+#include "optimize/target/void_rule.hpp"
 #include "score/exposure.hpp"
 #include "vam-optimize/front.hpp"
 
@@ -58,6 +59,18 @@ optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes
   };
 }
 
+void add_void_rule(optimize::VolumeSource& source, std::size_t pixels, const Options& options) {
+  const auto weight = static_cast<float>(options.void_rule == "free" ? 0 : options.void_weight);
+  if (weight != 1) {
+    source.weight =
+        optimize::with_void(source.target, source.weight, 1, pixels, [weight](float& value) { value *= weight; });
+  }
+  if (options.void_rule != "below" && !options.void_band) return;
+  const double most = options.void_rule == "below" ? options.demands.window.low : *options.void_band;
+  source.tolerance = optimize::with_void(source.target, source.tolerance, static_cast<float>(options.demands.band),
+                                         pixels, [most](float& value) { value = static_cast<float>(most); });
+}
+
 optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const Options& options) {
   optimize::VolumeSource source;
   source.slices = scene.grid.nz;
@@ -66,6 +79,7 @@ optimize::VolumeSource make_source(const Scene& scene, const Inputs& in, const O
   source.weight = padded(in.weight, scene, 1);
   source.tolerance = padded(in.tolerance, scene, static_cast<float>(options.demands.band));
   source.band_px = options.surface_margin_mm / in.grid().voxel_mm;
+  add_void_rule(source, scene.grid.slice_size(), options);
   return source;
 }
 

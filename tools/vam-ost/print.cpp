@@ -11,6 +11,7 @@
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/projection_sheet.hpp"
 #include "plot/image_figure.hpp"
+#include "plot/save.hpp"
 #include "solid/voxel/isosurface.hpp"
 
 namespace vam::ost_tool {
@@ -80,10 +81,9 @@ void Print::write(const model::Volume& volume) const {
     figure.panels.push_back({sheet.images[i], sheet.captions[i], {}});
   figure.x = {"mm", 0, sheet.images[0].width * sheet.pixel_mm};
   figure.y = {"mm", 0, sheet.images[0].height * sheet.pixel_mm};
-  figure.value_label = "relative sum";
-  figure.pixel_mm = sheet.pixel_mm;
+  figure.scale.label = "relative sum";
   figure.columns = 3;
-  io::write_png(options_.projections, plot::draw(figure));
+  plot::save(options_.projections, plot::draw(figure), app_.history());
 }
 
 std::optional<metrology::Cured> Print::state(const model::Volume& volume) const {

@@ -81,9 +81,9 @@ class Projections {
   [[nodiscard]] std::vector<Frame> frames() const {
     const auto [first, last] = lit_columns(images_);
     plot::ImageFigure figure;
-    figure.colours = plot::ColourMap::grey;
-    figure.high = bright();
-    figure.value_label = "intensity (" + info_.units + ")";
+    figure.scale.map = plot::ColourMap::grey;
+    figure.scale.high = bright();
+    figure.scale.label = "intensity (" + info_.units + ")";
     const double pixel_mm = by_column_ * info_.pixel_mm;
     const double left_mm = -0.5 * info_.width * info_.pixel_mm;
     const double low_mm = info_.z_start_mm - 0.5 * info_.row_mm;

@@ -31,7 +31,7 @@ std::vector<Frame> frames_of(const plot::ImageFigure& sheet) {
     plot::ImageFigure one = sheet;
     one.panels = {panel};
     one.title = panel.caption;
-    frames.push_back({panel.caption, plot::draw(one)});
+    frames.push_back({panel.caption, plot::draw(one).image()});
   }
   return frames;
 }

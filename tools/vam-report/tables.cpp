@@ -12,8 +12,8 @@
 #include "io/settings/csv_table.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/convergence.hpp"
 #include "plot/page.hpp"
-#include "plot/plot.hpp"
 #include "vam-report/names.hpp"
 
 namespace vam::report_tool {
@@ -71,19 +71,15 @@ std::string report_table(const std::string& path) {
 
 std::string convergence(const std::string& path) {
   const io::CsvTable table = io::read_csv(path, {"iteration", "ver", "pw"});
-  plot::Series window{"process window", {}, {}, plot::paint::blue};
-  plot::Series errors{"VER", {}, {}, plot::paint::vermilion};
+  plot::Trace trace;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
-    for (plot::Series* series : {&window, &errors}) series->x.push_back(table.number(row, 0));
-    errors.y.push_back(table.number(row, 1));
-    window.y.push_back(table.number(row, 2));
+    trace.iteration.push_back(table.number(row, 0));
+    trace.ver.push_back(table.number(row, 1));
+    trace.window.push_back(table.number(row, 2));
   }
-  plot::Plot curves;
-  curves.x.label = "iteration";
-  curves.y.label = "VER, process window / largest dose";
-  curves.series = {window, errors};
-  return plot::page_figure("Convergence", plot::page_image(plot::draw(curves), "figures over the iterations"),
-                           file_name(path) + ": the part prints if the process window is positive.");
+  return plot::page_figure(
+      "Convergence", plot::page_image(plot::draw(plot::convergence({trace})).image(), "figures over the iterations"),
+      file_name(path) + ": the part prints if the process window is positive.");
 }
 
 std::string provenance(const std::vector<std::string>& paths) {

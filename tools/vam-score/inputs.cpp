@@ -10,17 +10,18 @@ namespace vam::score_tool {
 namespace {
 
 Inputs read_grids(const Options& options) {
+  const io::TargetKind kind = options.grey ? io::TargetKind::grey : io::TargetKind::coverage;
   Inputs in;
   if (!options.target.empty()) {
     in.volumes.push_back(io::read_volume(options.input, options.grid));
     in.volumes.push_back(io::read_volume(options.target, "target"));
     in.target_at = 1;
     io::require_usable(options.input, in.volumes[0]);
-    io::require_usable(options.target, in.volumes[1]);
+    io::require_usable(options.target, in.volumes[1], kind);
     return in;
   }
   in.volumes = io::read_volumes(options.input);
-  io::require_usable(options.input, in.volumes);
+  io::require_usable(options.input, in.volumes, kind);
   const auto find = [&](const std::string& name, const std::string& remedy) {
     for (std::size_t i = 0; i < in.volumes.size(); ++i) {
       if (in.volumes[i].name() == name) return i;

@@ -27,6 +27,12 @@ std::vector<std::string> description() {
       "--extent resin). Resin beyond the writable radius is lit from some stage angles only; --lit-fraction writes "
       "their fraction for every voxel.",
       "Voxels that the part's surface cuts (0 < coverage < 1) are scored only with --surface.",
+      "With --grey-target, the option of vam-optimize, the target is a dose for every voxel, E = |x - f| the error of "
+      "a "
+      "voxel. VER is the fraction of voxels with E > EPSILON (--band), PW = - max (E - EPSILON), IPDR = max E, CV the "
+      "root mean square of E, IoU = 1 - VER; bias is the mean of x - f in the part, which a longer or shorter exposure "
+      "changes. --void states what is asked of the void; with --void below, E of a void voxel is what its dose exceeds "
+      "LOW by (EPSILON 0).",
       "With --require the exit status is 1 if a condition does not hold, so that a Makefile can reject a part that "
       "will not print, and 64 if it is on a figure that the inputs do not determine: cured_part, cured_void, cured_iou "
       "and cured_wrong require a critical dose; turns, duration_s, multiplier and peak_intensity_mw_cm2 a critical "
@@ -39,6 +45,14 @@ std::vector<std::pair<std::string, std::string>> examples() {
        "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose --like part.vdb -o "
        "dose.vdb && vam-score dose.vdb --target part.vdb"},
       {"Reject a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
+      {"Graded stiffness, met within 0.25 of the dose prescribed, where the void may have any dose up to 0.4:",
+       "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
+       "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
+       "--grey-target --void below --dose-low 0.4 --band 0.25 --angles 120 --iterations 20 graded.vdb | vam-dose "
+       "--like "
+       "graded.vdb -o graded-dose.vdb && vam-score --grey-target --void below --dose-low 0.4 --band 0.25 "
+       "graded-dose.vdb "
+       "--target graded.vdb"},
       {"Write the print as a mesh and as points coloured by dose:",
        "vam-score dose.vdb --target part.vdb --mesh print.ply && vam-score dose.vdb --target part.vdb --mesh "
        "points.ply --ply-as points"}};

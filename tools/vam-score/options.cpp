@@ -1,8 +1,26 @@
 #include "vam-score/options.hpp"
 
+#include "base/error.hpp"
+
 namespace vam::score_tool {
 
 namespace {
+
+void declare_grey(cli::App& app, Options& options) {
+  app.group("Grey target");
+  app.flag("--grey-target", options.grey,
+           "The target specifies a dose for every voxel, in the unit of the dose, to be met within --band.");
+  app.option("--band", "EPSILON", options.grey_how.band, cli::non_negative,
+             "Maximum deviation of the dose from the target.")
+      .needs({"--grey-target"});
+  app.choice("--void", options.void_rule, {"met", "below", "free"},
+             "Void, where the target is 0: must be 0 within --band (met) or not exceed --dose-low (below), or is not "
+             "scored (free).")
+      .needs({"--grey-target"});
+  app.option("--dose-low", "DOSE", options.grey_how.void_limit, cli::non_negative,
+             "LOW: upper bound on the dose of the void with --void below.")
+      .needs({"--grey-target"});
+}
 
 void declare_print(cli::App& app, Options& options) {
   app.group("Print");
@@ -42,6 +60,7 @@ void declare(cli::App& app, Options& options) {
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
       .was("--reach")
       .writes();
+  declare_grey(app, options);
   declare_print(app, options);
   cli::add_printer(app, options.printer);
   app.group("Output and performance");
@@ -51,6 +70,14 @@ void declare(cli::App& app, Options& options) {
       .writes()
       .was("--json", "-");
   cli::add_threads(app);
+}
+
+void check(const cli::App& app, const Options& options) {
+  if (!options.grey) return;
+  for (const char* flag :
+       {"--critical-dose", "--trim", "--surface", "--absolute", "--sinogram", "--mesh", "--lit-fraction"}) {
+    if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --grey-target; omit it"};
+  }
 }
 
 }  // namespace vam::score_tool

@@ -16,6 +16,7 @@
 #include "io/stream/stream.hpp"
 #include "model/conditions.hpp"
 #include "plot/plot.hpp"
+#include "plot/save.hpp"
 #include "solid/mesh/align.hpp"
 #include "vam-sdf/options.hpp"
 
@@ -82,14 +83,14 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
   for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
   const plot::Histogram histogram = builder.done();
   const std::string& path = options.histogram;
-  if (path.size() > 4 && path.substr(path.size() - 4) == ".png") {
+  if (plot::is_figure(path)) {
     plot::Plot plot;
     plot.title = "Deviation of the print, RMS " + format_number(found.print_to_design.rms_mm, 3) + " mm";
-    plot.x = {"distance to the design / mm (positive: outside)", -limit_mm, limit_mm};
-    plot.y.label = "share of the area / %";
+    plot.x = {"distance to the design (mm), positive outside", -limit_mm, limit_mm};
+    plot.y.label = "share of the area (%)";
     plot.series.push_back({"", histogram.edges, histogram.percent, plot::paint::blue, plot::SeriesStyle::bars});
     plot.markers.push_back({0, "design", plot::paint::grey});
-    return io::write_png(path, plot::draw(plot));
+    return plot::save(path, plot::draw(plot));
   }
   std::string text = "from_mm,to_mm,area_percent\n";
   for (std::size_t i = 0; i < histogram.percent.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "plot/contour.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/plot.hpp"
+#include "plot/save.hpp"
 #include "vam-sdf/options.hpp"
 
 namespace vam::sdf_tool {
@@ -63,31 +64,30 @@ void draw_map(const HeightOptions& options, const metrology::Relief& print, cons
   Image um = print.heights_mm;
   for (float& h : um.values) h *= static_cast<float>(um_per_mm);
   figure.title = "Height of the print, design shrunk by " + format_number(100 * (1 - found.placing.scale), 3) + " %";
-  figure.low = -0.1 * um_per_mm * print.plateau_mm;
-  figure.high = 1.2 * um_per_mm * std::max(print.plateau_mm, found.height_mm);
-  figure.value_label = "height / um";
+  figure.scale.low = -0.1 * um_per_mm * print.plateau_mm;
+  figure.scale.high = 1.2 * um_per_mm * std::max(print.plateau_mm, found.height_mm);
+  figure.scale.label = "height (µm)";
   figure.outline_name = "design at half height";
-  figure.pixel_mm = print.pixel_mm;
   figure.x = {"mm", 0, um.width * print.pixel_mm};
   figure.y = {"mm", 0, um.height * print.pixel_mm};
   plot::Panel panel{um, "", plot::contour(found.design, static_cast<float>(0.5 * found.design_height_mm))};
   if (!options.plot.empty()) panel.outline.push_back({{line[0], line[1]}, {line[2], line[3]}});
   figure.panels.push_back(std::move(panel));
-  io::write_png(options.output, plot::draw(figure));
+  plot::save(options.output, plot::draw(figure));
 }
 
 void draw_section(const std::string& path, const metrology::Section& section) {
   plot::Plot plot;
   plot.title = "Height along the line";
   plot.x = {"mm"};
-  plot.y = {"height / um"};
+  plot.y = {"height (µm)"};
   const auto um = [](std::vector<double> mm) {
     for (double& h : mm) h *= um_per_mm;
     return mm;
   };
   plot.series.push_back({"design", section.along_mm, um(section.design_mm), plot::paint::grey});
   plot.series.push_back({"print", section.along_mm, um(section.print_mm), plot::paint::blue});
-  io::write_png(path, plot::draw(plot));
+  plot::save(path, plot::draw(plot));
 }
 
 }  // namespace

@@ -59,14 +59,15 @@ std::string camera_figure(const RunFolder& run) {
   view.panels.push_back({reduced(levels, 480), "", {}});
   view.x = {"across the vial, from the axis (mm)", (-0.5 - axis) * pixel_mm, (levels.width - 0.5 - axis) * pixel_mm};
   view.y = {"z (mm)", (level - levels.height + 0.5) * pixel_mm, (level + 0.5) * pixel_mm};
-  view.colours = plot::ColourMap::grey;
+  view.scale.map = plot::ColourMap::grey;
   const Image& shown = view.panels.front().values;
-  view.high = std::max(0.02F, *std::max_element(shown.values.begin(), shown.values.end()));
-  view.value_label = "fraction of full scale";
+  view.scale.high = std::max(0.02F, *std::max_element(shown.values.begin(), shown.values.end()));
+  view.scale.label = "fraction of full scale";
   view.size = 480;
   const std::string when =
       newest->angle_deg ? ", at stage angle " + fixed(std::fmod(*newest->angle_deg, 360), 1) + " deg" : "";
-  return plot::page_figure("Camera", plot::page_image(plot::draw(view), "camera image"), "Newest image" + when + ".");
+  return plot::page_figure("Camera", plot::page_image(plot::draw(view).image(), "camera image"),
+                           "Newest image" + when + ".");
 }
 
 std::string screen_figure(const RunFolder& run, const LightView& light, double angle_deg, bool lit) {
@@ -76,11 +77,11 @@ std::string screen_figure(const RunFolder& run, const LightView& light, double a
   view.panels.push_back({std::move(image), "", {}});
   view.x = {"x (mm), seen from the projector", -run.printer().vial.radius_mm, run.printer().vial.radius_mm};
   view.y = {"z (mm)", light.low_mm(), light.high_mm()};
-  view.colours = plot::ColourMap::grey;
-  view.value_label = "fraction";
+  view.scale.map = plot::ColourMap::grey;
+  view.scale.label = "fraction";
   view.size = 480;
   const double peak = run.printer().projector.max_intensity_mw_cm2;
-  return plot::page_figure("Projected image", plot::page_image(plot::draw(view), "image of the projector"),
+  return plot::page_figure("Projected image", plot::page_image(plot::draw(view).image(), "image of the projector"),
                            lit ? "At stage angle " + fixed(std::fmod(angle_deg, 360), 1) +
                                      " deg; 1 is the maximum intensity of the print, " + format_number(peak, 3) +
                                      " mW/cm2."

@@ -5,32 +5,47 @@ namespace vam::view_tool {
 cli::Manual manual() {
   return {
       "vam-view",
-      "draw a volume, a sinogram, frames or a video as an image",
+      "draw volumes, sinograms, frames, videos, meshes and traces as figures",
       {"vam-view recognises a file by its content, not by its name: an OpenVDB volume (part, dose, scatter, distance), "
-       "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It writes one "
-       "PNG with axes in mm or degrees, a colour bar with the unit, and a scale bar if the pixel size is known.",
+       "an OpenEXR stack (sinograms or frames), an FFV1 or H.264 video, or a folder of numbered images. It draws it "
+       "with "
+       "axes in mm or degrees and a colour bar with the unit, as PNG, PDF or SVG.",
        "For a volume it shows a section: axial (x to the right, y up), coronal (x to the right, z up) or sagittal (y "
        "to the right, z up), the middle one or the one at --at. For sinograms it shows the middle slice, detector bins "
        "to the right and stage angles downwards; for frames the first one, oriented as in the file. --sheet N shows N "
        "of them, evenly spaced.",
        "--target draws the surface of the part (coverage 1/2) as a line over the dose. --dose-histogram instead shows "
-       "the distributions of dose inside and outside the part, each as a percentage of its voxels: if they overlap, no "
+       "the distributions of dose inside and outside the part, each as a percentage of its voxels (logarithmic): if "
+       "they overlap, no "
        "threshold separates the part from its surroundings. Voxels cut by the surface and voxels outside the writable "
        "circle are excluded.",
+       "--cure-map shows what prints at a threshold: cured as wanted (grey), missing (blue) and overcured (vermilion). "
+       "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
+       "surface of any grid. --compare shows two volumes beside each other in the same colours, and by how much the "
+       "second is more. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
+       "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
        "orange, more saturated with the number of angles (for a horizontal parallel beam).",
        "Coverage and intensity are shown in grey; dose and other quantities in viridis, which is perceptually uniform; "
-       "signed values in blue, white and red, with zero in the middle. --export writes the values as NRRD for "
+       "signed values in blue, white and red, with zero in the middle. The colours end where one pixel in 1000 is "
+       "beyond; the legend states how many are, and the extreme. Sinograms are cropped to the columns that are lit. "
+       "--export writes the values as NRRD for "
        "ParaView, 3D Slicer or numpy."},
       {{"Side view of a part, and a contact sheet of nine slices:",
         "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-view part.vdb --plane coronal -o side.png && vam-view "
         "part.vdb --sheet 9 -o sheet.png"},
        {"Its filtered sinogram:",
         "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-view sino.exr -o sino.png"},
+       {"What a dose prints, in a section and in three dimensions:",
+        "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-dose sino.exr --like part.vdb -o dose.vdb && "
+        "vam-view "
+        "dose.vdb --target part.vdb --cure-map -o cure.png && vam-view dose.vdb --target part.vdb --render -o "
+        "print.png"},
+       {"A section for a paper:", "vam-view part.vdb --title '' --image-size 320 -o part.pdf"},
        {"Values for ParaView:", "vam-view part.vdb --export part.nrrd"}},
       {"Memory: the volume as stored in its file and the images shown; stacks are read one image at a time.",
-       "Pixels are enlarged by integer factors, so that each voxel is a square of the same size; reduced images are "
-       "averaged after colour mapping.",
+       "Pixels are enlarged by integer factors at 96 pixels per inch, so that each voxel is a square of the same size; "
+       "reduced images are averaged after colour mapping.",
        "Source: the histogram follows Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, "
        "fig S6."},
       {"vam-dose", "vam-project", "vam-score", "vam-sinogram", "vam-slice"}};

@@ -2,12 +2,22 @@
 
 #include "base/error.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/save.hpp"
 
 namespace vam::view_tool {
 
+std::string file_name(const std::string& path) {
+  return path == "-" ? "stdin" : path.substr(path.find_last_of('/') + 1);
+}
+
 void declare(cli::App& app, Options& options) {
-  app.positional("FILE", options.input, "Volume (VDB), stack (EXR), video (MKV, MP4) or folder of images.").reads();
-  app.option("-o,--output", "FILE", options.output, "Write the PNG to FILE; - is standard output.").writes({".png"});
+  app.positional("FILE", options.input,
+                 "Volume (VDB), stack (EXR), video (MKV, MP4), folder of images, mesh (PLY, STL, OBJ, OFF, 3MF) or "
+                 "trace (.csv).")
+      .reads();
+  app.option("-o,--output", "FILE", options.output,
+             "Write the figure to FILE: PNG, PDF or SVG, by the ending of its name; - is PNG to standard output.")
+      .writes(plot::figure_endings());
   app.option("--export", "FILE", options.exported, "Write the values as NRRD instead of an image.").writes({".nrrd"});
   app.group("Selection");
   app.option("--grid", "NAME", options.grid,
@@ -19,20 +29,34 @@ void declare(cli::App& app, Options& options) {
   app.option("--sheet", "N", options.view.sheet, {1, 400},
              "Number of evenly spaced sections, slices or frames on one sheet.");
   app.option("--target", "FILE", options.target,
-             "Volume with the grid 'target', for the outline or for --dose-histogram.")
+             "Volume with the grid 'target', for the outline, --dose-histogram, --cure-map or --render.")
       .reads();
-  app.default_is("for --dose-histogram the grid in FILE, else no outline");
+  app.default_is("for --dose-histogram and --cure-map the grid in FILE, else none");
   app.flag("--dose-histogram", options.histogram, "Show the dose distributions inside and outside the part.")
       .was("--histogram");
+  app.flag("--cure-map", options.cure,
+           "Show where the dose cures the part, where it is missing and where it overcures.");
+  app.flag("--render", options.render,
+           "Show the body in three dimensions; with --target the print beside the target, false and missing cure in "
+           "colour.");
+  app.option("--threshold", "DOSE", options.threshold, cli::positive,
+             "Dose, or other value of the grid, from which on it prints, for --cure-map and --render.");
+  app.default_is("as by vam-score; 0.5 without a target");
+  app.option("--compare", "FILE", options.compare,
+             "Second volume or trace, shown beside the first; of volumes also the difference.")
+      .reads();
   app.group("Appearance");
   app.choice("--colours", options.view.colours, {"auto", "grey", "viridis", "diverging"}, "Colour map.");
   app.option("--low", "VALUE", options.view.low, cli::any, "Lower end of the colour map or the histogram.");
-  app.default_is("the lowest value, at most 0");
+  app.default_is("the value below which one pixel in 1000 is, at most 0");
   app.option("--high", "VALUE", options.view.high, cli::any, "Upper end of the colour map or the histogram.");
-  app.default_is("the highest value; 1 for fractions");
+  app.default_is("the value that one pixel in 1000 exceeds; 1 for coverage; for the histogram, the extremes");
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
       .was("--size");
+  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; it has 96 of --image-size.");
+  app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
+  app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");
   cli::add_printer(app, options.printer);
 }
@@ -41,8 +65,17 @@ void check(const Options& options) {
   const auto& view = options.view;
   if (view.low && view.high && *view.low >= *view.high) throw Error{Fault::usage, "--low: must be below --high"};
   if (view.at && view.sheet > 1) throw Error{Fault::usage, "--at: cannot be combined with --sheet"};
-  if (options.plain && (view.sheet > 1 || options.histogram))
-    throw Error{Fault::usage, "--plain: shows one image only; omit --sheet and --dose-histogram"};
+  if (options.histogram + options.cure + options.render + !options.compare.empty() > 1)
+    throw Error{Fault::usage, "--dose-histogram, --cure-map, --render and --compare exclude each other; give one"};
+  const bool drawn = options.histogram || options.cure || options.render || !options.compare.empty();
+  if (options.plain && (view.sheet > 1 || drawn)) {
+    throw Error{Fault::usage,
+                "--plain: shows one image only; omit --sheet, --dose-histogram, --cure-map, --render and --compare"};
+  }
+  if (options.threshold && !options.cure && !options.render)
+    throw Error{Fault::usage, "--threshold: requires --cure-map or --render"};
+  if (options.plain && plot::is_figure(options.output) && !options.output.ends_with(".png"))
+    throw Error{Fault::usage, "--plain: writes pixels; --output must end in .png"};
   if (!options.exported.empty() && options.output != "-") {
     throw Error{Fault::usage, "--export: writes the values instead of the image; omit --output"};
   }

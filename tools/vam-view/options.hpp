@@ -17,11 +17,20 @@ struct Options {
   std::string plane = "axial";
   std::string target;
   std::string exported;
+  std::string title;
+  double dpi = plot::screen_dpi;
+  std::string compare;
+  std::optional<double> threshold;
   bool histogram = false;
+  bool cure = false;
+  bool render = false;
   bool plain = false;
   plot::ViewOptions view;
   cli::PrinterOptions printer;
 };
+
+/// Without folders; "stdin" for -.
+[[nodiscard]] std::string file_name(const std::string& path);
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);

@@ -107,8 +107,14 @@ PolygonSoup parse_ply(const std::string& bytes) {
   check_ply_header(bytes);
   std::istringstream stream(bytes);
   CgalSoup soup;
-  if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces)) give_up("PLY", soup);
-  return converted(std::move(soup));
+  std::vector<CGAL::IO::Color> of_faces;
+  std::vector<CGAL::IO::Color> of_points;
+  if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points)) give_up("PLY", soup);
+  PolygonSoup result = converted(std::move(soup));
+  if (of_points.size() != result.points.size()) return result;
+  for (const CGAL::IO::Color& colour : of_points)
+    result.colours.push_back({colour.red(), colour.green(), colour.blue()});
+  return result;
 }
 
 PolygonSoup parse_off(const std::string& bytes) {

@@ -66,8 +66,9 @@ void check_points(const PolygonSoup& soup) {
 }
 
 // A fan per polygon. For a concave one the fan folds over itself, yet every fold cancels in a signed volume.
-model::TriangleSoup triangulated(PolygonSoup&& soup) {
-  model::TriangleSoup mesh;
+ColouredMesh triangulated(PolygonSoup&& soup) {
+  ColouredMesh made;
+  model::TriangleSoup& mesh = made.mesh;
   const int points = count_of(soup.points);
   mesh.triangles.reserve(soup.faces.size());
   for (std::size_t f = 0; f < soup.faces.size(); ++f) {
@@ -84,10 +85,11 @@ model::TriangleSoup triangulated(PolygonSoup&& soup) {
   }
   if (mesh.triangles.empty()) throw MeshProblem{"the mesh is empty: " + std::to_string(points) + " vertices, no face"};
   mesh.points = std::move(soup.points);
-  return mesh;
+  made.colours = std::move(soup.colours);
+  return made;
 }
 
-model::TriangleSoup parsed(const std::string& bytes, const std::string& name) {
+ColouredMesh parsed(const std::string& bytes, const std::string& name) {
   try {
     PolygonSoup soup = parse(bytes);
     check_points(soup);
@@ -97,11 +99,10 @@ model::TriangleSoup parsed(const std::string& bytes, const std::string& name) {
   }
 }
 
-void send(const model::TriangleSoup& mesh, Sender& out) {
-  out.put(std::uint64_t{mesh.points.size()});
-  out.put(mesh.points.data(), mesh.points.size() * sizeof mesh.points[0]);
-  out.put(std::uint64_t{mesh.triangles.size()});
-  out.put(mesh.triangles.data(), mesh.triangles.size() * sizeof mesh.triangles[0]);
+template <class Item>
+void send(const std::vector<Item>& items, Sender& out) {
+  out.put(std::uint64_t{items.size()});
+  out.put(items.data(), items.size() * sizeof items[0]);
 }
 
 template <class Item>
@@ -110,16 +111,26 @@ void receive(Receiver& in, std::vector<Item>& items) {
   in.get(items.data(), items.size() * sizeof items[0]);
 }
 
-model::TriangleSoup received(Receiver& in) {
-  model::TriangleSoup mesh;
-  receive(in, mesh.points);
-  receive(in, mesh.triangles);
-  return mesh;
+void send_mesh(const ColouredMesh& made, Sender& out) {
+  send(made.mesh.points, out);
+  send(made.mesh.triangles, out);
+  send(made.colours, out);
+}
+
+ColouredMesh received(Receiver& in) {
+  ColouredMesh made;
+  receive(in, made.mesh.points);
+  receive(in, made.mesh.triangles);
+  receive(in, made.colours);
+  return made;
 }
 
 // Once more, as what a child sends is not believed.
-void check_indices(const model::TriangleSoup& mesh, const std::string& name) {
+void check_indices(const ColouredMesh& made, const std::string& name) {
+  const model::TriangleSoup& mesh = made.mesh;
   const int points = count_of(mesh.points);
+  if (!made.colours.empty() && made.colours.size() != mesh.points.size())
+    throw Error{Fault::data, name + ": is damaged: its reader failed"};
   for (const auto& triangle : mesh.triangles) {
     for (const int corner : triangle) {
       if (corner < 0 || corner >= points) throw Error{Fault::data, name + ": is damaged: its reader failed"};
@@ -147,17 +158,19 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
   format_of_output(path).write(path, mesh, comments);
 }
 
-model::TriangleSoup read_mesh(const std::string& path) {
+ColouredMesh read_coloured_mesh(const std::string& path) {
   const std::string bytes = without_mark(read_all(path, Content::binary, most_bytes));
   const std::string name = input_name(path);
   // These are 50 bytes a triangle and read by code of ours that any bytes will do for; the rest is read apart.
   if (has_binary_stl_size(bytes)) return parsed(bytes, name);
-  model::TriangleSoup mesh;
+  ColouredMesh made;
   read_apart(
-      {name, bytes.size()}, [&](Sender& out) { send(parsed(bytes, name), out); },
-      [&](Receiver& in) { mesh = received(in); });
-  check_indices(mesh, name);
-  return mesh;
+      {name, bytes.size()}, [&](Sender& out) { send_mesh(parsed(bytes, name), out); },
+      [&](Receiver& in) { made = received(in); });
+  check_indices(made, name);
+  return made;
 }
+
+model::TriangleSoup read_mesh(const std::string& path) { return read_coloured_mesh(path).mesh; }
 
 }  // namespace vam::io

@@ -1,6 +1,8 @@
 // Mesh files: STL, OBJ, PLY, OFF and 3MF in; STL and PLY out.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,13 @@ namespace vam::io {
 /// no_input, io, data (unknown format, truncated, no triangle, a vertex that is not finite, a face with an index that
 /// does not exist or with fewer than three corners).
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
+
+/// The same, with the colours of the vertices where the format has some (PLY).
+struct ColouredMesh {
+  model::TriangleSoup mesh;
+  std::vector<std::array<std::uint8_t, 3>> colours;  // one a point, or none
+};
+[[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path);
 
 /// The formats that are read, for messages and help: "3MF, PLY, ...".
 [[nodiscard]] std::string mesh_format_names();

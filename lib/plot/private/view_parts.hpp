@@ -18,16 +18,31 @@ struct Extremes {
     low = std::min(low, static_cast<double>(value));
     high = std::max(high, static_cast<double>(value));
   }
-  void add(const Image& image) {
-    for (const float value : image.values) add(value);
-  }
 };
 
 /// Indices of `wanted` of `count` things, evenly spread, the outer ones half a step from the ends.
 [[nodiscard]] std::vector<int> spread(int count, int wanted);
 
-/// Signed values get the diverging colours with zero in the middle; coverage and light are grey; amounts viridis.
-void choose_colours(ImageFigure& figure, const ViewOptions& options, Extremes found, bool grey);
+/// Signed values get the diverging colours with zero in the middle; coverage and light are grey; amounts viridis. The
+/// ends are exceeded by one value in a thousand at most, or are 0 and 1 for coverage.
+enum class Content { amount, light, coverage };
+[[nodiscard]] ColourScale scale_for(const std::vector<const Image*>& images, const ViewOptions& options,
+                                    Content content);
+/// Gives the panels one scale; what is beyond its ends is said in the legend.
+void choose_colours(ImageFigure& figure, const ViewOptions& options, Content content);
+
+/// What sections of a volume are seen, at `at` or spread over it.
+struct Sections {
+  std::vector<int> indices;
+  std::vector<double> places_mm;
+  std::vector<std::string> captions;  // "z = 1.5 mm"
+};
+/// Throws Fault::data where the volume has none at `at`.
+[[nodiscard]] Sections sections_of(const model::Grid& grid, const ViewOptions& options);
+/// Once the panels are there.
+void set_section_axes(ImageFigure& figure, const model::Grid& grid, const ViewOptions& options);
+/// ", axial section at z = 1.5 mm", or ", axial sections".
+[[nodiscard]] std::string sections_text(const Sections& sections, Plane plane);
 
 /// "dose (mJ/cm3)"
 [[nodiscard]] std::string with_unit(const std::string& what, const std::string& unit);

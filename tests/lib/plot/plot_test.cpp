@@ -64,12 +64,12 @@ TEST_CASE("a curve is where its values are") {
   }
   plot.series = {parabola, points};
   plot.markers = {{5, "half way", paint::green}};
-  const RgbImage image = draw(plot);
+  const RgbImage image = draw(plot).image();
   keep(image, "curve.png");
   CHECK(image.width == 900);
-  // Frame of draw(): left 86, right 872, top 52, bottom 538. At x = 7 the parabola is at 49.
-  const int x = static_cast<int>(std::lround(86 + 0.7 * 786));
-  const int y = static_cast<int>(std::lround(538 - 0.49 * 486));
+  const PlotFrame frame = frame_of(plot);
+  const int x = static_cast<int>(frame.left + 0.7 * (frame.right - frame.left));
+  const int y = static_cast<int>(frame.bottom - 0.49 * (frame.bottom - frame.top));  // the parabola at x = 7
   bool found = false;
   for (int dy = -2; dy <= 2; ++dy) found = found || image(x, y + dy) == paint::blue;
   CHECK(found);
@@ -84,14 +84,16 @@ TEST_CASE("histograms count shares and draw bars") {
   const Histogram histogram = builder.done();
   CHECK(histogram.edges == std::vector<double>{0, 0.25, 0.5, 0.75, 1});
   CHECK(histogram.percent == std::vector<double>{25, 25, 12.5, 37.5});
-  Plot plot{"histogram", {"dose", 0, 1, false}, {"share of the voxels / %", 0, 0, false}, {}, {}, 600, 400};
+  Plot plot{"histogram", {"dose", 0, 1, false}, {"share of the voxels / %", 0, 0, false}, {}, {}, {}, 600, 400};
   plot.series = {{"in part", histogram.edges, histogram.percent, paint::vermilion, SeriesStyle::bars},
                  {"out of part", histogram.edges, {40, 30, 20, 10}, paint::blue, SeriesStyle::bars}};
-  const RgbImage image = draw(plot);
+  const RgbImage image = draw(plot).image();
   keep(image, "histogram.png");
-  // Last bin, frame 86..572 by 52..338: 37.5 of 42 % high.
-  CHECK(image(540, 330) != paint::white);
-  CHECK(image(540, 60) == paint::white);
+  // The last bin is 37.5 of 42 % high.
+  const PlotFrame frame = frame_of(plot);
+  const int x = static_cast<int>(frame.spot_x(0.95));
+  CHECK(image(x, static_cast<int>(frame.spot_y(36))) != paint::white);
+  CHECK(image(x, static_cast<int>(frame.spot_y(39))) == paint::white);
 }
 
 TEST_CASE("text has the reported width, can be vertical, and stays on the canvas") {

@@ -15,6 +15,7 @@
 #include "io/vdb/nrrd.hpp"
 #include "lib/io/scratch.hpp"
 #include "plot/private/insert_sections.hpp"
+#include "plot/render.hpp"
 
 using namespace vam::io;
 using namespace vam::plot;
@@ -158,13 +159,16 @@ TEST_CASE("a figure shows every voxel as a square of its colour, right way up") 
   CHECK(figure.x.low == doctest::Approx(-2));
   CHECK(figure.x.high == doctest::Approx(2));
   CHECK(figure.y.low == doctest::Approx(-1.5));
-  CHECK(figure.high == 1);
-  const auto image = draw(figure);
+  CHECK(figure.scale.high == 1);
+  const auto image = draw(figure).image();
   keep(image, "voxel.png");
-  // Image at (92, 52), 90 pixels a voxel: the bright one is at the upper right.
-  CHECK(image(92 + 7 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 1));
-  CHECK(image(92 + 6 * 90 + 45, 52 + 45) == colour(ColourMap::viridis, 0.25));
-  CHECK(image(92 + 7 * 90 + 45, 52 + 90 + 45) == colour(ColourMap::viridis, 0.25));
+  // 90 pixels a voxel: the bright one is at the upper right.
+  const Spot corner = panel_box(figure, 0).first;
+  const int left = static_cast<int>(corner.x);
+  const int top = static_cast<int>(corner.y);
+  CHECK(image(left + 7 * 90 + 45, top + 45) == colour(ColourMap::viridis, 1));
+  CHECK(image(left + 6 * 90 + 45, top + 45) == colour(ColourMap::viridis, 0.25));
+  CHECK(image(left + 7 * 90 + 45, top + 90 + 45) == colour(ColourMap::viridis, 0.25));
   options.at = 9.0;
   CHECK(has(error_of([&] { (void)view_volume(volume, nullptr, options); }, vam::Fault::data),
             "no axial section at 9 mm; it reaches from 0 mm to 1.5 mm"));
@@ -198,10 +202,54 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   }
   CHECK(plot.markers[0].words == "minimum inside 0.9");
   CHECK(plot.markers[1].words == "maximum outside 0.2");
-  keep(draw(plot), "dose-histogram.png");
+  keep(draw(plot).image(), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
-            "the dose has 40 x 40 x 40 voxels, but the target has 8 x 8 x 8"));
+            "has 40 x 40 x 40 voxels, but the other volume has 8 x 8 x 8; compute the dose on this target"));
+}
+
+TEST_CASE("the cure map tells what is missing and what is too much, but not where the surface cuts") {
+  const auto grid = vam::model::centred_grid(5, 1, 1, 1.0, 0);
+  SparseVolume target("target", grid);
+  const std::vector<float> covered{1, 1, 0.5F, 0, 0};
+  target.write_slices(0, 1, covered.data());
+  SparseVolume dose("dose", grid);
+  const std::vector<float> doses{1, 0.4F, 0.2F, 0.6F, 0.1F};
+  dose.write_slices(0, 1, doses.data());
+  const ImageFigure figure = view_cure(dose, target, 0.5, {});
+  const auto& seen = figure.panels[0].picture.values;
+  CHECK(seen == std::vector<Rgb>{{150, 150, 150}, paint::blue, paint::white, paint::vermilion, paint::white});
+  CHECK(figure.legend[1].words == "missing (50 % of the part seen)");
+  CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
+}
+
+TEST_CASE("two volumes are seen in the same colours, their difference with zero in the middle") {
+  const auto grid = vam::model::centred_grid(2, 2, 1, 1.0, 0);
+  SparseVolume one("dose", grid);
+  SparseVolume two("dose", grid);
+  const std::vector<float> first{0, 1, 2, 3};
+  const std::vector<float> second{0, 1, 4, 2};
+  one.write_slices(0, 1, first.data());
+  two.write_slices(0, 1, second.data());
+  const ImageFigure figure = view_difference(one, two, "b.vdb", {});
+  REQUIRE(figure.panels.size() == 3);
+  CHECK(figure.panels[2].values.values == std::vector<float>{2, -1, 0, 0});  // the upper row first
+  CHECK(figure.panels[0].scale->high == 4);
+  CHECK(figure.panels[1].scale->high == 4);
+  CHECK(figure.panels[2].scale->low == -2);
+  CHECK(figure.panels[2].scale->high == 2);
+}
+
+TEST_CASE("colours end where one value in a thousand is beyond, which the legend says") {
+  const auto grid = vam::model::centred_grid(100, 100, 1, 1.0, 0);
+  SparseVolume dose("dose", grid);
+  std::vector<float> values(grid.size(), 1.0F);
+  for (std::size_t i = 0; i < 5; ++i) values[i] = 50;  // 0.05 %
+  dose.write_slices(0, 1, values.data());
+  const ImageFigure figure = view_volume(dose, nullptr, {});
+  CHECK(figure.scale.high == 1);
+  REQUIRE(figure.legend.size() == 1);
+  CHECK(figure.legend[0].words == "0.05 % of the pixels are above 1 (to 50)");
 }
 
 TEST_CASE("NRRD has the dense box behind a header that gives its position") {
@@ -279,5 +327,28 @@ TEST_CASE("an insert is hatched, and hides what is behind it from the angles tha
   const ImageFigure figure = view_volume(target, nullptr, {}, &insert);
   CHECK(figure.panels[0].hatched(40, 40) == 1);
   CHECK(!figure.hatched_name.empty());
-  keep(draw(figure), "insert.png");
+  keep(draw(figure).image(), "insert.png");
+}
+
+TEST_CASE("a body is seen from above at its size, what is nearer before what is farther") {
+  // A square of 2 mm in the plane y = 0, and a small one before it, at y = -1, from the front.
+  const auto square = [](double half, double y, Rgb colour) {
+    return Body{{{{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}}, {{0, 1, 2}, {0, 2, 3}}},
+                std::vector<Rgb>(4, colour)};
+  };
+  const Body far = square(1, 0, {200, 0, 0});
+  const Body near = square(0.25, -1, {0, 0, 200});
+  const vam::RgbImage image = render({&near, &far}, {0, 0, 0}, 4, {0, 0}, 80);  // 20 pixels per mm
+  CHECK(image(2, 40) == paint::white);
+  CHECK(image(19, 40) == paint::white);
+  CHECK(image(20, 40)[0] > 60);
+  CHECK(image(59, 40)[0] > 60);
+  CHECK(image(60, 40) == paint::white);
+  CHECK(image(40, 40)[2] > 60);
+  CHECK(image(40, 40)[0] == 0);
+  CHECK(image(46, 40)[0] > 60);
+  const vam::RgbImage above = render({&far}, {0, 0, 0}, 4, {0, 60}, 80);  // cos 60 deg: half as high
+  CHECK(above(40, 29) == paint::white);
+  CHECK(above(40, 31) != paint::white);
+  CHECK(side_mm({&far}, {0, 0, 0}, {0, 60}) == doctest::Approx(2));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ namespace vam::io {
 struct PolygonSoup {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<int>> faces;
+  std::vector<std::array<std::uint8_t, 3>> colours = {};  // one a point, or none
 };
 
 /// What a parser has to say about bytes it cannot read: the rest of the sentence that begins with the file's name.

@@ -1,0 +1,160 @@
+#include "plot/render.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/index.hpp"
+#include "plot/canvas.hpp"
+
+namespace vam::plot {
+
+namespace {
+
+constexpr int supersample = 2;
+constexpr double ambient = 0.35;  // of the light, from everywhere
+
+Vector3 unit(const Vector3& v) {
+  const double size = length(v);
+  return size > 0 ? (1 / size) * v : Vector3{0, 0, 1};
+}
+
+/// The directions to the right, up and towards the eye.
+struct View {
+  explicit View(Eye eye) {
+    const double a = eye.azimuth_deg * std::numbers::pi / 180;
+    const double e = eye.elevation_deg * std::numbers::pi / 180;
+    right = {std::cos(a), std::sin(a), 0};
+    towards = {std::sin(a) * std::cos(e), -std::cos(a) * std::cos(e), std::sin(e)};
+    up = cross(towards, right);
+    light = unit(towards - 0.5 * right + 0.6 * up);
+  }
+  Vector3 right{}, up{}, towards{}, light{};
+};
+
+struct Corner {
+  double x = 0;
+  double y = 0;
+  double near = 0;
+  Vector3 colour{};  // lit
+};
+
+/// Nearest colours so far.
+class Screen {
+ public:
+  explicit Screen(int size)
+      : size_(size),
+        near_(product(size, size), -std::numeric_limits<double>::infinity()),
+        image_(size, size, paint::white) {}
+
+  void draw(const std::array<Corner, 3>& t) {
+    const double area = (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[2].x - t[0].x) * (t[1].y - t[0].y);
+    if (area == 0) return;
+    const auto clamped = [&](double place) { return static_cast<int>(std::clamp(place, 0.0, size_ - 1.0)); };
+    const int left = clamped(std::floor(std::min({t[0].x, t[1].x, t[2].x})));
+    const int right = clamped(std::ceil(std::max({t[0].x, t[1].x, t[2].x})));
+    const int top = clamped(std::floor(std::min({t[0].y, t[1].y, t[2].y})));
+    const int bottom = clamped(std::ceil(std::max({t[0].y, t[1].y, t[2].y})));
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = left; x <= right; ++x) {
+        const double px = x + 0.5;
+        const double py = y + 0.5;
+        const double a = ((t[1].x - px) * (t[2].y - py) - (t[2].x - px) * (t[1].y - py)) / area;
+        const double b = ((t[2].x - px) * (t[0].y - py) - (t[0].x - px) * (t[2].y - py)) / area;
+        if (a >= 0 && b >= 0 && a + b <= 1) set(x, y, t, {a, b, 1 - a - b});
+      }
+    }
+  }
+
+  /// Means of supersample x supersample pixels.
+  [[nodiscard]] RgbImage image() const {
+    RgbImage out(size_ / supersample, size_ / supersample);
+    for (int y = 0; y < out.height; ++y) {
+      for (int x = 0; x < out.width; ++x) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          int sum = 0;
+          for (int n = 0; n < supersample * supersample; ++n)
+            sum += image_(supersample * x + n % supersample, supersample * y + n / supersample)[c];
+          out(x, y)[c] = static_cast<std::uint8_t>(sum / (supersample * supersample));
+        }
+      }
+    }
+    return out;
+  }
+
+ private:
+  void set(int x, int y, const std::array<Corner, 3>& t, const Vector3& weight) {
+    const std::size_t at = product(y, size_) + static_cast<std::size_t>(x);
+    const double near = weight[0] * t[0].near + weight[1] * t[1].near + weight[2] * t[2].near;
+    if (near <= near_[at]) return;
+    near_[at] = near;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double value = weight[0] * t[0].colour[c] + weight[1] * t[1].colour[c] + weight[2] * t[2].colour[c];
+      image_.values[at][c] = static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+    }
+  }
+
+  int size_;
+  std::vector<double> near_;
+  RgbImage image_;
+};
+
+Vector3 normal_of(const Body& body, const std::array<int, 3>& triangle) {
+  const auto& points = body.mesh.points;
+  return cross(points[triangle[1]] - points[triangle[0]], points[triangle[2]] - points[triangle[0]]);
+}
+
+/// Means of the triangles around each point, by their area.
+std::vector<Vector3> normals_of(const Body& body) {
+  std::vector<Vector3> normals(body.mesh.points.size());
+  for (const auto& triangle : body.mesh.triangles) {
+    const Vector3 normal = normal_of(body, triangle);
+    for (const int corner : triangle) normals[corner] = normals[corner] + normal;
+  }
+  for (Vector3& normal : normals) normal = unit(normal);
+  return normals;
+}
+
+}  // namespace
+
+double side_mm(const std::vector<const Body*>& bodies, const Vector3& centre, Eye eye) {
+  const View view(eye);
+  double most = 0;
+  for (const Body* body : bodies) {
+    for (const auto& point : body->mesh.points) {
+      const Vector3 place = point - centre;
+      most = std::max({most, std::abs(dot(place, view.right)), std::abs(dot(place, view.up))});
+    }
+  }
+  return 2 * most;
+}
+
+RgbImage render(const std::vector<const Body*>& bodies, const Vector3& centre, double side, Eye eye, int pixels) {
+  const View view(eye);
+  const int size = pixels * supersample;
+  const double scale = size / side;
+  Screen screen(size);
+  for (const Body* body : bodies) {
+    const std::vector<Vector3> normals = normals_of(*body);
+    for (const auto& triangle : body->mesh.triangles) {
+      const Vector3 flat = unit(normal_of(*body, triangle));
+      std::array<Corner, 3> corners;
+      for (std::size_t n = 0; n < 3; ++n) {
+        const int at = triangle[n];
+        const Vector3 place = body->mesh.points[at] - centre;
+        // An edge is sharp where the faces around a point differ by more than some 35 degrees.
+        const Vector3& normal = dot(flat, normals[at]) > 0.8 ? normals[at] : flat;
+        const double shade = ambient + (1 - ambient) * std::abs(dot(normal, view.light));
+        const Rgb own = body->colours.empty() ? paint::light_grey : body->colours[at];
+        corners[n] = {0.5 * size + scale * dot(place, view.right), 0.5 * size - scale * dot(place, view.up),
+                      dot(place, view.towards), shade * Vector3{double(own[0]), double(own[1]), double(own[2])}};
+      }
+      screen.draw(corners);
+    }
+  }
+  return screen.image();
+}
+
+}  // namespace vam::plot

@@ -1,0 +1,105 @@
+#include "score/grey_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.hpp"
+#include "base/index.hpp"
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "model/dose_metrics.hpp"
+
+namespace vam::score {
+
+namespace {
+
+struct Figure {
+  std::string name;
+  std::string meaning;
+};
+
+const std::vector<Figure>& figure_list() {
+  static const std::vector<Figure> all{
+      {"ver", "fraction of the voxels whose dose is out of the band around the target"},
+      {"pw", "- maximum of error - band, negative if a voxel is out of its band"},
+      {"ipdr", "maximum error"},
+      {"cv", "root mean square error"},
+      {"iou", "1 - ver"},
+      {"bias", "mean of dose - target in the part"},
+  };
+  return all;
+}
+
+}  // namespace
+
+GreyScore::GreyScore(const GreyOptions& options, int width, int height)
+    : options_(options), width_(width), height_(height), worst_(-options.band) {}
+
+void GreyScore::add(const float* dose, const float* target, int count) {
+  for (std::size_t i = 0; i < product(count, width_ * height_); ++i) {
+    const auto in_slice = static_cast<int>(i % product(width_, height_));
+    const bool is_void = target[i] <= model::coverage_rounding;
+    if (!std::isfinite(dose[i])) throw Error{Fault::data, "the dose is not finite everywhere; compute it again"};
+    const bool judged = !is_void || (options_.void_rule != VoidRule::free &&
+                                     options_.circle.contains(in_slice % width_, in_slice / width_));
+    if (!judged) continue;
+    const double error = static_cast<double>(dose[i]) - static_cast<double>(target[i]);
+    const bool limited = is_void && options_.void_rule == VoidRule::below;
+    // Below the limit the void is right, whatever its dose.
+    const double size = limited ? std::max(0.0, error - options_.void_limit) : std::abs(error);
+    const double beyond = limited ? error - options_.void_limit : size - options_.band;
+    ++(is_void ? void_ : part_);
+    wrong_ += beyond > 0 ? 1 : 0;
+    worst_ = std::max(worst_, beyond);
+    largest_ = std::max(largest_, size);
+    squares_ += size * size;
+    if (!is_void) mismatch_ += error;
+  }
+}
+
+const std::vector<std::string>& GreyScore::names() {
+  static const std::vector<std::string> all = [] {
+    std::vector<std::string> list;
+    for (const auto& figure : figure_list()) list.push_back(figure.name);
+    return list;
+  }();
+  return all;
+}
+
+double GreyScore::figure(const std::string& name) const {
+  const auto all = static_cast<double>(part_ + void_);
+  const double ver = static_cast<double>(wrong_) / all;
+  if (name == "ver") return ver;
+  if (name == "pw") return -worst_;
+  if (name == "ipdr") return largest_;
+  if (name == "cv") return std::sqrt(squares_ / all);
+  return name == "iou" ? 1 - ver : mismatch_ / static_cast<double>(part_);
+}
+
+Json GreyScore::figures() const {
+  if (part_ == 0) throw Error{Fault::data, "the target is 0 everywhere; there is nothing to compare"};
+  Json json;
+  json["part_voxels"] = part_;
+  json["void_voxels"] = void_;
+  json["band"] = options_.band;
+  for (const std::string& name : names()) json[name] = figure(name);
+  return json;
+}
+
+std::string GreyScore::table() const {
+  const Json values = figures();
+  std::string text;
+  for (const auto& [name, meaning] : figure_list()) {
+    char line[200];
+    std::snprintf(line, sizeof line, "%-21s %12s  %s\n", name.c_str(),
+                  format_number(values[name].get<double>()).c_str(), meaning.c_str());
+    text += line;
+  }
+  const double within = 100 * (1 - figure("ver"));
+  return text + "verdict      " + (wrong_ == 0 ? "met" : "not met") + ": " + format_number(within, 4) + " % of " +
+         std::to_string(part_ + void_) + " voxels are within " + format_number(options_.band, 3) +
+         " of the target, the farthest is " + format_number(largest_, 3) + " away\n";
+}
+
+}  // namespace vam::score

@@ -1,0 +1,12 @@
+// The trace of an optimisation.
+#pragma once
+
+#include "plot/plot.hpp"
+#include "vam-view/options.hpp"
+
+namespace vam::view_tool {
+
+/// Of the input, and of that of --compare.
+[[nodiscard]] plot::Plot trace_plot(const Options& options);
+
+}  // namespace vam::view_tool
