@@ -150,7 +150,7 @@ Canvas draw(const Plot& plot) {
 }
 
 HistogramBuilder::HistogramBuilder(double low, double high, int bins)
-    : low_(low), high_(high > low ? high : low + 1), bins_(static_cast<std::size_t>(bins), 0) {}
+    : low_(low), high_(high > low ? high : low + 1), bins_(bins, 0) {}
 
 void HistogramBuilder::add(double value) {
   const double place = (value - low_) / (high_ - low_) * static_cast<double>(bins_.size());

@@ -66,7 +66,7 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
 // Index of the first of the values that is not below `value`; the values rise.
 template <class T>
 std::size_t first_at_least(const std::vector<T>& values, T value) {
-  return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
+  return std::lower_bound(values.begin(), values.end(), value) - values.begin();
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ LightTally limit_to_full(Image& image, float scale) {
   constexpr float full = 1;
   constexpr float rounding = 1e-6F;  // the peak itself, divided by the peak in float
   LightTally tally;
-  tally.pixels = static_cast<long>(image.size());
+  tally.pixels = image.size();
   for (int y = 0; y < image.height; ++y) {
     if (is_dark(image, y)) continue;
     for (float* value = image.row(y); value != image.row(y) + image.width; ++value) {
@@ -178,7 +178,7 @@ LightTally limit_to_full(Image& image, float scale) {
       tally.lit += *value > 0 ? 1 : 0;
       tally.clipped += *value > full + rounding ? 1 : 0;
       *value = std::min(*value, full);
-      tally.light += static_cast<double>(*value);
+      tally.light += *value;
     }
   }
   return tally;
@@ -218,7 +218,7 @@ void to_intensity(Image& greys, const Response& response) {
     for (float* pixel = greys.row(y); pixel != greys.row(y) + greys.width; ++pixel) {
       if (*pixel != grey) {
         grey = *pixel;
-        intensity = static_cast<float>(response.intensity(static_cast<double>(grey)));
+        intensity = static_cast<float>(response.intensity(grey));
       }
       *pixel = intensity;
     }

@@ -17,7 +17,7 @@ constexpr std::size_t most_angles = 32;  // angles that pass over a band while i
 constexpr int band = 128;                // pixels along the rows; a band has eight rows
 constexpr int pad = 4;                   // zeros on both sides: bins see at most 4 pixels of a row
 constexpr int row_elements = band + 2 * pad;
-constexpr auto rows = static_cast<std::size_t>(gather_rows);
+constexpr std::size_t rows = gather_rows;
 
 /// One angle: t = p * cp + q * cq + offset, p along the rows, q across them; e^{alpha u} = major[p] * minor[q].
 struct AngleView {

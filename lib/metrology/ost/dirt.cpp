@@ -117,7 +117,7 @@ float bubble_contrast(const std::vector<Image>& sinograms) {
   float most = 0;
   for (const Image& s : sinograms) most = std::max(most, *std::max_element(s.values.begin(), s.values.end()));
   const double noise = typical_difference(sinograms) * sigmas_per_median / std::sqrt(2.0);
-  return static_cast<float>(6 * noise + 0.03 * static_cast<double>(most));
+  return static_cast<float>(6 * noise + 0.03 * most);
 }
 
 // Rays of an angle that are brighter than the other end of their line and all near there. Empty: none.
@@ -163,7 +163,7 @@ Dirt even_background(const Image& mean_view) {
   const std::size_t n = sorted.size();
   const std::size_t tenth = n / 10;
   if (tenth < 2) return {};
-  const auto range = static_cast<double>(sorted[n - 1 - n / 1000] - sorted.front());
+  const double range = sorted[n - 1 - n / 1000] - sorted.front();
   std::size_t best = 0;
   for (std::size_t i = 0; i + tenth <= n * 6 / 10; ++i) {
     if (sorted[i + tenth] - sorted[i] < sorted[best + tenth] - sorted[best]) best = i;
@@ -193,7 +193,7 @@ double remove_specks(std::vector<Image>& sinograms) {
     if (departure.values[i] > 0) some.push_back(departure.values[i]);
   }
   const double noise = some.empty() ? 0.0 : stats::median(some) * sigmas_per_median;
-  const auto most = static_cast<double>(*std::max_element(mean.values.begin(), mean.values.end()));
+  const double most = *std::max_element(mean.values.begin(), mean.values.end());
   const auto least = static_cast<float>(8 * noise + 0.02 * most);
   RayMask marked(mean.size());
   for (int k = 0; k < mean.height; ++k) {

@@ -24,8 +24,8 @@ model::DoseMetrics grey_figures(std::span<const Slab> dose, const Problem& probl
   for (std::size_t i = slice % lanes; i < dose[s].values.size(); i += lanes) {
     if (!is_constrained(problem.labels[s][i])) continue;
     const float d = dose[s].values[i];
-    const auto error = static_cast<double>(std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]));
-    const double excess = error - static_cast<double>(problem.tolerance_at(s, i));
+    const double error = std::abs(problem.demands.curve.response(d) - problem.target[s].values[i]);
+    const double excess = error - problem.tolerance_at(s, i);
     ++m.part;
     squares += error * error;
     outside += excess > 0 ? 1 : 0;

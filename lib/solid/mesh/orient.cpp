@@ -64,7 +64,7 @@ std::vector<Component> flood(const model::TriangleSoup& mesh, std::vector<char>&
         if (seen[other] == 0) {
           seen[other] = 1;
           turn[other] = wanted;
-          turned += static_cast<std::size_t>(wanted);
+          turned += wanted;
           component.triangles.push_back(static_cast<int>(other));
         } else if (turn[other] != wanted && t < other) {
           ++unorientable;
@@ -187,7 +187,7 @@ Orientation orient(model::TriangleSoup& mesh) {
     if (turn[t] != 0) mesh.triangles[t] = turned_over(mesh.triangles[t]);
   }
   for (Component& component : components) measure(mesh, component);
-  result.components = static_cast<long>(components.size());
+  result.components = components.size();
   result.cavities = turn_outwards(mesh, components);
   turn_pieces(mesh, components);
   for (const Component& component : components) {
@@ -198,7 +198,7 @@ Orientation orient(model::TriangleSoup& mesh) {
       turn[t] ^= 1;
     }
   }
-  result.flipped = static_cast<long>(std::count(turn.begin(), turn.end(), 1));
+  result.flipped = std::count(turn.begin(), turn.end(), 1);
   return result;
 }
 
