@@ -85,9 +85,13 @@ void declare(cli::App& app, Options& options) {
   app.option("--limit", "MM", options.limit_mm, cli::positive,
              "Limit of the histogram and of the colours, on either side of 0.")
       .default_is("the 99th percentile");
-  app.option("--require", "CONDITIONS", options.require,
-             "Exit with status 1 unless all conditions hold, on rms, mean, sigma, mad, max, hausdorff (mm) and "
-             "rms_percent, e.g. 'rms<=0.2,hausdorff<1'.");
+  app.option(
+      "--require", "CONDITIONS", options.require,
+      "Exit with status 1 unless all conditions hold, on rms, trimmed (RMS of the 95 % nearest to the design), "
+      "mean, sigma, mad, max, hausdorff (mm), rms_percent and within (% of the surface within --tolerance), e.g. "
+      "'rms<=0.2,hausdorff<1'.");
+  app.option("--tolerance", "MM", options.tolerance_mm, cli::positive,
+             "Report the fraction of the print's surface within this distance of the design.");
   cli::add_report(app, options.report);
   cli::add_threads(app);
 }

@@ -50,6 +50,10 @@ quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --ali
 holds 'the deviation of two spheres is the difference of their radii' "$(json volume.json print_to_design.mean_mm) > 0.19 && $(json volume.json print_to_design.mean_mm) < 0.22"
 
 quiet 'a condition that holds' vam-sdf box.off box.off --require 'rms<=0.01,hausdorff<0.1'
+quiet 'the share within a tolerance' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align full --tolerance 0.3 --require 'within>=99,trimmed<=0.25' --report within.json
+holds 'is reported' "$(json within.json within_percent) >= 99"
+fails 1 'within = ' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align full --tolerance 0.1 --require 'within>=50'
+fails 64 'give the tolerance' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --require 'within>=50'
 fails 1 'rms = .* rms<=0.001' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --require 'rms<=0.001'
 
 # An embossed badge seen from above, 2 % too small, on a disc.

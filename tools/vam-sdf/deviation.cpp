@@ -55,13 +55,15 @@ solid::Alignment align(const Options& options, const model::TriangleSoup& print,
   return as_it_is;
 }
 
-double figure(const metrology::Comparison& found, const std::string& name) {
+double figure(const metrology::Comparison& found, const std::string& name, double tolerance_mm = 0) {
   const auto& d = found.print_to_design;
   if (name == "rms") return d.rms_mm;
   if (name == "mean") return d.mean_mm;
   if (name == "sigma") return d.sigma_mm;
   if (name == "mad") return d.mad_mm;
   if (name == "max") return d.max_abs_mm;
+  if (name == "trimmed") return d.trimmed_mm;
+  if (name == "within") return metrology::within_percent(found.samples_mm, tolerance_mm);
   if (name == "hausdorff") return found.hausdorff_mm;
   return 100 * d.rms_mm / found.largest_dimension_mm;  // rms_percent
 }
@@ -101,7 +103,7 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
 }
 
 void note_figures(const metrology::Comparison& found) {
-  for (const char* name : {"rms", "mean", "sigma", "mad", "max", "hausdorff"}) {
+  for (const char* name : {"rms", "trimmed", "mean", "sigma", "mad", "max", "hausdorff"}) {
     note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
          format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
   }
@@ -120,8 +122,13 @@ Json facts(const Options& options, const solid::Alignment& alignment) {
 void deviation(const cli::App& app, const Options& options) {
   std::vector<model::Condition> conditions;
   if (!options.require.empty())
-    conditions =
-        model::parse_conditions(options.require, {"rms", "mean", "sigma", "mad", "max", "hausdorff", "rms_percent"});
+    conditions = model::parse_conditions(
+        options.require, {"rms", "trimmed", "mean", "sigma", "mad", "max", "hausdorff", "within", "rms_percent"});
+  const bool asks_within =
+      std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name == "within"; });
+  if (asks_within && !options.tolerance_mm) {
+    throw Error{Fault::usage, "--require within: give the tolerance by --tolerance"};
+  }
   if (options.isovalue && !options.resin_record.empty())
     throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};
   const std::optional<double> isovalue =
@@ -151,10 +158,15 @@ void deviation(const cli::App& app, const Options& options) {
   }
   Json figures = metrology::to_json(found);
   figures["alignment"] = facts(options, alignment);
+  if (options.tolerance_mm) {
+    figures["tolerance_mm"] = *options.tolerance_mm;
+    figures["within_percent"] = metrology::within_percent(found.samples_mm, *options.tolerance_mm);
+  }
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);
   io::write_report(options.report, "vam-sdf/1", figures);
   note_figures(found);
-  const auto failed = model::unmet(conditions, [&](const std::string& name) { return figure(found, name); });
+  const auto failed = model::unmet(
+      conditions, [&](const std::string& name) { return figure(found, name, options.tolerance_mm.value_or(0)); });
   if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
 }
 

@@ -28,6 +28,7 @@ struct Options {
   std::optional<double> limit_mm;
   std::string require;
   std::string report;
+  std::optional<double> tolerance_mm;
   std::string volume;
   double volume_voxel_mm = 0;
 };

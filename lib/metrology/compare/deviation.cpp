@@ -5,6 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/stats/curve_fit.hpp"
+#include "base/stats/median.hpp"
 
 namespace vam::metrology {
 
@@ -25,6 +27,7 @@ Json to_json(const SurfaceDeviation& d, double size_mm) {
             {"mean_mm", d.mean_mm},
             {"sigma_mm", d.sigma_mm},
             {"mad_mm", d.mad_mm},
+            {"trimmed_rms_mm", d.trimmed_mm},
             {"min_mm", d.min_mm},
             {"max_mm", d.max_mm},
             {"max_abs_mm", d.max_abs_mm},
@@ -56,10 +59,45 @@ SurfaceDeviation deviation(std::span<const float> distances_mm) {
   d.max_mm = sorted.back();
   d.max_abs_mm = std::max(std::abs(d.min_mm), std::abs(d.max_mm));
   const double median = quantile(sorted, 0.5);
+  std::vector<double> sizes = sorted;
+  for (double& x : sizes) x = std::abs(x);
+  std::sort(sizes.begin(), sizes.end());
+  constexpr double kept = 0.95;
+  sizes.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kept * n)));
+  for (const double x : sizes) d.trimmed_mm += x * x / static_cast<double>(sizes.size());
+  d.trimmed_mm = std::sqrt(d.trimmed_mm);
   for (double& x : sorted) x = std::abs(x - median);
   std::sort(sorted.begin(), sorted.end());
   d.mad_mm = quantile(sorted, 0.5);
   return d;
+}
+
+double within_percent(std::span<const float> distances_mm, double tolerance_mm) {
+  if (distances_mm.empty()) return 0;
+  const auto count = std::count_if(distances_mm.begin(), distances_mm.end(),
+                                   [&](float d) { return std::abs(static_cast<double>(d)) <= tolerance_mm; });
+  return 100 * static_cast<double>(count) / static_cast<double>(distances_mm.size());
+}
+
+std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
+                                             std::span<const float> distances_mm) {
+  Vector3 middle{};
+  for (const auto& s : design) middle = middle + (1.0 / static_cast<double>(design.size())) * s.point;
+  std::vector<double> sizes;
+  for (const float d : distances_mm) sizes.push_back(static_cast<double>(std::abs(d)));
+  const double farthest = 4 * 1.4826 * stats::median(sizes) + 1e-9;
+  std::vector<double> rows;
+  std::vector<double> values;
+  for (std::size_t i = 0; i < design.size(); ++i) {
+    if (sizes[i] > farthest) continue;
+    const Vector3& n = design[i].normal;
+    for (std::size_t a = 0; a < 3; ++a) rows.push_back(n[a] * (design[i].point[a] - middle[a]));
+    rows.insert(rows.end(), n.begin(), n.end());
+    values.push_back(static_cast<double>(distances_mm[i]));
+  }
+  constexpr std::size_t unknowns = 6;  // growth and shift along each axis
+  const std::vector<double> part = stats::linear_fit(rows, unknowns, values);
+  return {-100 * part[0], -100 * part[1], -100 * part[2]};
 }
 
 Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
@@ -73,8 +111,12 @@ Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& 
   result.largest_dimension_mm = solid::bounding_box(design_mesh).largest_side();
   result.samples_mm = design.signed_distances(points_on(print));
   result.print_to_design = deviation(result.samples_mm);
-  std::vector<float> back = solid::Surface(print).signed_distances(points_on(design_mesh));
+  const std::vector<solid::SurfaceSample> on_design = solid::sample_surface(design_mesh, samples);
+  std::vector<Vector3> points;
+  for (const auto& sample : on_design) points.push_back(sample.point);
+  std::vector<float> back = solid::Surface(print).signed_distances(points);
   for (float& distance : back) distance = -distance;
+  result.shrinkage_percent = axis_shrinkage_percent(on_design, back);
   result.design_to_print = deviation(back);
   result.hausdorff_mm = std::max(result.print_to_design.max_abs_mm, result.design_to_print.max_abs_mm);
   return result;
@@ -91,6 +133,7 @@ Json to_json(const Comparison& comparison) {
   return {{"largest_dimension_mm", size},
           {"hausdorff_mm", comparison.hausdorff_mm},
           {"hausdorff_percent", 100 * comparison.hausdorff_mm / size},
+          {"shrinkage_xyz_percent", comparison.shrinkage_percent},
           {"print_to_design", to_json(comparison.print_to_design, size)},
           {"design_to_print", to_json(comparison.design_to_print, size)}};
 }

@@ -1,6 +1,7 @@
 // How far a print is from its design: statistics of signed distances [OST22 section 3, Table S1].
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,8 +19,9 @@ struct SurfaceDeviation {
   std::size_t samples = 0;
   double rms_mm = 0;
   double mean_mm = 0;
-  double sigma_mm = 0;  // standard deviation about the mean
-  double mad_mm = 0;    // median absolute deviation from the median
+  double sigma_mm = 0;    // standard deviation about the mean
+  double mad_mm = 0;      // median absolute deviation from the median
+  double trimmed_mm = 0;  // RMS of the 95 % nearest to the design: a crumb or a bubble does not decide it
   double min_mm = 0;
   double max_mm = 0;
   double max_abs_mm = 0;                                  // one-sided Hausdorff distance of the samples
@@ -29,14 +31,23 @@ struct SurfaceDeviation {
 /// Throws Fault::data when there are no distances.
 [[nodiscard]] SurfaceDeviation deviation(std::span<const float> distances_mm);
 
+/// Per cent of the distances within +-tolerance_mm.
+[[nodiscard]] double within_percent(std::span<const float> distances_mm, double tolerance_mm);
+
+/// How much shorter a print is along x, y and z of its design, in per cent, its growth all around included: what
+/// callipers find. From distances along the normals at points of the design, far ones left out [physics §8].
+[[nodiscard]] std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
+                                                           std::span<const float> distances_mm);
+
 /// Both directions: print to design, and design to print with the sign turned so that positive still means
 /// "print outside the design"; what is missing in the print shows only in the second.
 struct Comparison {
   SurfaceDeviation print_to_design;
   SurfaceDeviation design_to_print;
   double hausdorff_mm = 0;
-  double largest_dimension_mm = 0;  // of the design; percentages refer to it
-  std::vector<float> samples_mm;    // print to design, for the histogram
+  double largest_dimension_mm = 0;            // of the design; percentages refer to it
+  std::vector<float> samples_mm;              // print to design, for the histogram
+  std::array<double, 3> shrinkage_percent{};  // along x, y and z
 };
 [[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
                                  const solid::Surface& design, int samples);

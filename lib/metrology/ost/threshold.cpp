@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "base/text.hpp"
 
 namespace vam::metrology {
 
@@ -137,6 +138,23 @@ OverheadMean overhead_mean(const model::Volume& scatter) {
   return result;
 }
 
+namespace {
+
+// A standard that the volume cuts has no edge there, and its mean is not that of its rim.
+void require_whole(const Image& overhead, const FittedCircle& circle, double pixel_mm) {
+  constexpr double rim_px = 2;
+  const double off = std::hypot(circle.x - 0.5 * (overhead.width - 1), circle.y - 0.5 * (overhead.height - 1));
+  const double room = 0.5 * std::min(overhead.width, overhead.height) - rim_px;
+  if (off + circle.radius <= room) return;
+  throw Error{Fault::data, "standard: its circle of " + format_number(2 * circle.radius * pixel_mm, 4) + " mm, " +
+                               format_number(off * pixel_mm, 3) +
+                               " mm off the axis, is cut by the edge of the volume, " +
+                               format_number(room * pixel_mm, 4) +
+                               " mm from the axis; reconstruct a larger --radius or place the standard at the axis"};
+}
+
+}  // namespace
+
 Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double diameter_mm) {
   Threshold result;
   const FittedCircle seen = find_circle(overhead_mean);
@@ -144,6 +162,8 @@ Threshold gelation_threshold(const Image& overhead_mean, double pixel_mm, double
   result.diameter_mm = diameter_mm;
   result.circle = seen;
   result.circle.radius = 0.5 * diameter_mm / pixel_mm;
+  require_whole(overhead_mean, seen, pixel_mm);
+  require_whole(overhead_mean, result.circle, pixel_mm);
   const int points = std::max(360, static_cast<int>(2 * std::numbers::pi * result.circle.radius * 2));
   double sum = 0;
   double square = 0;

@@ -29,7 +29,8 @@ struct OverheadMean {
 [[nodiscard]] OverheadMean overhead_mean(const model::Volume& scatter);
 
 /// Threshold from the standard: the mean of the overhead mean projection under the circle of the true diameter, centred
-/// on the circle that the projection itself shows.
+/// on the circle that the projection itself shows. Throws Fault::data where either circle is cut by the circle that
+/// the volume fills.
 struct Threshold {
   double isovalue = 0;              // I_p
   double spread = 0;                // standard deviation along the circle

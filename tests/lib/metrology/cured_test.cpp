@@ -85,4 +85,25 @@ TEST_CASE("the threshold from a noisy standard cylinder reproduces its diameter 
   CHECK(std::abs(found.apparent_diameter_mm - 12) < 0.1);
 }
 
+TEST_CASE("a standard that the edge of the volume cuts is refused") {
+  // A disc of 6 mm in volumes of 16, 12.8 and 8 mm, and off the axis.
+  const auto overhead = [](int size, double off_px) {
+    Image image(size, size);
+    const double middle = 0.5 * (size - 1);
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        const double r = std::hypot(x - middle - off_px, y - middle);
+        const bool seen = std::hypot(x - middle, y - middle) < 0.5 * size;
+        image(x, y) = seen ? static_cast<float>(1 / (1 + std::exp(2 * (r - 30)))) : 0.0F;
+      }
+    }
+    return image;
+  };
+  CHECK(gelation_threshold(overhead(160, 0), 0.1, 6).isovalue == doctest::Approx(0.5).epsilon(0.1));
+  CHECK(gelation_threshold(overhead(128, 0), 0.1, 6).isovalue == doctest::Approx(0.5).epsilon(0.1));
+  CHECK_THROWS_WITH_AS((void)gelation_threshold(overhead(80, 14), 0.1, 6), doctest::Contains("cut by the edge"), Error);
+  CHECK_THROWS_WITH_AS((void)gelation_threshold(overhead(160, 0), 0.1, 16), doctest::Contains("cut by the edge"),
+                       Error);
+}
+
 TEST_CASE("no circle, no threshold") { CHECK_THROWS_AS((void)gelation_threshold(Image(50, 50, 1.0F), 0.1, 3), Error); }

@@ -36,6 +36,30 @@ TEST_CASE("distances to an enlarged sphere are positive in both directions") {
   }
 }
 
+TEST_CASE("a print that shrinks along each axis by another amount, grown by nothing") {
+  model::TriangleSoup design;
+  test::add_box({-5, -3, 0}, {5, 3, 4}, design);
+  test::add_box({-1, 3, 0}, {1, 6, 2}, design);
+  model::TriangleSoup print = design;
+  for (auto& p : print.points) p = {0.99 * p[0] + 0.01, 0.98 * p[1] - 0.02, 0.96 * p[2]};
+  const auto found = metrology::compare(print, design, solid::Surface(design), 40000);
+  // Linear in 4 %: products of the second order, 0.16 %, and what closest points near edges do to a few samples.
+  CHECK(found.shrinkage_percent[0] == doctest::Approx(1).epsilon(0.1));
+  CHECK(found.shrinkage_percent[1] == doctest::Approx(2).epsilon(0.1));
+  CHECK(found.shrinkage_percent[2] == doctest::Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("robust figures: a crumb does not decide them") {
+  std::vector<float> values(100, 0.1F);
+  values[7] = 5;
+  values[31] = -3;
+  const auto d = metrology::deviation(values);
+  CHECK(d.rms_mm > 0.5);
+  CHECK(d.trimmed_mm == doctest::Approx(0.1));
+  CHECK(metrology::within_percent(values, 0.1001) == doctest::Approx(98));
+  CHECK(metrology::within_percent(values, 0.05) == doctest::Approx(0));
+}
+
 TEST_CASE("statistics of given numbers") {
   const std::vector<float> values{-2, -1, 0, 1, 7};
   const auto d = metrology::deviation(values);
