@@ -105,6 +105,20 @@ is 'the tool, too' "$(kill -0 "$stuck" 2>/dev/null && echo there)" ''
 is 'the summary states the outcome' "$(json stopped/summary.json exit_statuses.lines)" 137
 holds 'and the progress' "$(json stopped/summary.json reached.lit_flips) > 0 && $(json stopped/summary.json reached.turns) < 50"
 
+# Nor is it waited for: the others would wait with the light on.
+for name in project lines; do
+  (exec vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 --uncalibrated --turns 50 --run stood-$name) 2>errors &
+  printing=$!
+  await grep -qs '"frame":[0-9]' stood-$name/flips.jsonl
+  program=vam-$name; [ $name = project ] || program=tee
+  kill -STOP "$(pgrep -P $printing -x $program)"
+  start=$(date +%s)
+  wait $printing
+  is "a print whose $name is stopped fails" "$? $(json stood-$name/summary.json outcome)" "137 $name failed"
+  ok 'the error names it' grep -qx "vam-print: $name was stopped by a signal and is ended" errors
+  holds 'soon' "$(date +%s) - $start < 6"
+done
+
 # An interrupt of all its processes, as Ctrl-C is; one that was started in the background by a script ignores it, its tools
 # do not.
 perl -e 'setpgrp(0, 0); $SIG{INT} = "IGNORE"; exec @ARGV' vam-print frames.exr --display null: --light sim: --max-missed 0.9 \
