@@ -5,6 +5,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
+#include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "tomo/absorption.hpp"
 #include "tomo/footprint.hpp"
@@ -58,7 +59,7 @@ void ShadowedOperator::each_column(const Footprint& footprint, std::size_t slab,
   for (int i = 0; i < most_columns; ++i) {
     if (footprint.weight[i] <= 0) continue;
     const int column = footprint.first + i;
-    const auto transmitted = static_cast<float>(std::exp(-mu_ * (depth_[column] + footprint.u)));
+    const auto transmitted = static_cast<float>(model::transmitted(mu_, depth_[column] + footprint.u));
     visit(column, footprint.weight[i] * transmitted, shadow_.ends()[slab].at(column, angle));
   }
 }

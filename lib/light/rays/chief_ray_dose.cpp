@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
 
@@ -23,7 +24,7 @@ ChiefRayDose::OnCircle ChiefRayDose::at(double r_mm, double b_rad) const {
 
 double ChiefRayDose::transmitted(double offset_mm, double u_mm, double steepness) const {
   const double s = model::half_chord(edge_mm, offset_mm) + u_mm;
-  return std::exp(-scope.absorption_per_mm * s * steepness);
+  return model::transmitted(scope.absorption_per_mm, s * steepness);
 }
 
 double ChiefRayDose::spacing(double exact) const {

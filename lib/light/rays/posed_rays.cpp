@@ -89,8 +89,7 @@ int PosedRays::find(const RayTable& table, double x_mm, double y_mm, int frame, 
     return 1;
   }
   if (table.outer.rows == 0 || here.shifted) return 0;
-  const double row = (static_cast<double>(r) - table.outer.first_mm) / table.outer.pitch_mm;
-  const int nearest = std::clamp(round_int(row), 0, table.outer.rows - 1);
+  const int nearest = table.outer.nearest_row(r);
   for (int sheet = 0; sheet < table.outer.sheets; ++sheet) {
     const auto points = pair(table.points(table.outer, nearest, sheet));
     to[sheet] = node_at(std::bit_cast<TableNode>(between(points.data(), points.data(), 0, along)), scale);

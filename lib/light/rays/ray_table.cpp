@@ -45,6 +45,10 @@ RayTable::RayTable(const Scope& scope)
   parallel_for(outer.rows, [&](int row) { fill_outer_row(light, row); });
 }
 
+int RayTable::Zone::nearest_row(double r_mm) const {
+  return std::clamp(round_int((r_mm - first_mm) / pitch_mm), 0, rows - 1);
+}
+
 HeightScale RayTable::scale_at(double z_mm, const RayScale& scale) const {
   return {static_cast<float>((z_mm / scope_.height_mm) * (z_mm / scope_.height_mm)),
           static_cast<float>(scale.columns_per_mm),

@@ -11,6 +11,7 @@
 #include "base/simd.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
+#include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
 #include "tomo/absorption.hpp"
@@ -64,7 +65,7 @@ VialRays::VialRays(const VialSetup& setup) : setup_(completed(setup)), table_(ta
   table_.at_height(0, scale(), level);
   const auto narrower = [](const RayNode& a, const RayNode& b) { return a.edge < b.edge; };
   const float widest = std::max_element(level.begin(), level.end(), narrower)->edge;
-  taps_ = ceil_int(std::numbers::sqrt2 * static_cast<double>(widest)) + 1;
+  taps_ = ceil_int(std::numbers::sqrt2 * widest) + 1;
   require_moderate_rays(level);
   for (int a = 0; a < setup_.turn.rows; ++a) {
     const double theta = setup_.part_angle_rad(a);
@@ -90,7 +91,7 @@ void VialRays::note_columns() {
     const optics::ChiefRay ray = optics::chief_ray(setup_.view, x_p);
     if (transmitted_.empty()) first_ = c;
     const double depth_mm = model::half_chord(resin_mm, ray.x_v_mm);
-    transmitted_.push_back(ray.transmittance * std::exp(-setup_.absorption_per_mm * depth_mm));
+    transmitted_.push_back(ray.transmittance * model::transmitted(setup_.absorption_per_mm, depth_mm));
   }
   if (!transmitted_.empty()) return;
   throw Error{Fault::data, "projector: none of its " + std::to_string(setup_.projector.columns) +
@@ -218,8 +219,7 @@ int VialRays::find(int i, int j, RaySource* rays) const {
   if (outside && table_.outer.rows == 0) return 0;
   const RayTable::Zone& zone = outside ? table_.outer : table_.inner;
   const double place = (r - zone.first_mm) / zone.pitch_mm;
-  const int low =
-      outside ? std::clamp(round_int(place), 0, zone.rows - 1) : std::min(static_cast<int>(place), zone.rows - 2);
+  const int low = outside ? zone.nearest_row(r) : std::min(static_cast<int>(place), zone.rows - 2);
   // alpha = psi - theta: the voxel seen from the lab. In steps of the table, increasing with the row.
   const double theta = setup_.part_angle_rad(0);
   double alpha = sense() * (std::atan2(y, x) - theta) / turn_rad;

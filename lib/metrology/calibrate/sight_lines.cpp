@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/constants.hpp"
+#include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/writable_radius.hpp"
 
@@ -51,7 +52,7 @@ double SightLines::seen(const optics::ChiefRay& ray) const {
     if (!(to_mm > from_mm) || slant * next_slant <= 0) continue;
     // The sheet carries its light however slanted it is crossed.
     sum += sights_[i].weight * (to_mm - from_mm) / (last_mm - first_mm) / (0.5 * std::abs(slant + next_slant)) *
-           std::exp(-absorption_per_mm_ * (half_mm + 0.5 * (from_mm + to_mm)));
+           model::transmitted(absorption_per_mm_, half_mm + 0.5 * (from_mm + to_mm));
   }
   return ray.transmittance * sum;
 }

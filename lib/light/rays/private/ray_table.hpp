@@ -75,6 +75,9 @@ class RayTable {
     int rows = 0;
     int sheets = 1;     // branches of the map
     int first_row = 0;  // of the table
+
+    /// The row that is nearest to a radius.
+    [[nodiscard]] int nearest_row(double r_mm) const;
   };
 
   /// What it is a table of.
