@@ -16,7 +16,7 @@ namespace vam::plan_tool {
 
 inline constexpr int coarseness = 4;  // pixels per voxel of the estimate
 inline constexpr int angles = 90;
-inline constexpr int iterations = 20;
+inline constexpr int iterations = 12;
 
 /// Whether the part fits, and at which scale.
 struct Fit {
