@@ -4,10 +4,10 @@
 #include <array>
 #include <vector>
 
-#include "light/gaussian_blur.hpp"
-#include "light/lit_grid.hpp"
-#include "light/make_operator.hpp"
-#include "light/vial_setup.hpp"
+#include "light/blur/gaussian_blur.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/operators/make_operator.hpp"
+#include "light/rays/vial_setup.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/methods/method.hpp"
 
