@@ -1,0 +1,96 @@
+#include "optimize/run/preview.hpp"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "light/blur/gaussian_blur.hpp"
+#include "light/grids/lit_grid.hpp"
+#include "light/operators/make_operator.hpp"
+#include "light/rays/vial_setup.hpp"
+#include "optimize/methods/automatic.hpp"
+#include "optimize/methods/method.hpp"
+
+namespace vam::optimize {
+
+namespace {
+
+/// The target within the grid of all that its light reaches.
+model::Volume extended(const model::Volume& target, const light::Margin& margin) {
+  model::Volume wide{light::extended(target.grid, margin), {}};
+  wide.values.assign(wide.grid.size(), 0.0F);
+  for (int k = 0; k < target.grid.nz; ++k) {
+    for (int j = 0; j < target.grid.ny; ++j) {
+      const float* row = target.slice(k) + static_cast<std::ptrdiff_t>(j) * target.grid.nx;
+      std::copy_n(
+          row, target.grid.nx,
+          wide.slice(k + margin.below) + static_cast<std::ptrdiff_t>(j + margin.side) * wide.grid.nx + margin.side);
+    }
+  }
+  return wide;
+}
+
+model::VoxelBox moved(model::VoxelBox box, const light::Margin& margin) {
+  const std::array<int, 3> by{margin.side, margin.side, margin.below};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] += by[axis];
+    box.high[axis] += by[axis];
+  }
+  return box;
+}
+
+model::StackInfo info_of(const model::Printer& printer, const model::Grid& grid, int angles) {
+  model::StackInfo info;
+  info.width = printer.projector.columns;
+  info.height = angles;
+  info.count = grid.nz;
+  info.pixel_mm = printer.projector.pixel_mm;
+  info.row_mm = grid.voxel_mm;
+  info.space = model::Space::projector;
+  info.z_start_mm = grid.z_mm(0);
+  info.angle_step_deg = 360.0 / angles;
+  info.units = "1/rad";
+  return info;
+}
+
+}  // namespace
+
+Preview preview(const PreviewTask& wanted) {
+  const light::Margin margin = light::lit_margin(wanted.printer, wanted.target.grid, wanted.radius_mm);
+  const model::Volume lit = extended(wanted.target, margin);
+  VolumeTask task;
+  task.source.slices = lit.grid.nz;
+  task.source.target = [&](int k, int count, float* out) {
+    std::copy_n(lit.slice(k), static_cast<std::size_t>(count) * lit.grid.slice_size(), out);
+  };
+  task.circle = model::writable_circle(lit.grid, wanted.radius_mm);
+  task.part = moved(wanted.part, margin);
+  task.limits.iterations = wanted.iterations;
+  task.limits.patience = 0;
+  task.limit.of_even = usual_of_even;
+  const double seconds = model::seconds_of(wanted.printer.stage, wanted.printer.stage.turns);
+  const model::Resin& resin = wanted.printer.resin;
+  task.blur_px = light::spread_mm(resin.psf_mm, resin.diffusion_mm2_s, seconds) / lit.grid.voxel_mm;
+  task.make = [](double max_intensity) {
+    MethodOptions how;
+    how.max_intensity = max_intensity;
+    return method_entry(automatic_method).make(how);
+  };
+  const light::VialSetup setup =
+      light::vial_setup(wanted.printer, lit.grid, wanted.angles, task.circle.radius * lit.grid.voxel_mm);
+  task.around = [&](std::span<const Slab> inserts) { return light::make_operator(setup, inserts); };
+  std::vector<Image> frames;
+  task.write = [&](int, const Image& image) { frames.push_back(image); };
+  Preview made{optimise(task, *light::make_operator(setup)), {}};
+  Trial trial;
+  trial.printer = wanted.printer;
+  trial.tolerances = wanted.tolerances;
+  trial.info = info_of(wanted.printer, lit.grid, wanted.angles);
+  trial.grid = lit.grid;
+  trial.seconds = seconds;
+  trial.threshold = task.demands.window.threshold();
+  made.trials = run_trials(trial, task, frames);
+  return made;
+}
+
+}  // namespace vam::optimize

@@ -1,0 +1,30 @@
+// A print in short: few iterations on coarse voxels, and what becomes of them in a printer off its settings.
+#pragma once
+
+#include "model/grid.hpp"
+#include "model/printer.hpp"
+#include "model/tolerances.hpp"
+#include "optimize/run/volume.hpp"
+#include "optimize/run/yield.hpp"
+
+namespace vam::optimize {
+
+struct PreviewTask {
+  model::Volume target;    // coverage, on the voxels of the preview
+  model::Printer printer;  // with pixels as large (model::coarser)
+  double radius_mm = 0;    // of the resin that is constrained (optics::judged_radius_mm)
+  model::VoxelBox part;    // its box in the target
+  int angles = 90;
+  int iterations = 20;
+  model::Tolerances tolerances{};
+};
+
+struct Preview {
+  VolumeOutcome outcome;
+  Trials trials;
+};
+
+/// By --method auto, without the levels of coarser voxels before it. Throws as optimise() and run_trials() do.
+[[nodiscard]] Preview preview(const PreviewTask& task);
+
+}  // namespace vam::optimize

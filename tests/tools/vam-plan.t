@@ -1,0 +1,41 @@
+# vam-plan end to end: parts that fit and that do not, the estimate, and every wrong input.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+# A box of 10 x 10 x 4 mm: its corners are 7.07 mm from the axis, within the 8.3 mm of the default printer.
+box 10 10 4 >box.off
+ok 'a plan' sh -c 'vam-plan box.off --report plan.json >plan'
+is 'it fits' "$(json plan.json fits)" true
+is 'at the size that it has' "$(json plan.json size_mm.0) $(json plan.json size_mm.2)" '10.0 4.0'
+holds 'slices of a pixel' "$(json plan.json slices) >= 4 / 0.065 - 1 && $(json plan.json slices) < 1.1 * 4 / 0.065 + 2"
+holds 'the thinnest wall is its height' "($(json plan.json thinnest_wall_voxels) - $(json plan.json slices)) ^ 2 <= 4"
+ok 'in words' sh -c 'grep -q "^fits  *yes: a cylinder of 16.6 mm diameter" plan && grep -q "^will it print" plan && grep -q "^  index +-0.005  *process window" plan'
+ok 'without the resin no duration' grep -q '^duration  *not known; set resin.critical_dose_mj_cm3' plan
+
+# The scale that is said is the one that vam-slice takes, and hardly larger ones are refused.
+box 40 40 9 >large.off
+ok 'a part that is too large' sh -c 'vam-plan large.off --no-preview --report large.json >large'
+is 'does not fit' "$(json large.json fits)" false
+scale=$(json large.json scale)
+ok 'vam-slice takes the scale' vam-slice large.off --scale "$scale" --voxel 0.065 -o large.vdb
+fails 65 'large.off' vam-slice large.off --scale "$(awk "BEGIN { print 1.02 * $scale }")" --voxel 0.065 -o none.vdb
+ok 'the table says it' grep -q -- "^scale needed  *--scale $scale;" large
+holds 'a bath of the resin lets more in' "$(json large.json index_bath.scale_that_fits) > 1.4 * $scale"
+# Without refraction all of the resin is lit, but for the outermost ray: 12.7 mm.
+holds 'nearly all of the vial' "$(json large.json index_bath.writable_radius_mm) > 12.5"
+
+ok 'with a resin' sh -c 'vam-plan --shape cylinder:diameter=6,height=2 --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 --report resin.json >resin'
+holds 'there is a duration' "$(json resin.json duration_s) > 0 && $(json resin.json turns) >= 1"
+# The same part at full resolution: turns differ by the coarseness of the estimate, not by a factor.
+vam-slice --shape cylinder:diameter=6,height=2 --voxel 0.13 -o part.vdb
+vam-optimize part.vdb --angles 90 --iterations 20 --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 \
+  --report full.json -o full.exr 2>.log/full
+holds 'as long as that of vam-optimize' "$(json resin.json duration_s) < 2 * $(json full.json duration_s) && $(json resin.json duration_s) > 0.5 * $(json full.json duration_s)"
+is 'and with the same verdict' "$(awk "BEGIN { print ($(json resin.json pw) >= 0) }")" "$(awk "BEGIN { print ($(json full.json pw) >= 0) }")"
+
+fails 66 'none.stl' vam-plan none.stl
+echo hello >text.stl
+fails 65 'text.stl' vam-plan text.stl
+fails 64 'give only one of them' vam-plan box.off --shape cylinder
+fails 65 'more than 1000 times too large' vam-plan box.off --scale 10000
+fails 73 'missing/plan.json' vam-plan box.off --no-preview --report missing/plan.json
+done_testing

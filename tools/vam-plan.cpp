@@ -1,0 +1,28 @@
+// vam-plan: whether and how a part can be printed, in seconds.
+#include "base/json.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/stream.hpp"
+#include "printer.hpp"
+#include "vam-plan/options.hpp"
+#include "vam-plan/plan.hpp"
+
+namespace {
+
+using namespace vam;
+
+void run(const plan_tool::Options& options) {
+  const model::Printer printer = tool::load_printer(options.printer);
+  if (tool::print_printer(options.printer, printer, "-")) return;
+  const plan_tool::Plan plan = plan_tool::plan(options, printer);
+  io::write_report(options.report, "vam-plan/1", report(plan));
+  if (options.report != "-") io::write_text("-", table(plan));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::App app(plan_tool::manual());
+  plan_tool::Options options;
+  declare(app, options);
+  return app.run(argc, argv, [&] { run(options); });
+}

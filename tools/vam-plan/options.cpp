@@ -1,0 +1,51 @@
+#include "vam-plan/options.hpp"
+
+#include "base/text.hpp"
+#include "solid/voxel/size_doubt.hpp"
+#include "vam-plan/plan.hpp"
+
+namespace vam::plan_tool {
+
+cli::Manual manual() {
+  return {
+      "vam-plan",
+      "say in seconds whether and how a part can be printed",
+      {"vam-plan reads a mesh and answers, before anything is sliced: does the part fit into what the printer can "
+       "write, and if not, at which scale; how many slices it has; how thick its thinnest walls are; how much an "
+       "index-matching bath would help; whether it will print, how long that takes, and how wide the process window "
+       "remains if the printer deviates from its settings. If the part does not fit, all that follows is of the part "
+       "at the scale that fits.",
+       "Whether it prints is estimated on voxels of " + std::to_string(coarseness) + " pixels, with " +
+           std::to_string(angles) + " angles and " + std::to_string(iterations) +
+           " iterations of the default method of vam-optimize. The deviations are half a pixel of "
+           "projector.axis_column, 0.005 of resin.index and 0.25 degrees between part and frames, one at a time, "
+           "either way: the smaller process window of the two is stated, as a fraction of the largest dose. Features "
+           "below " +
+           std::to_string(coarseness) +
+           " pixels are blurred in the estimate; at full resolution windows are wider and walls are sharper. "
+           "vam-optimize has the last word.",
+       "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
+      {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:size=10,cell=5"},
+       {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
+      {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
+       "Walls: the distance between the void on both sides of the part's middle, exceeded in 99 of 100 places; good "
+       "to a voxel or two."},
+      {"vam-slice", "vam-optimize", "vam-score"}};
+}
+
+void declare(cli::App& app, Options& options) {
+  app.positional("PART", options.input, "Mesh: STL, OBJ, PLY, OFF or 3MF.").reads({"--shape"});
+  app.option("--shape", "NAME:KEY=VALUE,...", options.shape, "Built-in shape instead of a file, as in vam-slice.")
+      .form();
+  app.group("Placement");
+  app.choice("--unit", options.unit, solid::unit_names(), "Unit of the file's coordinates.");
+  app.choice("--up", options.up, {"x", "y", "z", "-x", "-y", "-z"}, "Axis of the file that points upwards.");
+  app.option("--scale", "FACTOR", options.scale, cli::positive, "Scale factor.");
+  app.group("Output and performance");
+  app.flag("--no-preview", options.no_preview, "Omit the estimate of the print.");
+  cli::add_report(app, options.report);
+  cli::add_printer(app, options.printer);
+  cli::add_threads(app);
+}
+
+}  // namespace vam::plan_tool

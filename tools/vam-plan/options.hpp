@@ -1,0 +1,25 @@
+// Options of vam-plan.
+#pragma once
+
+#include <string>
+
+#include "cli/app.hpp"
+#include "cli/common.hpp"
+
+namespace vam::plan_tool {
+
+struct Options {
+  std::string input = "-";
+  std::string shape;
+  std::string unit = "mm";
+  std::string up = "z";
+  double scale = 1;
+  bool no_preview = false;
+  std::string report;
+  cli::PrinterOptions printer;
+};
+
+[[nodiscard]] cli::Manual manual();
+void declare(cli::App& app, Options& options);
+
+}  // namespace vam::plan_tool

@@ -1,0 +1,167 @@
+#include "vam-plan/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/error.hpp"
+#include "io/mesh/file.hpp"
+#include "io/stream/input_name.hpp"
+#include "model/coarser.hpp"
+#include "model/magnification.hpp"
+#include "optics/writable_radius.hpp"
+#include "score/exposure.hpp"
+#include "solid/voxel/part.hpp"
+#include "solid/voxel/size_doubt.hpp"
+#include "solid/voxel/wall.hpp"
+
+namespace vam::plan_tool {
+
+namespace {
+
+constexpr double bath_of_radius = 1.5;  // the window of a bath that is not there yet, from the axis
+constexpr double most_voxels = 16e6;    // of the grid on which walls are measured
+
+solid::Writable room_of(const model::Printer& printer) {
+  return solid::writable(printer, optics::writable_radius_mm(printer));
+}
+
+solid::Placement placement_of(const Options& options, const model::Printer& printer, double factor) {
+  solid::Placement placement;
+  placement.axes = solid::upright(options.up);
+  placement.scale = options.scale * solid::mm_per(options.unit) * factor;
+  placement.stretch_z = 1 / model::vertical_magnification(printer);
+  placement.voxel_mm = printer.projector.pixel_mm;
+  return placement;
+}
+
+/// What is planned, read once: it may be scaled to fit.
+class Source {
+ public:
+  explicit Source(const Options& options) : options_(options) {
+    if (options.shape.empty()) mesh_ = io::read_mesh(options.input);
+  }
+  [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
+    const solid::Placement placement = placement_of(options_, printer, factor);
+    const solid::Writable room = room_of(printer);
+    if (!options_.shape.empty()) return solid::shape_part(options_.shape, placement, room);
+    const std::string subject = io::input_name(options_.input);
+    return solid::mesh_part(mesh_, subject, solid::place(mesh_, placement, room, subject), solid::FillMode::automatic);
+  }
+
+ private:
+  const Options& options_;
+  model::TriangleSoup mesh_;
+};
+
+Fit fit_of(const Source& source, const model::Printer& printer) {
+  const solid::Part part = source.part(printer, 1);
+  const solid::Writable room = room_of(printer);
+  const double stretch = 1 / model::vertical_magnification(printer);
+  Fit fit;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    fit.size_mm[axis] = part.extent.box.high[axis] - part.extent.box.low[axis];
+  fit.size_mm[2] /= stretch;
+  fit.radius_mm = part.extent.radius_mm;
+  fit.writable_radius_mm = room.radius_mm;
+  fit.writable_height_mm = (room.high_mm - room.low_mm) / stretch;
+  fit.factor = solid::fitting_factor(part.extent, room, printer.projector.pixel_mm);
+  return fit;
+}
+
+/// Moved by whole voxels until the rows light it.
+solid::Part within_rows(solid::Part part, const solid::Writable& room, double voxel_mm) {
+  const auto& box = part.extent.box;
+  const double up = std::ceil(std::max(0.0, room.low_mm - box.low[2]) / voxel_mm) * voxel_mm;
+  const double down = std::ceil(std::max(0.0, box.high[2] - room.high_mm) / voxel_mm) * voxel_mm;
+  return solid::lifted(std::move(part), up - down);
+}
+
+model::Volume filled(const solid::Part& part, double voxel_mm) {
+  model::Volume volume{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}};
+  volume.values.resize(volume.grid.size());
+  (void)solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
+    std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
+  });
+  return volume;
+}
+
+/// On the printer's voxels, or on larger ones where these are too many.
+std::optional<double> wall_of(const solid::Part& part, const model::Grid& grid) {
+  const int by = std::max(1, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(grid.size()) / most_voxels))));
+  const auto wall = solid::thinnest_wall_voxels(filled(part, by * grid.voxel_mm));
+  return wall ? std::optional(by * *wall) : std::nullopt;
+}
+
+/// The box of all that is covered, and the distance of its farthest voxel from the axis.
+std::pair<model::VoxelBox, double> covered(const model::Volume& volume) {
+  const model::Grid& grid = volume.grid;
+  model::VoxelBox box{{grid.nx, grid.ny, grid.nz}, {-1, -1, -1}};
+  double farthest_mm = 0;
+  for (int k = 0; k < grid.nz; ++k) {
+    for (int j = 0; j < grid.ny; ++j) {
+      for (int i = 0; i < grid.nx; ++i) {
+        if (volume.slice(k)[j * grid.nx + i] <= model::coverage_rounding) continue;
+        box.low = {std::min(box.low[0], i), std::min(box.low[1], j), std::min(box.low[2], k)};
+        box.high = {std::max(box.high[0], i), std::max(box.high[1], j), std::max(box.high[2], k)};
+        farthest_mm = std::max(farthest_mm, std::hypot(grid.x_mm(i), grid.y_mm(j)));
+      }
+    }
+  }
+  return {box, farthest_mm};
+}
+
+optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer) {
+  optimize::PreviewTask task;
+  task.printer = model::coarser(model::coarser(printer));
+  task.target = filled(part, task.printer.projector.pixel_mm);
+  const auto [box, farthest_mm] = covered(task.target);
+  task.part = box;
+  task.radius_mm = optics::judged_radius_mm(task.printer, farthest_mm);
+  task.angles = angles;
+  task.iterations = iterations;
+  // Half a pixel of the printer is an eighth of one of these.
+  task.tolerances =
+      model::parse_tolerances("axis=" + std::to_string(0.5 / coarseness) + "px,index=0.005,angle=0.25deg");
+  return optimize::preview(task);
+}
+
+}  // namespace
+
+Plan plan(const Options& options, const model::Printer& printer) {
+  if (!options.shape.empty() && options.input != "-") throw Error{Fault::usage, "PART, --shape: give only one of them"};
+  const Source source(options);
+  Plan made;
+  made.now = fit_of(source, printer);
+  if (printer.bath.index != printer.resin.index) {
+    model::Printer matched = printer;
+    matched.bath.index = printer.resin.index;
+    if (matched.bath.window_mm == 0) matched.bath.window_mm = bath_of_radius * printer.vial.radius_mm;
+    made.bath = fit_of(source, matched);
+  }
+  if (!(made.now.factor > 0)) {
+    throw Error{Fault::data, io::input_name(options.input) + ": lies beside the axis so that no scale makes it fit"};
+  }
+  constexpr double digits = 1000;  // rounded down, so that it can be typed
+  const double factor = made.now.fits() ? 1 : std::floor(digits * made.now.factor) / digits;
+  if (!(factor > 0)) {
+    throw Error{Fault::data, io::input_name(options.input) + ": is more than 1000 times too large; give its --unit"};
+  }
+  made.given_scale = options.scale;
+  made.scale = options.scale * factor;
+  const solid::Part part = within_rows(source.part(printer, factor), room_of(printer), printer.projector.pixel_mm);
+  made.subject = part.subject;
+  made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
+  made.wall_voxels = wall_of(part, made.grid);
+  if (options.no_preview) return made;
+  made.preview = preview_of(part, printer);
+  const optimize::VolumeOutcome& outcome = made.preview->outcome;
+  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  if (per_radian && outcome.peak_intensity > 0 && score::window_middle(outcome.metrics) > 0) {
+    made.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
+                                         optimize::DoseWindow{}.threshold());
+  }
+  return made;
+}
+
+}  // namespace vam::plan_tool

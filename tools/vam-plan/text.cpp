@@ -1,0 +1,123 @@
+// A plan as a table, and as JSON.
+#include "base/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "base/json.hpp"
+#include "vam-plan/plan.hpp"
+
+namespace vam::plan_tool {
+
+namespace {
+
+std::string number(double value) { return format_number(value, 3); }
+
+std::string row(const std::string& name, const std::string& value) {
+  char text[400];
+  std::snprintf(text, sizeof text, "%-18s %s\n", name.c_str(), value.c_str());
+  return text;
+}
+
+std::string fit_words(const Fit& fit) {
+  const std::string room = "a cylinder of " + number(2 * fit.writable_radius_mm) + " mm diameter, " +
+                           number(fit.writable_height_mm) + " mm high, can be written";
+  return (fit.fits() ? "yes: " : "no: ") + room;
+}
+
+/// Relative to the largest dose.
+double window(const optimize::Printed& printed) { return printed.figures.pw / printed.figures.max_dose; }
+
+/// The smaller window of both signs.
+double worst_window(const optimize::Trials::Single& single) {
+  return std::min(window(single.minus), window(single.plus));
+}
+
+std::string deviation_name(std::size_t tolerance) {
+  switch (static_cast<model::Deviating>(tolerance)) {
+    case model::Deviating::axis:
+      return "axis +-0.5 px";
+    case model::Deviating::index:
+      return "index +-0.005";
+    default:
+      return "angle +-0.25 deg";
+  }
+}
+
+std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
+
+std::string print_rows(const Plan& plan) {
+  const optimize::Printed& nominal = plan.preview->trials.nominal;
+  const bool prints = nominal.figures.pw >= 0;
+  std::string text = row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
+                                              signed_number(window(nominal)) + " of the largest dose, VER " +
+                                              number(nominal.figures.ver) + " (estimate on voxels of " +
+                                              std::to_string(coarseness) + " pixels)");
+  for (const auto& single : plan.preview->trials.singles)
+    text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
+  if (!plan.exposure) {
+    return text + row("duration", "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+  }
+  return text +
+         row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
+                             " turns, brightest pixel " + number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
+}
+
+Json fit_json(const Fit& fit) {
+  Json json;
+  json["fits"] = fit.fits();
+  json["scale_that_fits"] = fit.factor;
+  json["writable_radius_mm"] = fit.writable_radius_mm;
+  json["writable_height_mm"] = fit.writable_height_mm;
+  return json;
+}
+
+}  // namespace
+
+std::string table(const Plan& plan) {
+  const auto& size = plan.now.size_mm;
+  std::string text =
+      row("part", plan.subject + ": " + number(size[0]) + " x " + number(size[1]) + " x " + number(size[2]) + " mm");
+  text += row("fits", fit_words(plan.now));
+  if (!plan.now.fits())
+    text += row("scale needed", "--scale " + format_number(plan.scale, 6) + "; what follows is of that size");
+  if (plan.bath) {
+    const std::string needed =
+        plan.bath->fits() ? "the part fits" : "--scale " + number(plan.given_scale * plan.bath->factor);
+    text += row("index bath", "a bath of the resin's index widens it to " + number(2 * plan.bath->writable_radius_mm) +
+                                  " mm: " + needed);
+  }
+  text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
+  if (plan.wall_voxels) {
+    text +=
+        row("thinnest wall", number(*plan.wall_voxels) + " voxels (" + number(*plan.wall_voxels * plan.grid.voxel_mm) +
+                                 " mm)" + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : ""));
+  } else {
+    text += row("thinnest wall", "below a voxel: enlarge the part, or use smaller pixels");
+  }
+  return plan.preview ? text + print_rows(plan) : text;
+}
+
+Json report(const Plan& plan) {
+  Json json = fit_json(plan.now);
+  json["size_mm"] = plan.now.size_mm;
+  json["scale"] = plan.scale;
+  if (plan.bath) json["index_bath"] = fit_json(*plan.bath);
+  json["slices"] = plan.grid.nz;
+  json["voxel_mm"] = plan.grid.voxel_mm;
+  if (plan.wall_voxels) json["thinnest_wall_voxels"] = *plan.wall_voxels;
+  if (plan.preview) {
+    json["ver"] = plan.preview->trials.nominal.figures.ver;
+    json["pw"] = window(plan.preview->trials.nominal);
+    for (const auto& single : plan.preview->trials.singles) {
+      const std::string name(model::tolerance_table[single.tolerance].name);
+      json["pw_deviating"][name] = worst_window(single);
+    }
+  }
+  if (plan.exposure) score::add_to(json, *plan.exposure);
+  return json;
+}
+
+}  // namespace vam::plan_tool
