@@ -80,7 +80,9 @@ live() { print --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
 fails 64 "unknown figure 'foo'" live 'foo>=1' --run none
 fails 66 'nowhere.vdb: cannot open' print --view-step 10 --isovalue 1 --target nowhere.vdb --until 'iou>=1' --run none
 fails 64 'requires --isovalue or --resin' print --view-step 10 --target part.vdb --until 'iou>=1' --run none
-fails 64 '.--view-step: is 16; --until requires views at most 15 degrees apart' live 'iou>=1' --view-step 16 --run none
+fails 64 '.--view-step: is 15; --until requires views at most 12 degrees apart' live 'iou>=1' --view-step 15 --run none
+fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --run none
+fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --plan
 fails 64 ".--view-step: 'ten' is not an angle above 0" print --view-step ten --run none
 is 'by its plan' "$(live 'foo>=1' --plan 2>&1 >/dev/null | grep -c "unknown figure 'foo'")" 1
 is 'which does not mention valid options' "$(live 'iou>=1' --plan 2>&1 | grep -c '^metrology\|empty')" 0

@@ -32,6 +32,8 @@ fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 fails 64 '1.5 is not a whole number' vam-project part.exr -o null: --plan --turns 1.5
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --turns 2 --from 720
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --plan --turns 2 --from 720
+vam-project part.exr -o null: --plan --turns 2 --from 180 >plan
+ok "the plan of a print's rest has its turns" grep -q '^exposure   1.5 turns from 180 deg on at ' plan
 vam-project --pattern star --plan -o null: --light 'sim:?log=planned' >plan
 is 'the plan of a pattern: its devices, without light' "$? $(cut -d' ' -f1 plan | tr '\n' ' ') $(cat planned 2>/dev/null)" '0 display engine  '
 fails 64 'is not one of dlpc350:, dlpc900:, sim:|sim0' vam-project --pattern star --plan -o null: --light sim0:

@@ -68,7 +68,8 @@ void print_plan(const Options& options, const model::Printer& printer) {
   const model::StackInfo info = reader.info();
   if (info.kind == model::Kind::frames) refuse_slices(options.input);
   require_printer(options, info, printer);
-  const int turns = turns_to_show(options, info, printer);
+  const int whole = turns_to_show(options, info, printer);
+  const double turns = whole - options.live.from_deg / 360;  // with light
   const double full_scale =
       options.full_scale.value_or(read_light(options, reader, printer.projector).peak) / options.multiplier;
   const int frames = options.live.frames_per_turn.value_or(info.height);
@@ -77,7 +78,9 @@ void print_plan(const Options& options, const model::Printer& printer) {
                     std::to_string(projector.rows) + ", " + std::to_string(projector.bits) + " bits; at most " +
                     format_number(memory_mb(info, projector, frames * options.dither_turns.value_or(1)), 4) +
                     " MB of memory");
-  say("exposure", std::to_string(turns) + (turns == 1 ? " turn at " : " turns at ") +
+  const std::string dark =
+      options.live.from_deg > 0 ? " from " + format_number(options.live.from_deg, 4) + " deg on" : std::string{};
+  say("exposure", format_number(turns, 4) + (turns == 1 ? " turn" : " turns") + dark + " at " +
                       format_number(printer.stage.speed_deg_s) +
                       " deg/s: " + format_number(model::seconds_of(printer.stage, turns), 4) + " s of light");
   say("intensity", "at most " + format_number(projector.max_intensity_mw_cm2) + " mW/cm2, for the sinogram value " +
