@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/text.hpp"
+#include "device/stage/private/shown.hpp"
 
 namespace vam::device {
 
@@ -14,21 +15,6 @@ namespace {
 
 constexpr std::size_t longest_answer = 65536;
 constexpr int not_referenced = 5;  // or the servo is off, which the backend sees to
-
-// What of an answer may be shown to a person: control bytes as \xNN, at most 40 characters.
-std::string shown(const std::string& bytes) {
-  static const char* digits = "0123456789abcdef";
-  std::string text;
-  for (const char c : bytes.substr(0, 40)) {
-    const auto value = static_cast<unsigned char>(c);
-    if (value >= 32 && value < 127) {
-      text += c;
-    } else {
-      text += std::string("\\x") + digits[value >> 4U] + digits[value & 15U];
-    }
-  }
-  return text + (bytes.size() > 40 ? "..." : "");
-}
 
 // ASCII, and the upper half of Latin-1 for the signs of copyright and micro.
 bool printable(const std::string& line) {

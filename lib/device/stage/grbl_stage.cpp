@@ -12,6 +12,7 @@
 #include "base/text.hpp"
 #include "device/safety/stop_order.hpp"
 #include "device/stage/private/line_link.hpp"
+#include "device/stage/private/shown.hpp"
 
 namespace vam::device {
 
@@ -185,8 +186,7 @@ class GrblStage final : public Stage {
       if (line == "ok") break;
       if (line.rfind("[VER:", 0) == 0) read_version(line);
       if (line.rfind('[', 0) != 0) {
-        throw Error{Fault::protocol,
-                    port_.name() + ": '$I' was answered '" + line.substr(0, 40) + "'; this is not GRBL 1.1"};
+        throw Error{Fault::protocol, port_.name() + ": '$I' was answered '" + shown(line) + "'; this is not GRBL 1.1"};
       }
     }
   }

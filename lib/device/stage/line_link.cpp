@@ -1,6 +1,7 @@
 #include "device/stage/private/line_link.hpp"
 
 #include "base/text.hpp"
+#include "device/stage/private/shown.hpp"
 
 namespace vam::device {
 
@@ -40,7 +41,8 @@ std::string LineLink::need_line(double wait_s) {
 }
 
 Error LineLink::malformed(const std::string& question, const std::string& line) const {
-  return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + line.substr(0, 40) + "'"};
+  return {Fault::protocol, port_->name() + ": '" + question + "' was answered '" + shown(line) +
+                               "', not a reply of this controller; check the device and its baud rate"};
 }
 
 }  // namespace vam::device

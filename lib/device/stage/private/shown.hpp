@@ -1,0 +1,11 @@
+// Answers of a controller in error messages.
+#pragma once
+
+#include <string>
+
+namespace vam::device {
+
+/// At most 40 bytes, those that are not ASCII text as \xNN.
+[[nodiscard]] std::string shown(const std::string& bytes);
+
+}  // namespace vam::device
