@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "lib/metrology/bench_printer.hpp"
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "model/magnification.hpp"
@@ -17,18 +18,6 @@ using namespace vam::metrology;
 namespace {
 
 using Kind = oracle::Body::Kind;
-
-model::Printer printer_of(const oracle::ViewBench& bench) {
-  model::Printer printer;
-  printer.vial = {.radius_mm = bench.vial_mm, .wall_mm = bench.wall_mm, .index_glass = bench.glass_index};
-  printer.bath = {.index = bench.bath_index, .window_mm = bench.window_mm};
-  printer.camera.telecentric = bench.lens_mm == 0;
-  if (!printer.camera.telecentric) printer.camera.distance_mm = bench.lens_mm;
-  printer.camera.absorption_per_mm = bench.absorption_per_mm;
-  printer.camera.index_resin = bench.resin_index;
-  printer.camera.azimuth_deg = bench.azimuth_deg;
-  return printer;
-}
 
 // A post with an eye, a foot beside the axis: flat faces at +-6.2 mm.
 std::vector<oracle::Body> post() {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "lib/metrology/bench_printer.hpp"
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
 #include "oracle/bench_views.hpp"
@@ -19,17 +20,6 @@ using namespace vam::metrology;
 namespace {
 
 using Kind = oracle::Body::Kind;
-
-model::Printer printer_of(const oracle::ViewBench& bench) {
-  model::Printer printer;
-  printer.vial = {.radius_mm = bench.vial_mm, .wall_mm = bench.wall_mm, .index_glass = bench.glass_index};
-  printer.bath = {.index = bench.bath_index, .window_mm = bench.window_mm};
-  printer.camera.telecentric = bench.lens_mm == 0;
-  if (!printer.camera.telecentric) printer.camera.distance_mm = bench.lens_mm;
-  printer.camera.index_resin = bench.resin_index;
-  printer.camera.azimuth_deg = bench.azimuth_deg;
-  return printer;
-}
 
 std::vector<CameraView> seen(const oracle::ViewBench& bench, const std::vector<oracle::Body>& bodies, double noise,
                              unsigned seed, int count = 180) {

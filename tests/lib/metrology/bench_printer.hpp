@@ -1,0 +1,21 @@
+// The printer of a bench that the oracle renders.
+#pragma once
+
+#include "model/printer.hpp"
+#include "oracle/bench_views.hpp"
+
+namespace vam {
+
+inline model::Printer printer_of(const oracle::ViewBench& bench) {
+  model::Printer printer;
+  printer.vial = {.radius_mm = bench.vial_mm, .wall_mm = bench.wall_mm, .index_glass = bench.glass_index};
+  printer.bath = {.index = bench.bath_index, .window_mm = bench.window_mm};
+  printer.camera.telecentric = bench.lens_mm == 0;
+  if (!printer.camera.telecentric) printer.camera.distance_mm = bench.lens_mm;
+  printer.camera.absorption_per_mm = bench.absorption_per_mm;
+  printer.camera.index_resin = bench.resin_index;
+  printer.camera.azimuth_deg = bench.azimuth_deg;
+  return printer;
+}
+
+}  // namespace vam
