@@ -91,6 +91,7 @@ ok 'and the flat field' grep -q '^flat = "cal/cal-lab-1-flat-.*exr"' in-force.to
 ok 'which can be read' exrheader cal/cal-lab-1-flat-*.exr
 vam-capture check >former 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors) $(json former edges.usable)" '0 vam-capture: warning: vam-capture check is now vam-calibrate check true'
+ok 'also by its path, where the tools are not on PATH' env PATH=/usr/bin:/bin "$(command -v vam-capture)" check --help
 cp -rL cal copied
 ok 'a folder copied with its links followed' vam-calibrate check --set calibration.folder=copied
 ok 'check' vam-calibrate check --need 'edges, response'

@@ -1,0 +1,11 @@
+#include "cli/private/values.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace vam::cli;
+
+TEST_CASE("ranges are described without exponents") {
+  CHECK(describe({0, 1e6}) == "0 to 1000000");
+  CHECK(describe({1e-6, 1}) == "0.000001 to 1");
+  CHECK(describe({-1e6, 0.25}) == "-1000000 to 0.25");
+}
