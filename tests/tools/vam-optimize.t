@@ -113,7 +113,7 @@ holds "vam-dose confirms the process window" "$(value judged-vial.json pw) > $(v
 holds "the process window is wider than after resampling" "$(value judged-vial.json pw) > $(value judged-resampled.json pw)"
 fails 65 'already.*omit vam-resample' vam-resample vial.exr -o twice.exr
 fails 64 '--detector-bins: does not apply to --geometry vial' vam-optimize --detector-bins 100 part.vdb -o out.exr
-fails 65 'beside its columns 0 ... 1023' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
+fails 65 'outside its columns 0 to 1023' vam-optimize --geometry vial --set projector.axis_column=9000 part.vdb -o out.exr
 
 absorbing="--set resin.absorption_per_mm=0.1"
 for how in exact disc none; do

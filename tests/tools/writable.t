@@ -30,8 +30,8 @@ is 'it is reported from how many angles the rim is lit' "$?:$(cat err)" \
 # A part that is narrower, but whose voxels are not.
 brim='--shape cylinder:diameter=16.59,height=2 --voxel 0.4'
 fails 65 'its voxels reach 8.528 mm \(21.32 voxels\) from the axis, beyond the writable radius of 8.301 mm' vam-slice $brim -o out.vdb
-fails 65 'beside its columns 0 ... 199' vam-slice $disc --set projector.columns=200 --set projector.axis_column=511.5 -o out.vdb
-fails 65 'beside its columns 0 ... 199' vam-optimize disc.vdb --set projector.columns=200 --set projector.axis_column=511.5 -o out.exr
+fails 65 'outside its columns 0 to 199' vam-slice $disc --set projector.columns=200 --set projector.axis_column=511.5 -o out.vdb
+fails 65 'outside its columns 0 to 199' vam-optimize disc.vdb --set projector.columns=200 --set projector.axis_column=511.5 -o out.exr
 
 # A square bar in a vial in air, its corners at 1.15 R/n, in resin that absorbs: printable from 60 angles.
 glass='--set vial.wall_mm=0.5 --set projector.telecentric=true --set resin.absorption_per_mm=0.05'

@@ -41,7 +41,7 @@ TEST_CASE("too few columns reduce the writable radius; the narrower side decides
   printer.projector.telecentric = true;
   CHECK(writable_radius_mm(printer) == doctest::Approx(80 * 0.065 / 1.53));
   printer.projector.axis_column = 201;
-  CHECK_THROWS_WITH_AS((void)writable_radius_mm(printer), doctest::Contains("beside its columns 0 ... 200"), Error);
+  CHECK_THROWS_WITH_AS((void)writable_radius_mm(printer), doctest::Contains("outside its columns 0 to 200"), Error);
 }
 
 TEST_CASE("a printer with its lens inside the vial has no writable radius") {
