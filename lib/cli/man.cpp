@@ -62,13 +62,14 @@ std::string paragraph(const std::string& text) {
   const auto words = split(text, ' ');
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (words[i].empty()) continue;
-    sentence += (sentence.empty() ? "" : " ") + words[i];
+    sentence += (sentence.empty() ? "" : " ") + escape(words[i]);
+    if (abbreviated(words[i])) sentence += "\\&";  // no end of a sentence
     const char last = words[i].back();
     const bool closing = (last == ')' || last == ']' || last == '"') && words[i].size() > 1;
     const char mark = closing ? words[i][words[i].size() - 2] : last;
     const bool ends = (mark == '.' && !abbreviated(words[i])) || mark == '?' || mark == '!';
     if (ends || i + 1 == words.size()) {
-      out += guarded(wrap(escape(sentence), width, 0));
+      out += guarded(wrap(sentence, width, 0));
       sentence.clear();
     }
   }

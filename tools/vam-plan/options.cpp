@@ -25,7 +25,7 @@ cli::Manual manual() {
            " pixels are blurred in the estimate; at full resolution windows are wider and walls are sharper. "
            "vam-optimize has the last word.",
        "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
-      {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:size=10,cell=5"},
+      {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
       {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
        "Walls: the distance between the void on both sides of the part's middle, exceeded in 99 of 100 places; good "
