@@ -7,6 +7,7 @@ strace -qq -o .log/trace -e trace=write true 2>.log/err || { echo 'strace may no
 every=$((100 / ${VAM_TRIALS:-10}))
 
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o part.vdb
+vam-slice --shape cylinder:diameter=6,height=1 --extent writable --voxel 0.2 --stretch-z 1 -o standard.vdb
 vam-slice --shape ladder:rungs=2 --voxel 0.1 --stretch-z 1 -o ladder.vdb
 box 4 4 2 >box.off
 vam-sinogram part.vdb --angles 36 --filter ram-lak --negative clip -o sinogram.exr
@@ -26,7 +27,7 @@ out.exr|vam-resample sinogram.exr --compression zip --half -o out.exr
 out.exr out.json out.csv|vam-optimize part.vdb --method osmo --iterations 2 --angles 24 -o out.exr --report out.json --trace out.csv
 out.vdb|vam-dose sinogram.exr --like part.vdb -o out.vdb
 out.ply out.json|vam-score dose.vdb --target part.vdb --mesh out.ply --report out.json
-out.ply out.csv out.json|vam-sdf box.off part.vdb --design-isovalue 0.5 --samples 2000 -o out.ply --histogram out.csv --report out.json
+out.ply out.csv out.json|vam-sdf box.off part.vdb --align icp --design-isovalue 0.5 --samples 2000 -o out.ply --histogram out.csv --report out.json
 out.png|vam-view part.vdb -o out.png
 out.html|vam-report part.vdb dose.vdb sinogram.exr -o out.html
 out.nrrd|vam-view part.vdb --export out.nrrd
@@ -37,7 +38,7 @@ out.vdb out.json|vam-ost views --view-step 10 --pixel 0.26 --no-refraction -o ou
 out.exr out.json|vam-curethrough correct ladder.vdb --max-irradiance 110 -o out.exr --report out.json
 out.vdb|vam-curethrough model ladder.vdb --max-irradiance 110 -o out.vdb
 out.exr|vam-capture --device sim:?pace=virtual --binning 12 --frames 2 -o out.exr
-out.json|vam-calibrate resin part.vdb --diameter 6 -o out.json
+out.json|vam-calibrate resin standard.vdb --diameter 6 -o out.json
 LIST
 }
 faults='write:error=ENOSPC:when=1 write:error=ENOSPC:when=2 write:error=ENOSPC:when=3+ write:error=EIO:when=1

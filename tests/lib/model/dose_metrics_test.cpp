@@ -137,7 +137,7 @@ TEST_CASE("conditions") {
   const auto lines = unmet(conditions, value);
   REQUIRE(lines.size() == 1);
   CHECK(lines[0] == "ver = 0.02, but ver<=0.01 is required");
-  CHECK_THROWS_WITH_AS(parse_conditions("vre<=1", known), doctest::Contains("there are ver, pw"), vam::Error);
+  CHECK_THROWS_WITH_AS(parse_conditions("vre<=1", known), doctest::Contains("expected one of ver, pw"), vam::Error);
   CHECK(parse_conditions("ver<=0.5 %", known, {"ver"})[0].bound == 0.5);
   CHECK_THROWS_AS(parse_conditions("ver<=0.5%", known), vam::Error);  // a fraction is not in per cent
   CHECK_THROWS_WITH_AS(parse_conditions("ver<=", known), doctest::Contains("'' is not a number"), vam::Error);

@@ -28,7 +28,7 @@ TEST_CASE("a matched bath opens the whole vial") {
   CHECK(writable_radius_mm(printer) == doctest::Approx(12.7));
 }
 
-TEST_CASE("too few columns reduce the writable radius; the narrower side decides") {
+TEST_CASE("too few columns reduce the writable radius, the narrower side decides") {
   model::Printer printer;
   printer.projector.lens_distance_mm = 120;
   printer.projector.columns = 201;

@@ -1,4 +1,4 @@
-// Private to the video writer: FFV1 frames of 8 grey bits, by Golomb-Rice codes [RFC 9043].
+// Private to the video writer: FFV1 frames of 8 grey bits, by Golomb-Rice codes RFC 9043.
 #pragma once
 
 #include <cstddef>
