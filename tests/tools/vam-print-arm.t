@@ -76,10 +76,10 @@ is 'and an outcome of its own' "$(json unmet/summary.json outcome)" 'complete, -
 holds 'the summary has them, too' "$(json unmet/summary.json reached.figures.iou) < 0.99"
 
 # The options of live metrology are checked before any motion, by the plan, too.
-live() { print --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
+live() { print --turns 2 --view-step 10 --isovalue 1 --target part.vdb --until "$@"; }
 fails 64 "unknown figure 'foo'" live 'foo>=1' --run none
-fails 66 'nowhere.vdb: cannot open' print --view-step 10 --isovalue 1 --target nowhere.vdb --until 'iou>=1' --run none
-fails 64 'requires --isovalue or --resin' print --view-step 10 --target part.vdb --until 'iou>=1' --run none
+fails 66 'nowhere.vdb: cannot open' print --turns 2 --view-step 10 --isovalue 1 --target nowhere.vdb --until 'iou>=1' --run none
+fails 64 'requires --isovalue or --resin' print --turns 2 --view-step 10 --target part.vdb --until 'iou>=1' --run none
 fails 64 '.--view-step: is 15; --until requires views at most 12 degrees apart' live 'iou>=1' --view-step 15 --run none
 fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --run none
 fails 64 '.--until: requires at least 2 turns' live 'iou>=1' --turns 1 --plan
