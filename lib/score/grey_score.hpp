@@ -10,7 +10,7 @@
 
 namespace vam::score {
 
-/// What is asked of the void, where a grey target is 0.
+/// Constraint on the void, where a grey target is 0.
 enum class VoidRule {
   met,    // 0, within the band, as of other voxels
   below,  // no more than a dose that does not print

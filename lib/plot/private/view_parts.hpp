@@ -28,7 +28,7 @@ struct Extremes {
 enum class Content { amount, light, coverage };
 [[nodiscard]] ColourScale scale_for(const std::vector<const Image*>& images, const ViewOptions& options,
                                     Content content);
-/// Gives the panels one scale; what is beyond its ends is said in the legend.
+/// Gives the panels one scale; values beyond its ends are reported in the legend.
 void choose_colours(ImageFigure& figure, const ViewOptions& options, Content content);
 
 /// What sections of a volume are seen, at `at` or spread over it.
