@@ -37,7 +37,7 @@ GreyScore::GreyScore(const GreyOptions& options, int width, int height)
     : options_(options), width_(width), height_(height), worst_(-options.band) {}
 
 void GreyScore::add(const float* dose, const float* target, int count) {
-  for (std::size_t i = 0; i < product(count, width_ * height_); ++i) {
+  for (std::size_t i = 0; i < product(count, product(width_, height_)); ++i) {
     const auto in_slice = static_cast<int>(i % product(width_, height_));
     const bool is_void = target[i] <= model::coverage_rounding;
     if (!std::isfinite(dose[i])) throw Error{Fault::data, "the dose is not finite everywhere; compute it again"};
