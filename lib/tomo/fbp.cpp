@@ -66,9 +66,7 @@ void fbp(const ParallelGeometry& geometry, std::span<Slab> sinograms, std::span<
   spec.alpha_per_px = geometry.alpha_per_px;
   const Filter filter(geometry.columns, spec);
   for (Slab& sinogram : sinograms) filter.apply(sinogram);
-  ParallelGeometry back = geometry;
-  back.alpha_per_px = -geometry.alpha_per_px;
-  adjoint(back, sinograms, images);
+  adjoint(geometry.with_alpha(-geometry.alpha_per_px), sinograms, images);
   for (Slab& image : images) scale(image, static_cast<float>(pi / geometry.angles));
 }
 

@@ -23,6 +23,12 @@ struct ParallelGeometry {
   double angle_start_rad = 0;
   double angle_step_rad = 0;
   double alpha_per_px = 0;  // exponential Radon transform: weight e^{alpha u} [CAL19 eq 3]; 0 = plain
+
+  [[nodiscard]] ParallelGeometry with_alpha(double alpha) const {
+    ParallelGeometry other = *this;
+    other.alpha_per_px = alpha;
+    return other;
+  }
 };
 
 /// sinogram(t, a) = sum over pixels of w(pixel, t, a) * image(pixel) * e^{alpha u}. Multiply by the voxel size to get

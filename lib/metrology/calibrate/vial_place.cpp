@@ -9,23 +9,13 @@
 #include "base/error.hpp"
 #include "base/text.hpp"
 #include "metrology/calibrate/private/edges.hpp"
-#include "optics/chief_ray.hpp"
-#include "optics/writable_radius.hpp"
+#include "metrology/calibrate/private/vial_radius.hpp"
 
 namespace vam::metrology {
 
 namespace {
 
 constexpr double nearest_deg = 60, furthest_deg = 91;  // of the camera from the projector: beyond, an edge may be lost
-
-// Outer radius of the vial whose outermost lit column is at R_e; impact_mm() has the sign right [physics §12]. Where
-// the resin, not the glass, ends the light, the glass is a wall further out.
-double radius_mm(const model::Printer& printer, double edge_px) {
-  const optics::View view = optics::projector_view(printer);
-  const double impact = optics::impact_mm(view, edge_px * printer.projector.pixel_mm);
-  if (optics::grazing_impact_mm(view) >= view.shells.front().radius_mm * (1 - 1e-12)) return impact;
-  return impact * optics::resin_radius_mm(view) / optics::grazing_impact_mm(view) + printer.vial.wall_mm;
-}
 
 void require_camera_beside(double azimuth_deg) {
   const double from_light_deg = std::acos(std::cos(azimuth_deg * rad_per_deg)) * deg_per_rad;
@@ -109,13 +99,13 @@ VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
   const std::vector<LitBand> lit = lit_bands(scan);
   // How the camera sees an edge depends a little on the radius: the one that the steepest changes give will do.
   model::Printer about = printer;
-  about.vial.radius_mm = radius_mm(printer, 0.5 * (lit.front().first.fall - lit.front().first.rise));
+  about.vial.radius_mm = vial_radius_mm(printer, 0.5 * (lit.front().first.fall - lit.front().first.rise));
   VialEdges out;
   fit_bands(scan, edge_shapes(about), lit, out);
   fit_axis(scan, printer.projector.pixel_mm, lit, out);
   const double edge_px = out.edge_px.value;
-  const double slope = radius_mm(printer, edge_px + 1) - radius_mm(printer, edge_px);
-  out.radius_mm = {radius_mm(printer, edge_px), slope * out.edge_px.sigma, out.edge_px.n};
+  const double slope = vial_radius_mm(printer, edge_px + 1) - vial_radius_mm(printer, edge_px);
+  out.radius_mm = {vial_radius_mm(printer, edge_px), slope * out.edge_px.sigma, out.edge_px.n};
   return out;
 }
 
