@@ -38,9 +38,10 @@ void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, co
   const int slices = (count + lanes - 1) / lanes * lanes;
   const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) +
                         (tolerant ? 6.0 : 3.0) * light.sinogram().width * light.sinogram().height;
-  require_memory(
-      sizeof(float) * slices * arrays, subject + ": " + model::size_text(scene.grid),
-      whole ? "use larger voxels (vam-slice --voxel)" : "use larger voxels (vam-slice --voxel) or fewer --angles");
+  const double bytes = sizeof(float) * slices * arrays;
+  const std::string what = subject + ": " + model::size_text(scene.grid);
+  if (whole) return warn_of_scratch_files(bytes, what);
+  require_memory(bytes, what, "use larger voxels (vam-slice --voxel) or fewer --angles");
 }
 
 /// Options -> volumes -> light and task -> one pass after the other -> stack.

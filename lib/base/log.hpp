@@ -1,4 +1,4 @@
-// Talk to the person: warnings and progress on stderr. stdout is for data; silence is success.
+// Warnings, notes and progress on standard error; standard output is for data, and success is silent.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ void set_program_name(const std::string& name);
 /// One line on stderr: "<program>: warning: <line>".
 void warn(const std::string& line);
 
-/// One line on stderr, only when stderr is a terminal: a summary for the person who watches.
+/// One line on stderr, only when stderr is a terminal: a summary for the user.
 void note(const std::string& line);
 
 /// A progress bar on stderr, only when stderr is a terminal and the work lasts longer than half a second.

@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam {
@@ -115,6 +116,15 @@ std::uint64_t memory_left() {
   const std::uint64_t most = bound;
   if (most == everything) return free_of_machine();
   return left_below(most);
+}
+
+void warn_of_scratch_files(double bytes, const std::string& subject) {
+  const auto left = static_cast<double>(memory_left());
+  if (bytes <= left) return;
+  warn(
+      subject + ": needs " + in_gib(bytes) + " of memory, but " + in_gib(left) +
+      " are left; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with " +
+      bound_name);
 }
 
 void require_memory(double bytes, const std::string& subject, const std::string& remedy) {

@@ -22,6 +22,9 @@ void bound_memory(std::uint64_t bytes, const char* name = "a higher limit");
 /// because products of sizes in a file may exceed all integers.
 void require_memory(double bytes, const std::string& subject, const std::string& remedy);
 
+/// The same where arrays that do not fit go to scratch files (base/aligned_memory.hpp): one line of warning.
+void warn_of_scratch_files(double bytes, const std::string& subject);
+
 /// Memory that was refused; what() has the numbers.
 class OutOfMemory : public std::bad_alloc {
  public:

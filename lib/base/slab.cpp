@@ -1,9 +1,6 @@
 #include "base/slab.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <new>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -11,10 +8,6 @@
 namespace vam {
 
 namespace {
-
-constexpr std::size_t huge_page = std::size_t{2} << 20;
-
-std::align_val_t alignment_of(std::size_t bytes) { return std::align_val_t{bytes < 2 * huge_page ? 64 : huge_page}; }
 
 constexpr int block = 4096;  // pixels a work item: 256 KiB of slab
 
@@ -29,16 +22,6 @@ void over_blocks(const Slab& slab, const Work& work) {
 }
 
 }  // namespace
-
-void* allocate_aligned(std::size_t bytes) {
-  void* memory = ::operator new(bytes, alignment_of(bytes));
-#ifdef MADV_HUGEPAGE
-  if (bytes >= 2 * huge_page) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a wish, no more
-#endif
-  return memory;
-}
-
-void free_aligned(void* memory, std::size_t bytes) { ::operator delete(memory, alignment_of(bytes)); }
 
 void pack(const float* images, int count, Slab& slab) {
   const std::size_t pixels = slab.values.size() / lanes;

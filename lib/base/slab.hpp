@@ -5,25 +5,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "base/aligned_memory.hpp"
 #include "base/slab_lanes.hpp"
 
 namespace vam {
-
-/// Memory on cache-line boundaries; from 4 MiB on in huge pages where the system has them, because a column of pixels
-/// touches a page a pixel.
-[[nodiscard]] void* allocate_aligned(std::size_t bytes);
-void free_aligned(void* memory, std::size_t bytes);
-
-template <class T>
-struct CacheAligned {
-  using value_type = T;
-  CacheAligned() = default;
-  template <class U>
-  explicit CacheAligned(const CacheAligned<U>&) {}
-  T* allocate(std::size_t n) { return static_cast<T*>(allocate_aligned(n * sizeof(T))); }
-  void deallocate(T* p, std::size_t n) { free_aligned(p, n * sizeof(T)); }
-  bool operator==(const CacheAligned&) const = default;
-};
 
 /// 16 images of width x height: pixel (x, y) of slice s is values[(y * width + x) * 16 + s]. An object slab has the
 /// voxels of 16 z slices; a sinogram slab has width = columns and height = angles. Unused lanes are zero.

@@ -51,6 +51,17 @@ fails 71 "^vam-dose: wide.exr: $need" vam-dose wide.exr --like wide.vdb -o x.vdb
 mv part.vdb free.vdb
 quiet 'a need that is met' vam-slice box.off --memory=1 --voxel 0.2 -o part.vdb
 same 'the bound is of no consequence, not even for the history' free.vdb part.vdb
+# Slices that light couples are optimised together: what does not fit in memory lies in scratch files.
+box 5 5 0.5 >block.off
+vam-slice block.off --voxel 0.016 --stretch-z 1 -o block.vdb
+coupled='vam-optimize block.vdb --method dose-norm --angles 60 --iterations 2'
+quiet 'coupled slices in memory' sh -c "$coupled -o block.exr && mv block.exr free.exr"
+ok 'coupled slices beyond --memory' sh -c "$coupled --memory 0.2 -o block.exr 2>warning"
+ok 'a warning with both numbers and the remedy' grep -Eq \
+  '^vam-optimize: warning: block.vdb: .* voxels: needs [0-9.]+ GiB of memory, but [0-9.]+ GiB are left; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with --memory$' warning
+same 'the same bytes' free.exr block.exr
+TMPDIR=/proc $coupled --memory 0.2 -o x.exr 2>refused
+is 'a folder where no scratch file can be created' "$? $(tail -n 1 refused | grep -c '/proc: cannot create a scratch file')" '73 1'
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 

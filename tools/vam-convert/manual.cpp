@@ -8,7 +8,7 @@ cli::Manual manual() {
       "exchange volumes and projections with other programs",
       {"vam-convert reads data of other programs and writes files of these tools, or the reverse; the content of the "
        "input decides. A volume (VDB) or a stack (EXR) becomes a NumPy array (.npy). An array of 2 or 3 axes (.npy, "
-       ".npz) becomes a volume with --voxel, or a stack of sinograms with --projections, so that vam-dose computes the "
+       ".npz) becomes a volume with --voxel, or a stack of sinograms with --geometry, so that vam-dose computes the "
        "dose of projections made by any program. A folder of numbered images (PNG, TIFF) or a video (MKV, MP4) is read "
        "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume.",
        "Arrays have the order [z][y][x] for volumes, z upwards; [slice][angle][column] for sinograms, slices upwards; "

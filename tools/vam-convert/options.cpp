@@ -13,7 +13,8 @@ constexpr cli::Range on_image{-65536, 131072};  // also beside it
 
 void declare_volume(cli::App& app, Options& options) {
   app.group("Volumes");
-  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "The array is a volume with cubic voxels of this edge.");
+  app.option("--voxel", "MM", options.voxel_mm, cli::positive, "The array is a volume with cubic voxels of this edge.")
+      .form();
   app.option("--grid", "NAME", options.grid, "Name of the grid, of a volume that is read or made.");
   app.default_is("the only one; target");
   app.option("--origin", "X,Y,Z", options.origin_mm, 3, "Centre of the first voxel in mm; the axis is at x = y = 0.");
@@ -27,10 +28,11 @@ void declare_projections(cli::App& app, Options& options) {
              "projector, whose rays the vial refracts.")
       .was("--projections")
       .had("virtual", "parallel")
-      .had("projector", "vial");
+      .had("projector", "vial")
+      .form();
   app.option("--pixel", "MM", options.pixel_mm, cli::positive, "Pitch of the columns at the rotation axis.");
   app.default_is("projector.pixel_mm");
-  app.option("--slice-pitch", "MM", options.slice_pitch_mm, cli::positive, "Pitch of the slices along z.");
+  app.option("--slice-height", "MM", options.slice_height_mm, cli::positive, "Height of a slice.").was("--slice-pitch");
   app.default_is("that of the columns");
   app.option("--like", "FILE", options.like,
              "Volume (VDB) whose slices the stack gets: interpolated, or averaged where the rows are finer. vam-dose "
@@ -59,8 +61,8 @@ void refuse_given(const cli::App& app, const std::vector<std::string>& flags, co
 }
 
 const std::vector<std::string> volume_flags{"--voxel", "--origin"};
-const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       "--slice-pitch", "--like",
-                                                "--view-step", "--axis-column", "--axis-row",    "--orientation"};
+const std::vector<std::string> projection_flags{"--geometry",  "--pixel",       "--slice-height", "--like",
+                                                "--view-step", "--axis-column", "--axis-row",     "--orientation"};
 
 }  // namespace
 
@@ -79,7 +81,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--full-scale", "VALUE", options.full_scale, cli::positive,
              "Value that becomes 1, full coverage or full intensity.");
   app.default_is("1; full grey of images");
-  app.option("--units", "TEXT", options.units, "Unit of the values, for the record.");
+  app.option("--value-unit", "TEXT", options.units, "Unit of the values, for the record.").was("--units");
   declare_volume(app, options);
   declare_projections(app, options);
   cli::add_printer(app, options.printer);
@@ -100,7 +102,7 @@ std::array<int, 3> axes_of(const Options& options, const std::string& letters) {
 
 void check_export(const cli::App& app, const Options& options) {
   const std::string why = "is for data of other programs; the input is one of these tools' own files";
-  refuse_given(app, {"--array", "--axes", "--full-scale", "--units"}, why);
+  refuse_given(app, {"--array", "--axes", "--full-scale", "--value-unit"}, why);
   refuse_given(app, volume_flags, why);
   refuse_given(app, projection_flags, why);
   if (options.output == "-" || options.output.ends_with(".npy") || options.output.starts_with("/dev/")) return;
@@ -118,8 +120,8 @@ void check_import(const cli::App& app, const Options& options) {
   if (volume) {
     refuse_given(app, projection_flags, "is for projections; omit it, or --voxel");
   } else {
-    refuse_given(app, volume_flags, "is for volumes; omit it, or --projections");
-    refuse_given(app, {"--grid"}, "is for volumes; omit it, or --projections");
+    refuse_given(app, volume_flags, "is for volumes; omit it, or --geometry");
+    refuse_given(app, {"--grid"}, "is for volumes; omit it, or --geometry");
   }
   if (options.view_step_deg == 0.0) throw Error{Fault::usage, "--view-step: must not be 0"};
   const std::string ending = volume ? ".vdb" : ".exr";

@@ -25,7 +25,7 @@ struct Options {
   std::string units = "relative";
   std::string geometry = "none";
   std::optional<double> pixel_mm;
-  std::optional<double> slice_pitch_mm;
+  std::optional<double> slice_height_mm;
   std::string like;
   std::optional<double> view_step_deg;
   std::optional<double> axis_column;

@@ -147,7 +147,7 @@ model::StackInfo info_of(const cli::App& app, const Options& options, const mode
 }
 
 Heights own_heights(const Options& options, const model::Projector& projector, int slices, bool frames) {
-  const double pitch_mm = options.slice_pitch_mm.value_or(pixel_mm(options, projector));
+  const double pitch_mm = options.slice_height_mm.value_or(pixel_mm(options, projector));
   return {slices, -slice_of_zero(options, projector, slices, frames) * pitch_mm, pitch_mm};
 }
 

@@ -73,9 +73,8 @@ std::vector<std::string> notes() {
       "optimum of a linear program. Voxels are inside or outside the part, by --min-coverage. Flow, diffusion and "
       "inhibition are neglected.",
       "Full-cure dose: D_f is the dose to which features are exposed; the paper, which calls it D_c, found five times "
-      "the gelation threshold D_c of working-curve (D_gel of the paper) to be best. resin.critical_dose_mj_cm3 is the "
-      "gelation threshold in the other tools, and the default of D_f here. If one printer file serves both, keep the "
-      "gelation threshold in it and give --full-cure-dose to vam-curethrough.",
+      "the gelation threshold D_c of working-curve (D_gel of the paper) to be best: the default, where "
+      "resin.critical_dose_mj_cm3 gives D_c.",
       "With --exposure-mode layered, the depth cured beyond a feature's top edge by the minimum intensity alone is not "
       "corrected: absorbance height x log10(1 + Phi_min).",
       "Source: Pritchard et al., Modelling and correcting cure-through in continuous stereolithographic 3D printing, "

@@ -17,10 +17,9 @@ void add_print(cli::App& app, PrintOptions& options) {
   app.option("--absorbance-height", "UM", options.absorbance_height_um, cli::positive,
              "Depth in which the intensity falls to a tenth (base 10).");
   app.default_is("from resin.absorption_per_mm, else 2000");
-  app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive,
-             "Dose D_f of full strength; five times the gelation threshold D_c is recommended.")
+  app.option("--full-cure-dose", "MJ_CM3", options.full_cure_dose_mj_cm3, cli::positive, "Dose D_f of full strength.")
       .was("--critical-dose");
-  app.default_is("resin.critical_dose_mj_cm3, else 576");
+  app.default_is("5 x resin.critical_dose_mj_cm3, else 576");
   app.option("--min-irradiance", "MW_CM2", options.min_intensity_mw_cm2, cli::non_negative,
              "Intensity at the window at grey 0 (overrides projector.min_intensity_mw_cm2).");
   app.default_is("projector.min_intensity_mw_cm2").was("--min-intensity");
@@ -61,7 +60,9 @@ PrintSettings resolve(const PrintOptions& options, double slice_um) {
   const model::Resin& resin = print.printer.resin;
   if (resin.absorption_per_mm > 0) process.absorbance_height_um = std::numbers::ln10 / resin.absorption_per_mm * 1e3;
   if (options.absorbance_height_um) process.absorbance_height_um = *options.absorbance_height_um;
-  if (resin.critical_dose_mj_cm3) process.full_cure_dose_mj_cm3 = *resin.critical_dose_mj_cm3;
+  if (resin.critical_dose_mj_cm3) {
+    process.full_cure_dose_mj_cm3 = resin::full_cure_factor * *resin.critical_dose_mj_cm3;
+  }
   if (options.full_cure_dose_mj_cm3) process.full_cure_dose_mj_cm3 = *options.full_cure_dose_mj_cm3;
   process.max_intensity_mw_cm2 = projector.max_intensity_mw_cm2;
   process.min_intensity_mw_cm2 = projector.min_intensity_mw_cm2;

@@ -127,7 +127,7 @@ void declare(cli::App& app, SweepOptions& options) {
   app.option("--slice-height", "UM", options.slice_um, cli::positive, "Slice height.").was("--slice");
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation threshold D_c of the working curve.");
-  app.default_is("a fifth of the full-cure dose, as in the paper");
+  app.default_is("resin.critical_dose_mj_cm3, else a fifth of the full-cure dose");
   app.option("--plot", "FILE", options.plot, "PNG of the error ratios against df_over_dc.").writes();
   add_print(app, options.print);
   app.group("Report and performance");
@@ -138,8 +138,11 @@ void declare(cli::App& app, SweepOptions& options) {
 void run(const cli::App&, const cli::App&, const SweepOptions& options) {
   resin::Study study;
   parse(options.ranges, study);
-  study.process = resolve(options.print, options.slice_um).process;
-  study.gel_dose_mj_cm3 = options.gel_dose_mj_cm3.value_or(study.process.full_cure_dose_mj_cm3 / 5);
+  const PrintSettings print = resolve(options.print, options.slice_um);
+  study.process = print.process;
+  const auto& critical = print.printer.resin.critical_dose_mj_cm3;
+  const double fifth = study.process.full_cure_dose_mj_cm3 / resin::full_cure_factor;
+  study.gel_dose_mj_cm3 = options.gel_dose_mj_cm3.value_or(critical.value_or(fifth));
   const auto points = resin::run_study(resin::graded_ladder(whole_heights(options.heights)), study);
   if (options.report != "-") io::write_text("-", csv_of(points, options.slice_um));
   if (!options.plot.empty()) draw_study(options.plot, points, options.slice_um);

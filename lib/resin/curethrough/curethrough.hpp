@@ -19,6 +19,9 @@ namespace vam::resin {
 
 enum class ExposureMode { continuous, layered };
 
+/// The best D_f / D_c [CURE19 fig 5].
+inline constexpr double full_cure_factor = 5;
+
 /// Resin, motion and light of a print. The defaults are the worked example of [CURE19 fig 2 and 4]; the paper gives no
 /// intensities: these are what makes its figures (undercured from slice 38 of 41, 3 extra slices).
 struct Process {

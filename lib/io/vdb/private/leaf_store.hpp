@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "io/stream/scratch_file.hpp"
+#include "base/scratch_file.hpp"
 
 namespace vam::io {
 

@@ -1,7 +1,8 @@
-#include "io/stream/scratch_file.hpp"
+#include "base/scratch_file.hpp"
 
 #include <fcntl.h>
 #include <stdlib.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,7 +10,7 @@
 
 #include "base/error.hpp"
 
-namespace vam::io {
+namespace vam {
 
 namespace {
 
@@ -63,4 +64,13 @@ void ScratchFile::read(std::uint64_t offset, void* to, std::size_t size) const {
   }
 }
 
-}  // namespace vam::io
+void* ScratchFile::map(std::size_t size) {
+  // Without room a later write to the memory would end the process.
+  const int full = posix_fallocate(descriptor_, 0, static_cast<off_t>(size));
+  if (full != 0) fail(Fault::io, folder_, "cannot reserve " + std::to_string(size >> 20U) + " MiB of", full);
+  void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
+  if (memory == MAP_FAILED) fail(Fault::io, folder_, "cannot map", errno);
+  return memory;
+}
+
+}  // namespace vam
