@@ -81,6 +81,13 @@ quiet "all threads" sh -c "mkdir all && cp ladder.vdb all && cd all && vam-curet
 same "any number of threads gives the same bytes" same.exr all/same.exr
 quiet "projector frames" vam-curethrough correct ladder.vdb $light --full-frame --set projector.pixel_mm=0.05 -o full.exr
 
+# ---- the gelation threshold of the printer file: D_f = 5 D_c = 576 mJ/cm3, the default without it
+ok "model with resin.critical_dose_mj_cm3" vam-curethrough model ladder.vdb $light --set resin.critical_dose_mj_cm3=115.2 --report fifth.json
+is "five times the gelation threshold" "$(json fifth.json process.full_cure_dose_mj_cm3)" 576.0
+is "and with it the same errors" "$(json fifth.json cure_through.voxels)" 120000
+ok "--full-cure-dose overrides it" vam-curethrough model ladder.vdb $light --set resin.critical_dose_mj_cm3=1 --full-cure-dose 576 --report given.json
+is "the given dose" "$(json given.json process.full_cure_dose_mj_cm3)" 576.0
+
 # ---- a catalogue
 printf 'name,absorbance_height_um,full_cure_dose_mj_cm3\nclear,2000,576\ndark,300,576\n' >resins.csv
 ok "catalogue" vam-curethrough correct ladder.vdb $light --catalogue resins.csv --print-speeds 1000,8000 --report catalogue.json

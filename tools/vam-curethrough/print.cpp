@@ -60,10 +60,13 @@ PrintSettings resolve(const PrintOptions& options, double slice_um) {
   const model::Resin& resin = print.printer.resin;
   if (resin.absorption_per_mm > 0) process.absorbance_height_um = std::numbers::ln10 / resin.absorption_per_mm * 1e3;
   if (options.absorbance_height_um) process.absorbance_height_um = *options.absorbance_height_um;
-  if (resin.critical_dose_mj_cm3) {
+  if (options.full_cure_dose_mj_cm3) {
+    process.full_cure_dose_mj_cm3 = *options.full_cure_dose_mj_cm3;
+  } else if (resin.critical_dose_mj_cm3) {
     process.full_cure_dose_mj_cm3 = resin::full_cure_factor * *resin.critical_dose_mj_cm3;
+    note("full-cure dose " + format_number(process.full_cure_dose_mj_cm3, 4) +
+         " mJ/cm3, 5 times resin.critical_dose_mj_cm3");
   }
-  if (options.full_cure_dose_mj_cm3) process.full_cure_dose_mj_cm3 = *options.full_cure_dose_mj_cm3;
   process.max_intensity_mw_cm2 = projector.max_intensity_mw_cm2;
   process.min_intensity_mw_cm2 = projector.min_intensity_mw_cm2;
   print.response = tool::response_of(projector);
