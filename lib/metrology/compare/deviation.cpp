@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/stats/curve_fit.hpp"
-#include "base/stats/median.hpp"
 
 namespace vam::metrology {
 
@@ -81,22 +81,33 @@ double within_percent(std::span<const float> distances_mm, double tolerance_mm) 
 
 std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
                                              std::span<const float> distances_mm) {
+  constexpr std::size_t unknowns = 6;  // growth and shift along each axis
+  constexpr int rounds = 30;           // of reweighted least squares, to the least sum of absolute misses
+  constexpr double least_mm = 1e-5;    // what a miss is divided by at least
   Vector3 middle{};
   for (const auto& s : design) middle = middle + (1.0 / static_cast<double>(design.size())) * s.point;
-  std::vector<double> sizes;
-  for (const float d : distances_mm) sizes.push_back(static_cast<double>(std::abs(d)));
-  const double farthest = 4 * 1.4826 * stats::median(sizes) + 1e-9;
-  std::vector<double> rows;
-  std::vector<double> values;
-  for (std::size_t i = 0; i < design.size(); ++i) {
-    if (sizes[i] > farthest) continue;
+  const auto row_of = [&](std::size_t i) {
     const Vector3& n = design[i].normal;
-    for (std::size_t a = 0; a < 3; ++a) rows.push_back(n[a] * (design[i].point[a] - middle[a]));
-    rows.insert(rows.end(), n.begin(), n.end());
-    values.push_back(static_cast<double>(distances_mm[i]));
+    const Vector3 arm = design[i].point - middle;
+    return std::array<double, unknowns>{n[0] * arm[0], n[1] * arm[1], n[2] * arm[2], n[0], n[1], n[2]};
+  };
+  std::vector<double> part(unknowns);
+  std::vector<double> weight(design.size(), 1.0);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> rows;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < design.size(); ++i) {
+      const double root = std::sqrt(weight[i]);
+      for (const double r : row_of(i)) rows.push_back(root * r);
+      values.push_back(root * static_cast<double>(distances_mm[i]));
+    }
+    part = stats::linear_fit(rows, unknowns, values);
+    for (std::size_t i = 0; i < design.size(); ++i) {
+      const auto row = row_of(i);
+      const double fitted = std::inner_product(row.begin(), row.end(), part.begin(), 0.0);
+      weight[i] = 1 / std::max(std::abs(static_cast<double>(distances_mm[i]) - fitted), least_mm);
+    }
   }
-  constexpr std::size_t unknowns = 6;  // growth and shift along each axis
-  const std::vector<double> part = stats::linear_fit(rows, unknowns, values);
   return {-100 * part[0], -100 * part[1], -100 * part[2]};
 }
 
