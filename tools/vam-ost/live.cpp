@@ -62,6 +62,7 @@ class Turns {
     const auto state = print_.state(volume);
     if (state) line.update(metrology::to_json(*state));
     line["dirt"] = session_.dirt();
+    line["run_out"] = session_.run_out();
     if (const auto bodies = print_.bodies()) line["bodies"] = metrology::to_json(*bodies);
     write_page(options_, index_, line);
     say(line);

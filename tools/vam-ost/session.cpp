@@ -113,43 +113,54 @@ Json Session::figures(const model::Volume& volume) const {
             {"voxel_mm", volume.grid.voxel_mm},
             {"size_voxels", {volume.grid.nx, volume.grid.ny, volume.grid.nz}}};
   json["dirt"] = dirt();
-  json["run_out"] = metrology::to_json(run_out_);
+  json["run_out"] = run_out();
   return json;
 }
 
 // What the options say, else the calibrated axis, else what the views show.
-void Session::place_axis(std::span<const metrology::CameraView> views) {
+metrology::AxisEstimate Session::axis_of(std::span<const metrology::CameraView> views) const {
+  metrology::AxisEstimate axis = axis_;
   const std::optional<double> column = options_.axis_column ? options_.axis_column : printer_.camera.axis_column;
   const std::optional<double> tilt_deg = options_.tilt_deg ? options_.tilt_deg : printer_.camera.tilt_deg;
   if (!column || !tilt_deg) {
     const auto found = metrology::find_axis(metrology::mean_view(views));
-    if (!rig_ || found.column_sigma < axis_.column_sigma) axis_ = found;  // else what is known is better
+    if (!rig_ || found.column_sigma < axis.column_sigma) axis = found;  // else what is known is better
   }
-  if (column) axis_.pose.column = binned(*column, options_.binning);
-  if (tilt_deg) axis_.pose.tilt_rad = *tilt_deg * rad_per_deg;
+  if (column) axis.pose.column = binned(*column, options_.binning);
+  if (tilt_deg) axis.pose.tilt_rad = *tilt_deg * rad_per_deg;
+  return axis;
 }
 
+// Axis, run-out and reconstruction belong together: all are replaced, or none where the turn is incomplete.
 void Session::set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm) {
-  place_axis(views);
+  metrology::AxisEstimate axis = axis_of(views);
+  metrology::RunOut run_out;
   const double pixel_mm = options_.pixel_mm.value_or(stack_pixel_mm > 0 ? stack_pixel_mm : printer_.camera.pixel_mm);
   metrology::OstOptions how = options_.how;
   how.refraction = !options_.no_refraction;
   if (printer_.camera.axis_row) how.axis_row = binned(*printer_.camera.axis_row, options_.binning);
   how.non_negative = options_.negative == "clip";
   const auto stand = [&] {
-    rig_ = std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
-                                                         axis_.pose, how);
+    return std::make_unique<metrology::OstReconstructor>(printer_, pixel_mm * options_.binning, width_, height_,
+                                                         axis.pose, how);
   };
-  stand();
+  auto rig = stand();
   if (!options_.keep_run_out) {
-    run_out_ = rig_->find_run_out(views);
-    if (run_out_.seen()) {
-      how.run_out_mm = run_out_.mm;
-      if (!axis_is_given()) axis_.pose.column = run_out_.column;
-      if (!axis_is_given()) axis_.column_sigma = run_out_.column_sigma;
-      stand();
+    run_out = rig->find_run_out(views);
+    if (run_out.seen()) {
+      how.run_out_mm = run_out.mm;
+      if (!axis_is_given()) axis.pose.column = run_out.column;
+      if (!axis_is_given()) axis.column_sigma = run_out.column_sigma;
+      rig = stand();
     }
   }
+  rig_ = std::move(rig);
+  axis_ = axis;
+  run_out_ = run_out;
+  say_axis();
+}
+
+void Session::say_axis() const {
   note("axis at column " + format_number(captured(axis_.pose.column, options_.binning), 6) + " +- " +
        format_number(axis_.column_sigma * options_.binning, 2) + " px, tilt " +
        format_number(axis_.pose.tilt_rad * deg_per_rad, 3) + " +- " +

@@ -36,13 +36,15 @@ class Session {
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
   /// What was taken out of the views of the last volume.
   [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
+  [[nodiscard]] Json run_out() const { return metrology::to_json(run_out_); }
   /// Of axis, volume and views, for a report.
   [[nodiscard]] Json figures(const model::Volume& volume) const;
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
 
  private:
   void say_dirt() const;
-  void place_axis(std::span<const metrology::CameraView> views);
+  void say_axis() const;
+  [[nodiscard]] metrology::AxisEstimate axis_of(std::span<const metrology::CameraView> views) const;
   [[nodiscard]] bool certain() const;
   [[nodiscard]] bool axis_is_given() const;
   void refine_axis(std::span<const metrology::CameraView> views, double stack_pixel_mm);
