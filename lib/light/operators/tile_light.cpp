@@ -39,9 +39,18 @@ void copy_lanes(const float* from, int used, float* to) {
 
 }  // namespace
 
-TileLight::TileLight(const VialRays& rays, const InsertShadow& shadow, const Tile& tile, const Chunk& chunk)
-    : rays_(rays), shadow_(shadow), tile_(tile), chunk_(chunk) {
+TileLight::TileLight(const VialRays& rays, const InsertShadow& shadow, const Tile& tile, const Chunk& chunk,
+                     const SlabRange& rows)
+    : rays_(rays),
+      shadow_(shadow),
+      tile_(tile),
+      chunk_(chunk),
+      lit_first_(static_cast<int>(rows.first) * lanes),
+      lit_end_(static_cast<int>(rows.end) * lanes) {
   voxels_.resize(voxel_at(count_of(tile.voxels)) + overrun);
+  if (!rays.climbs()) return;
+  lit_first_ = std::max(lit_first_, rays.first_row());
+  lit_end_ = std::min(lit_end_, rays.end_row());
 }
 
 std::size_t TileLight::voxel_at(int voxel) const {
@@ -99,25 +108,20 @@ void TileLight::store_voxels(const Window<Slab>& objects) const {
   });
 }
 
-void TileLight::Aim::make_room(std::size_t rays, int most_taps) {
+void AngleTaps::make_room(std::size_t rays, int most_taps) {
   cells.resize(rays);
   floats.resize((2 + most_taps) * rays);
-  taps = {cells.data(),
-          floats.data(),
-          floats.data() + rays,
-          floats.data() + 2 * rays,
-          static_cast<int>(rays),
-          0,
-          0,
-          0,
-          0,
-          0};
+  taps = {};
+  taps.cell = cells.data();
+  taps.start = floats.data();
+  taps.zoom = floats.data() + rays;
+  taps.weight = floats.data() + 2 * rays;
+  taps.pitch = static_cast<int>(rays);
 }
 
 /// Every voxel stands elsewhere than a frame before.
-void TileLight::find_posed_taps(Aim& aim) {
-  const int frame = aim.angle;
-  aim.posed.clear();
+void TileLight::find_posed(AngleTaps& to) {
+  const int frame = to.angle;
   if (!rays_.lit(chunk_.slice(), chunk_.width(), frame)) return;
   const HeightScale scale = rays_.posed_scale(chunk_.slice(), chunk_.width(), frame);
   posed_nodes_.resize(tile_.voxels.size() * VialRays::most_rays + 1);
@@ -126,143 +130,139 @@ void TileLight::find_posed_taps(Aim& aim) {
     if (bright_only_ && !bright(voxel)) continue;
     const VoxelColumn& column = tile_.voxels[voxel];
     const int found = rays_.find_posed(column.i, column.j, frame, scale, &posed_nodes_[rays]);
-    for (int k = 0; k < found; ++k) aim.posed.push_back({rays + k, voxel});
+    for (int k = 0; k < found; ++k) to.posed.push_back({rays + k, voxel});
     rays += found;
   }
   if (rays == 0) return;
   const int whole = (rays + ray_block - 1) / ray_block * ray_block;
   posed_nodes_.resize(static_cast<std::size_t>(whole) + 1);
   std::fill(posed_nodes_.begin() + rays, posed_nodes_.end(), posed_nodes_[rays - 1]);
-  aim.make_room(whole, rays_.taps());
-  rays_.find_posed_taps(posed_nodes_, rays, frame, chunk_.width(), aim.taps);
+  to.make_room(whole, rays_.taps());
+  rays_.find_posed_taps(posed_nodes_, rays, frame, chunk_.width(), to.taps);
 }
 
 /// The taps of all rays, and the columns and rows that they take from.
-void TileLight::find_taps(const RayNodes& nodes, Aim& aim) {
+void TileLight::find_angle(const RayNodes& nodes, AngleTaps& to) {
   if (rays_.posed()) {
-    find_posed_taps(aim);
-    if (aim.posed.empty()) return;
+    find_posed(to);
+    if (to.posed.empty()) return;
   } else {
-    aim.make_room(tile_.rays.size(), rays_.taps());
-    rays_.find_taps(nodes, tile_.rays.data(), count_of(tile_.rays), aim.angle, chunk_.width(), aim.taps);
+    to.make_room(tile_.rays.size(), rays_.taps());
+    rays_.find_taps(nodes, tile_.rays.data(), count_of(tile_.rays), to.angle, chunk_.width(), to.taps);
   }
-  aim.lit = true;
-  aim.columns = aim.taps.last_cell - aim.taps.first_cell + aim.taps.taps;
-  aim.row = chunk_.slice();
-  aim.rows = chunk_.width();
+  to.lit = true;
+  to.columns = to.taps.last_cell - to.taps.first_cell + to.taps.taps;
+  to.row = chunk_.slice();
+  to.rows = chunk_.width();
   if (!rays_.climbs()) return;
-  aim.taps.first_row = std::floor(aim.taps.first_row);
-  aim.row = static_cast<int>(aim.taps.first_row);
-  const int needed = static_cast<int>(aim.taps.last_row - aim.taps.first_row) + 2;
-  aim.rows = (needed + lanes - 1) / lanes * lanes;
+  to.taps.first_row = std::floor(to.taps.first_row);
+  to.row = static_cast<int>(to.taps.first_row);
+  const int needed = static_cast<int>(to.taps.last_row - to.taps.first_row) + 2;
+  to.rows = (needed + lanes - 1) / lanes * lanes;
 }
 
-void TileLight::aim(const RayNodes& nodes, int first, int end, const SlabRange& rows) {
-  if (!aims_.empty()) return;
-  lit_first_ = static_cast<int>(rows.first) * lanes;
-  lit_end_ = static_cast<int>(rows.end) * lanes;
-  if (rays_.climbs()) {
-    lit_first_ = std::max(lit_first_, rays_.first_row());
-    lit_end_ = std::min(lit_end_, rays_.end_row());
-  }
+TileTaps TileLight::find_taps(const RayNodes& nodes, int first, int end) {
   const int quarters = rays_.quarters();
-  aims_.reserve(product(quarters, end - first));
+  TileTaps all;
+  all.reserve(product(quarters, end - first));
   for (int quarter = 0; quarter < quarters; ++quarter) {
     for (int angle = first; angle < end; ++angle) {
-      aims_.emplace_back().angle = angle + quarter * (rays_.setup().turn.rows / quarters);
-      find_taps(nodes, aims_.back());
+      all.emplace_back().angle = angle + quarter * (rays_.setup().turn.rows / quarters);
+      find_angle(nodes, all.back());
     }
   }
+  return all;
 }
 
 /// visit(slab's pixel, place in the tile's light, columns, rows): the lit pixels of the tile, slab by slab.
 template <class SlabType, class Visit>
-void TileLight::each_piece(const Aim& aim, int angle, const Window<SlabType>& sinograms, const Visit& visit) const {
-  const int dark = std::max(0, rays_.padding() - aim.taps.first_cell);  // columns before the first
-  const int column = aim.taps.first_cell + dark - rays_.padding();
-  const int count = std::min(aim.columns - dark, rays_.columns() - column);
+void TileLight::each_piece(const AngleTaps& from, int angle, const Window<SlabType>& sinograms,
+                           const Visit& visit) const {
+  const int dark = std::max(0, rays_.padding() - from.taps.first_cell);  // columns before the first
+  const int column = from.taps.first_cell + dark - rays_.padding();
+  const int count = std::min(from.columns - dark, rays_.columns() - column);
   if (count <= 0) return;
-  const int first = std::max(aim.row, lit_first_);
-  const int end = std::min(aim.row + aim.rows, lit_end_);
+  const int first = std::max(from.row, lit_first_);
+  const int end = std::min(from.row + from.rows, lit_end_);
   for (int row = first; row < end;) {
     const int next = std::min(end, (row / lanes + 1) * lanes);
-    visit(sinograms[row / lanes].at(column, angle) + row % lanes, product(dark, aim.rows) + row - aim.row, count,
+    visit(sinograms[row / lanes].at(column, angle) + row % lanes, product(dark, from.rows) + row - from.row, count,
           next - row);
     row = next;
   }
 }
 
-void TileLight::fetch(const Aim& aim, int angle, const Window<const Slab>& sinograms) {
-  light_.assign(product(aim.columns, aim.rows), 0.0F);
+void TileLight::fetch(const AngleTaps& from, int angle, const Window<const Slab>& sinograms) {
+  light_.assign(product(from.columns, from.rows), 0.0F);
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));  // the next stage angle
-  each_piece(aim, angle, sinograms, [&](const float* from, std::size_t at, int columns, int rows) {
-    TileKernels::best().copy(from, columns, rows, aim.rows, next, light_.data() + at);
+  each_piece(from, angle, sinograms, [&](const float* light, std::size_t at, int columns, int rows) {
+    TileKernels::best().copy(light, columns, rows, from.rows, next, light_.data() + at);
   });
 }
 
-void TileLight::put_back(const Aim& aim, int angle, const Window<Slab>& sinograms) const {
+void TileLight::put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms) const {
   const auto next = static_cast<std::ptrdiff_t>(product(rays_.columns(), lanes));
-  each_piece(aim, angle, sinograms, [&](float* to, std::size_t at, int columns, int rows) {
-    TileKernels::best().add(light_.data() + at, columns, rows, aim.rows, next, to);
+  each_piece(to, angle, sinograms, [&](float* light, std::size_t at, int columns, int rows) {
+    TileKernels::best().add(light_.data() + at, columns, rows, to.rows, next, light);
   });
 }
 
 /// Whether the insert ends any of the rays that light the tile.
-bool TileLight::shadowed(const Aim& aim, int angle) const {
+bool TileLight::shadowed(const AngleTaps& from, int angle) const {
   if (shadow_.empty()) return false;
-  for (int c = 0; c < aim.columns; ++c) {
-    const int column = aim.taps.first_cell + c - rays_.padding();
+  for (int c = 0; c < from.columns; ++c) {
+    const int column = from.taps.first_cell + c - rays_.padding();
     if (column >= 0 && column < rays_.columns() && shadow_.occludes(column, angle)) return true;
   }
   return false;
 }
 
 /// How far the light of the tile's pixels reaches, and how far in the voxels are on the rays of their columns.
-void TileLight::cast_shadow(const Aim& aim, int angle) {
-  ends_.assign(product(aim.columns, aim.rows), InsertShadow::unhindered);
-  each_piece(aim, angle, Window<const Slab>{0, shadow_.ends()},
-             [&](const float* from, std::size_t at, int columns, int rows) {
-               TileKernels::best().copy(from, columns, rows, aim.rows, 0, ends_.data() + at);
+void TileLight::cast_shadow(const AngleTaps& from, int angle) {
+  ends_.assign(product(from.columns, from.rows), InsertShadow::unhindered);
+  each_piece(from, angle, Window<const Slab>{0, shadow_.ends()},
+             [&](const float* ends, std::size_t at, int columns, int rows) {
+               TileKernels::best().copy(ends, columns, rows, from.rows, 0, ends_.data() + at);
              });
   const model::Grid& grid = rays_.setup().grid;
-  depth_.assign(product(aim.taps.taps, aim.taps.pitch), 0.0F);
-  for (const auto& [ray, voxel] : rays_of(aim)) {
+  depth_.assign(product(from.taps.taps, from.taps.pitch), 0.0F);
+  for (const auto& [ray, voxel] : rays_of(from)) {
     const VoxelColumn at = tile_.voxels[voxel].turned(quarters_, grid.nx);
     const double x = grid.x_mm(at.i);
     const double y = grid.y_mm(at.j);
-    for (int k = 0; k < aim.taps.taps; ++k) {
-      const int column = std::clamp(aim.taps.cell[ray] + k - rays_.padding(), 0, rays_.columns() - 1);
-      depth_[product(k, aim.taps.pitch) + ray] = shadow_.depth_mm(x, y, angle, column);
+    for (int k = 0; k < from.taps.taps; ++k) {
+      const int column = std::clamp(from.taps.cell[ray] + k - rays_.padding(), 0, rays_.columns() - 1);
+      depth_[product(k, from.taps.pitch) + ray] = shadow_.depth_mm(x, y, angle, column);
     }
   }
 }
 
-TileColumns TileLight::columns(const Aim& aim, int angle) {
+TileColumns TileLight::columns(const AngleTaps& from, int angle) {
   ends_.clear();
-  if (shadowed(aim, angle)) cast_shadow(aim, angle);
-  return {light_.data(), ends_.empty() ? nullptr : ends_.data(), depth_.data(), aim.rows};
+  if (shadowed(from, angle)) cast_shadow(from, angle);
+  return {light_.data(), ends_.empty() ? nullptr : ends_.data(), depth_.data(), from.rows};
 }
 
-void TileLight::take(const Window<const Slab>& sinograms) {
-  for (const Aim& aim : aims_) {
-    if (!aim.lit) continue;
-    const int angle = rays_.turned_angle(aim.angle, quarters_);
-    fetch(aim, angle, sinograms);
-    const std::vector<VoxelRay>& rays = rays_of(aim);
-    TileKernels::best().gather(columns(aim, angle), aim.taps, rays.data(), count_of(rays), chunk_.width(),
+void TileLight::take(const TileTaps& taps, const Window<const Slab>& sinograms) {
+  for (const AngleTaps& from : taps) {
+    if (!from.lit) continue;
+    const int angle = rays_.turned_angle(from.angle, quarters_);
+    fetch(from, angle, sinograms);
+    const std::vector<VoxelRay>& rays = rays_of(from);
+    TileKernels::best().gather(columns(from, angle), from.taps, rays.data(), count_of(rays), chunk_.width(),
                                rays_.climbs(), voxels_.data() + voxel_at(0));
   }
 }
 
-void TileLight::give(const Window<Slab>& sinograms) {
-  for (const Aim& aim : aims_) {
-    if (!aim.lit) continue;
-    const int angle = rays_.turned_angle(aim.angle, quarters_);
-    light_.assign(product(aim.columns, aim.rows), 0.0F);
-    const std::vector<VoxelRay>& rays = rays_of(aim);
-    TileKernels::best().scatter(voxels_.data() + voxel_at(0), aim.taps, rays.data(), count_of(rays), chunk_.width(),
-                                rays_.climbs(), columns(aim, angle));
-    put_back(aim, angle, sinograms);
+void TileLight::give(const TileTaps& taps, const Window<Slab>& sinograms) {
+  for (const AngleTaps& to : taps) {
+    if (!to.lit) continue;
+    const int angle = rays_.turned_angle(to.angle, quarters_);
+    light_.assign(product(to.columns, to.rows), 0.0F);
+    const std::vector<VoxelRay>& rays = rays_of(to);
+    TileKernels::best().scatter(voxels_.data() + voxel_at(0), to.taps, rays.data(), count_of(rays), chunk_.width(),
+                                rays_.climbs(), columns(to, angle));
+    put_back(to, angle, sinograms);
   }
 }
 

@@ -115,12 +115,13 @@ void VialOperator::forward_within(const Window<const Slab>& objects, const Windo
                parallel_for(count_of(blocks), [&](int b) {
                  const auto [first, end] = blocks[b];
                  for (const int t : tiles) {
-                   TileLight light(rays_, shadow_, tiles_[t], chunk);
+                   TileLight light(rays_, shadow_, tiles_[t], chunk, rows);
+                   TileTaps taps;
                    for (int quarter = 0; quarter < tiles_[t].quarters; ++quarter) {
                      light.face(quarter);
                      if (!light.load_bright_voxels(objects)) continue;
-                     light.aim(nodes, first, end, rows);
-                     light.give(sinograms);
+                     if (taps.empty()) taps = light.find_taps(nodes, first, end);
+                     light.give(taps, sinograms);
                    }
                  }
                });
@@ -159,12 +160,13 @@ void VialOperator::adjoint_within(const Window<const Slab>& sinograms, const Win
                for (const auto& [first, end] : blocks) {
                  parallel_for(count_of(tiles), [&, first = first, end = end](int item) {
                    const Tile& tile = tiles_[tiles[item]];
-                   TileLight light(rays_, shadow_, tile, chunk);
-                   light.aim(nodes, first, end, rows);
+                   TileLight light(rays_, shadow_, tile, chunk, rows);
+                   TileTaps taps;
                    for (int quarter = 0; quarter < tile.quarters; ++quarter) {
                      light.face(quarter);
                      light.load_voxels(sums);
-                     light.take(sinograms);
+                     if (taps.empty()) taps = light.find_taps(nodes, first, end);
+                     light.take(taps, sinograms);
                      light.store_voxels(objects);
                    }
                  });

@@ -1,4 +1,4 @@
-// The light on a tile of voxel columns: working memory of the vial operator, one per thread.
+// The light on a tile of voxel columns at a few stage angles: working memory of the vial operator.
 #pragma once
 
 #include <vector>
@@ -19,12 +19,29 @@ struct Chunk {
   [[nodiscard]] int width() const { return static_cast<int>(slabs) * lanes; }
 };
 
-/// A tile is so small that at one stage angle its light comes from a few columns: these are brought together, and all
-/// stays in the first cache. A voxel's taps are summed row by row, and the sum is taken to its slices. Taps are found
-/// once, for all quarters of a turn.
+/// What lights a tile at one stage angle.
+struct AngleTaps {
+  int angle = 0;
+  bool lit = false;
+  RayTaps taps{};
+  int row = 0;      // of the light that the tile's columns begin with
+  int rows = 0;     // floats of a column
+  int columns = 0;  // of the tile
+  std::vector<VoxelRay> posed;
+  std::vector<int> cells;
+  std::vector<float, CacheAligned<float>> floats;
+  void make_room(std::size_t rays, int most_taps);
+};
+using TileTaps = std::vector<AngleTaps>;
+
+/// A tile is so small that at one stage angle its light comes from a few columns: these are brought together, and stay
+/// in the first cache. A voxel's taps are summed row by row, and the sum is taken to its slices. Taps are found once,
+/// for all quarters of a turn: load voxels, find_taps(), take() or give(), store voxels.
 class TileLight {
  public:
-  TileLight(const VialRays& rays, const InsertShadow& shadow, const Tile& tile, const Chunk& chunk);
+  /// `rows`: the slabs of light that there will be.
+  TileLight(const VialRays& rays, const InsertShadow& shadow, const Tile& tile, const Chunk& chunk,
+            const SlabRange& rows);
 
   /// The tile so many quarters of a turn on, from now on.
   void face(int quarters) { quarters_ = quarters; }
@@ -34,57 +51,43 @@ class TileLight {
   bool load_bright_voxels(const Window<const Slab>& objects);
   void store_voxels(const Window<Slab>& objects) const;
 
-  /// Finds what lights the tile at stage angles [first, end) and those that follow them by quarters of a turn, unless
-  /// it is known; with poses, what lights the voxels that are loaded. `nodes`: those at the chunk; `rows`: the slabs of
-  /// light that there will be.
-  void aim(const RayNodes& nodes, int first, int end, const SlabRange& rows);
+  /// What lights the tile at stage angles [first, end) and at those that follow them by quarters of a turn, which
+  /// light the tile that many quarters on alike; with poses, what lights the voxels that are loaded. `nodes`: those at
+  /// the chunk.
+  [[nodiscard]] TileTaps find_taps(const RayNodes& nodes, int first, int end);
   /// Voxels += light of these angles.
-  void take(const Window<const Slab>& sinograms);
+  void take(const TileTaps& taps, const Window<const Slab>& sinograms);
   /// Its transpose: light += voxels.
-  void give(const Window<Slab>& sinograms);
+  void give(const TileTaps& taps, const Window<Slab>& sinograms);
 
  private:
-  /// What lights the tile at one stage angle.
-  struct Aim {
-    int angle = 0;
-    bool lit = false;
-    RayTaps taps{};
-    int row = 0;      // of the light that the tile's columns begin with
-    int rows = 0;     // floats of a column
-    int columns = 0;  // of the tile
-    std::vector<VoxelRay> posed;
-    std::vector<int> cells;
-    std::vector<float, CacheAligned<float>> floats;
-    void make_room(std::size_t rays, int taps);
-  };
   template <class Visit>
   void each_voxel(const Visit& visit) const;
   template <class SlabType, class Visit>
-  void each_piece(const Aim& aim, int angle, const Window<SlabType>& sinograms, const Visit& visit) const;
+  void each_piece(const AngleTaps& from, int angle, const Window<SlabType>& sinograms, const Visit& visit) const;
   [[nodiscard]] std::size_t voxel_at(int voxel) const;
   [[nodiscard]] bool bright(int voxel) const;
-  void find_taps(const RayNodes& nodes, Aim& aim);
-  void find_posed_taps(Aim& aim);
-  void fetch(const Aim& aim, int angle, const Window<const Slab>& sinograms);
-  void put_back(const Aim& aim, int angle, const Window<Slab>& sinograms) const;
-  void cast_shadow(const Aim& aim, int angle);
-  [[nodiscard]] bool shadowed(const Aim& aim, int angle) const;
-  [[nodiscard]] TileColumns columns(const Aim& aim, int angle);
+  void find_angle(const RayNodes& nodes, AngleTaps& to);
+  void find_posed(AngleTaps& to);
+  void fetch(const AngleTaps& from, int angle, const Window<const Slab>& sinograms);
+  void put_back(const AngleTaps& to, int angle, const Window<Slab>& sinograms) const;
+  void cast_shadow(const AngleTaps& from, int angle);
+  [[nodiscard]] bool shadowed(const AngleTaps& from, int angle) const;
+  [[nodiscard]] TileColumns columns(const AngleTaps& from, int angle);
   /// The rays of the voxels that are loaded.
-  [[nodiscard]] const std::vector<VoxelRay>& rays_of(const Aim& aim) const {
-    return rays_.posed() ? aim.posed : voxel_rays_;
+  [[nodiscard]] const std::vector<VoxelRay>& rays_of(const AngleTaps& from) const {
+    return rays_.posed() ? from.posed : voxel_rays_;
   }
 
   const VialRays& rays_;
   const InsertShadow& shadow_;
   const Tile& tile_;
   const Chunk chunk_;
+  int lit_first_, lit_end_;  // rows
   int quarters_ = 0;
   bool bright_only_ = false;
   std::vector<VoxelRay> voxel_rays_;  // of the voxels that are loaded
-  int lit_first_ = 0, lit_end_ = 0;
-  std::vector<Aim> aims_;
-  RayNodes posed_nodes_;  // of one frame
+  RayNodes posed_nodes_;              // of one frame
   std::vector<float, CacheAligned<float>> voxels_, light_, ends_, depth_;
 };
 
