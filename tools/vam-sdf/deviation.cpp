@@ -33,8 +33,7 @@ void require_unique(const Options& options, const solid::Alignment& found) {
                                  format_number(100 * found.rival->match, 3) +
                                  " % of its surface; move it near the right one and give --align icp"};
   }
-  constexpr double complete = 0.8;
-  if (found.overlap < complete) {
+  if (found.as_part) {
     note("the print covers only " + format_number(100 * found.overlap, 3) +
          " % of the design; aligned as a part of it");
   }
@@ -128,6 +127,9 @@ void deviation(const cli::App& app, const Options& options) {
       std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name == "within"; });
   if (asks_within && !options.tolerance_mm) {
     throw Error{Fault::usage, "--require within: give the tolerance by --tolerance"};
+  }
+  if (options.scale && !options.volume.empty()) {
+    throw Error{Fault::usage, "--fit-scale: the shrinkage would be missing in --volume; omit one of them"};
   }
   if (options.isovalue && !options.resin_record.empty())
     throw Error{Fault::usage, "--isovalue, --resin: both determine the isovalue of the print; give only one"};

@@ -1,11 +1,12 @@
 // vam-slice --compensate: the deviations of prints, taken off the design before it is placed.
 #include <cmath>
-#include <cstdlib>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/memory.hpp"
 #include "base/text.hpp"
 #include "io/vdb/vdb.hpp"
+#include "model/grid_size.hpp"
 #include "solid/voxel/compensation.hpp"
 #include "vam-slice/part.hpp"
 
@@ -18,7 +19,8 @@ double rms_of(const io::SparseVolume& volume, const std::string& path) {
   if (found == volume.metadata.end()) {
     throw Error{Fault::data, path + ": has no RMS deviation (vam:rms_mm); give volumes of vam-sdf --volume"};
   }
-  return std::strtod(found->second.c_str(), nullptr);
+  if (const auto rms_mm = parse_number(found->second)) return *rms_mm;
+  throw Error{Fault::data, path + ": vam:rms_mm is '" + found->second + "', not a number; write the volume anew"};
 }
 
 // But for the rounding of the file.
@@ -36,6 +38,8 @@ model::TriangleSoup corrected(model::TriangleSoup mesh, const Options& options, 
   std::vector<model::Volume> rounds;
   for (const std::string& path : options.compensate) {
     const io::SparseVolume sparse = io::read_volume(path, "sdf");
+    require_memory(sizeof(float) * static_cast<double>(sparse.grid().size()),
+                   path + ": " + model::size_text(sparse.grid()), "give vam-sdf a larger --volume-voxel");
     correction.rms_mm.push_back(rms_of(sparse, path));
     rounds.push_back({sparse.grid(), std::vector<float>(sparse.grid().size())});
     sparse.read_slices(0, sparse.grid().nz, rounds.back().values.data());

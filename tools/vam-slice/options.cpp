@@ -71,9 +71,10 @@ void declare(cli::App& app, Options& options) {
       .form();
   app.choice("--fill", options.fill, {"auto", "exact", "vote"},
              "Inside test: exact (closed meshes), by majority (vote; meshes with holes), or chosen automatically.");
-  app.option("--compensate", "SDF.vdb", options.compensate,
-             "Correct the mesh by the deviation of its print, a volume of vam-sdf --volume against the same mesh. Once "
-             "for each round, in their order; rounds from the first that was no better are not applied.")
+  app.option(
+         "--compensate", "SDF.vdb", options.compensate,
+         "Correct the mesh by the deviation of its print, a volume of vam-sdf --volume against the same mesh. Once "
+         "for each round, in their order; the corrections of the best print are applied, not its own and later ones.")
       .reads();
   app.option("--damping", "FRACTION", options.damping, {0.05, 1}, "Fraction of each deviation that is corrected.")
       .needs({"--compensate"});
@@ -99,6 +100,14 @@ bool is_folder(const std::string& path) {
 void check(const cli::App& app, const Options& options) {
   if (!options.shape.empty() && options.input != "-") {
     throw Error{Fault::usage, options.input + ": give either PART or --shape"};
+  }
+  if (!options.compensate.empty()) {
+    for (const std::string flag : {"--unit", "--scale", "--fit", "--fit-writable"}) {
+      if (!app.given(flag)) continue;
+      throw Error{Fault::usage, flag +
+                                    ": --compensate corrects the mesh as vam-sdf had it, in mm; give vam-sdf a mesh "
+                                    "of the printed size"};
+    }
   }
   if (options.placement.fit_mm && options.placement.fit_writable) {
     throw Error{Fault::usage, "--fit-writable: give either --fit or --fit-writable"};
