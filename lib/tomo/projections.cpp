@@ -4,7 +4,7 @@
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/axis_transmission.hpp"
 
 namespace vam::tomo {
 

@@ -15,6 +15,7 @@
 #include "io/settings/report.hpp"
 #include "io/stream/stream.hpp"
 #include "optics/slice_place.hpp"
+#include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
 #include "resin/curethrough/slice_correction.hpp"
 #include "vam-curethrough/catalogue.hpp"

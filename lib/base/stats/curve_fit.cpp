@@ -5,54 +5,18 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/stats/private/covariance.hpp"
+#include "base/stats/private/normal_equations.hpp"
 
 namespace vam::stats {
 
 namespace {
-
-using Vector = std::vector<double>;
 
 double square_sum(const Vector& v) {
   double sum = 0;
   for (const double x : v) sum += x * x;
   return sum;
 }
-
-// A symmetric positive definite matrix, scaled to a unit diagonal, as its Cholesky factor.
-class Cholesky {
- public:
-  Cholesky(Vector matrix, std::size_t n) : n_(n), l_(std::move(matrix)), scale_(n) {
-    for (std::size_t i = 0; i < n; ++i) scale_[i] = l_[i * n + i] > 0 ? 1 / std::sqrt(l_[i * n + i]) : 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        double sum = l_[i * n + j] * scale_[i] * scale_[j];
-        for (std::size_t k = 0; k < j; ++k) sum -= l_[i * n + k] * l_[j * n + k];
-        if (i == j && !(sum > 1e-12)) good_ = false;
-        l_[i * n + j] = i == j ? std::sqrt(std::max(sum, 1e-300)) : sum / l_[j * n + j];
-      }
-    }
-  }
-  [[nodiscard]] bool good() const { return good_; }
-  [[nodiscard]] Vector solve(Vector b) const {
-    for (std::size_t i = 0; i < n_; ++i) {
-      b[i] *= scale_[i];
-      for (std::size_t k = 0; k < i; ++k) b[i] -= l_[i * n_ + k] * b[k];
-      b[i] /= l_[i * n_ + i];
-    }
-    for (std::size_t i = n_; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n_; ++k) b[i] -= l_[k * n_ + i] * b[k];
-      b[i] /= l_[i * n_ + i];
-    }
-    for (std::size_t i = 0; i < n_; ++i) b[i] *= scale_[i];
-    return b;
-  }
-
- private:
-  std::size_t n_;
-  Vector l_;
-  Vector scale_;
-  bool good_ = true;
-};
 
 // d residual / d parameter, one row a residual.
 Vector jacobian(const Residuals& residuals, const Vector& at, const Vector& step, std::size_t rows) {
@@ -67,54 +31,6 @@ Vector jacobian(const Residuals& residuals, const Vector& at, const Vector& step
     for (std::size_t i = 0; i < rows; ++i) j[i * at.size() + p] = (high[i] - low[i]) / (2 * step[p]);
   }
   return j;
-}
-
-// sum_i weight_i j_i j_i^T
-Vector normal_matrix(const Vector& j, std::size_t n, const Vector& weight) {
-  Vector matrix(n * n);
-  for (std::size_t i = 0; i < weight.size(); ++i) {
-    const double* row = j.data() + i * n;
-    for (std::size_t a = 0; a < n; ++a) {
-      for (std::size_t b = 0; b < n; ++b) matrix[a * n + b] += weight[i] * row[a] * row[b];
-    }
-  }
-  return matrix;
-}
-
-Vector gradient(const Vector& j, std::size_t n, const Vector& residual) {
-  Vector sum(n);
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    for (std::size_t a = 0; a < n; ++a) sum[a] -= j[i * n + a] * residual[i];
-  }
-  return sum;
-}
-
-// (J'J)^-1 J' diag(r^2 / (1 - h)^2) J (J'J)^-1, h the leverages.
-Vector hc3(const Vector& j, std::size_t n, const Vector& residual, const Cholesky& normal) {
-  Vector weight(residual.size());
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    const Vector row(j.begin() + static_cast<std::ptrdiff_t>(i * n),
-                     j.begin() + static_cast<std::ptrdiff_t>(i * n + n));
-    const Vector solved = normal.solve(row);
-    double leverage = 0;
-    for (std::size_t a = 0; a < n; ++a) leverage += row[a] * solved[a];
-    const double free = std::max(1 - leverage, 0.05);
-    weight[i] = residual[i] * residual[i] / (free * free);
-  }
-  const Vector meat = normal_matrix(j, n, weight);
-  Vector half(n * n);  // rows: (J'J)^-1 applied to the columns of the (symmetric) meat
-  for (std::size_t a = 0; a < n; ++a) {
-    const Vector solved = normal.solve(Vector(meat.begin() + static_cast<std::ptrdiff_t>(a * n),
-                                              meat.begin() + static_cast<std::ptrdiff_t>(a * n + n)));
-    for (std::size_t b = 0; b < n; ++b) half[b * n + a] = solved[b];
-  }
-  Vector covariance(n * n);
-  for (std::size_t a = 0; a < n; ++a) {
-    const Vector solved = normal.solve(Vector(half.begin() + static_cast<std::ptrdiff_t>(a * n),
-                                              half.begin() + static_cast<std::ptrdiff_t>(a * n + n)));
-    for (std::size_t b = 0; b < n; ++b) covariance[a * n + b] = solved[b];
-  }
-  return covariance;
 }
 
 /// The parameters at which the sum of squares no longer falls, from `start` with its residuals [MAR63].

@@ -1,6 +1,7 @@
 #include "light/operators/private/attenuated_operator.hpp"
 
-#include "tomo/absorption.hpp"
+#include "base/per_slice.hpp"
+#include "tomo/axis_transmission.hpp"
 
 namespace vam::light {
 

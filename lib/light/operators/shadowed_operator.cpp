@@ -7,7 +7,7 @@
 #include "base/parallel.hpp"
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/axis_transmission.hpp"
 #include "tomo/footprint.hpp"
 
 namespace vam::light {

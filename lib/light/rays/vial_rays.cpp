@@ -14,7 +14,7 @@
 #include "model/absorption.hpp"
 #include "model/circle.hpp"
 #include "optics/skew_ray.hpp"
-#include "tomo/absorption.hpp"
+#include "tomo/axis_transmission.hpp"
 
 namespace vam::light {
 

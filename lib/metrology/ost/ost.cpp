@@ -139,31 +139,17 @@ ClimbingRays OstReconstructor::State::rays(int angles) const {
 void OstReconstructor::State::clean(std::vector<Image>& sinograms, std::span<const double> heights_mm, double part,
                                     Dirt& found) const {
   found.speck_percent += 100 * part * remove_specks(sinograms);
-  // The same line from the other end climbs the other way.
+  const bool same_from_both_ends = !(absorption_per_mm > 0);
+  if (!same_from_both_ends) return;  // bubbles are told by their lines' other ends
+  // From its other end a line climbs the other way: over 2 x it is twice its climb away, in rows of the volume.
   const double rate = climb_rate_per_mm(eye, 0);
   std::vector<int> rows;
   for (const double height : heights_mm) {
     rows.push_back(1 + ceil_int(2 * std::abs(height) * rate * detector.x_mm(detector.columns - 1) / grid.voxel_mm));
   }
-  if (absorption_per_mm > 0) return;  // a line is not the same from its other end
   const double share = remove_bubbles(sinograms, rows);
   found.bubbles_exceed_limit = found.bubbles_exceed_limit || share > most_bubbles;
   found.bubble_percent += 100 * part * share;
-}
-
-// A ray that climbs is longer than its plan by 1 / cos; light from the axis plane has the way to the wall before it.
-void OstReconstructor::State::weigh(std::vector<Image>& sinograms, std::span<const double> heights_mm) const {
-  const double radius_mm = optics::resin_radius_mm(eye.view);
-  const double rate = climb_rate_per_mm(eye, 0);
-  for (std::size_t k = 0; k < sinograms.size(); ++k) {
-    const double cosine = 1 / std::hypot(1, rate * heights_mm[k]);
-    for (int t = 0; t < detector.columns; ++t) {
-      const double x_mm = detector.x_mm(t);
-      const double way_mm = model::half_chord(radius_mm, x_mm);
-      const auto weight = static_cast<float>(cosine * std::exp(absorption_per_mm * way_mm));
-      for (int a = 0; a < sinograms[k].height; ++a) sinograms[k](t, a) *= weight;
-    }
-  }
 }
 
 // MLEM for a stretch of slices that filtered back-projection has begun, as if rays stayed level.

@@ -1,10 +1,99 @@
+// Run-out: which heights show it, what it does to the views, and its fit [physics §8].
 #include "metrology/ost/run_out.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 
+#include "base/constants.hpp"
+#include "base/index.hpp"
 #include "base/json.hpp"
+#include "metrology/ost/ost.hpp"
+#include "metrology/ost/private/angle_grid.hpp"
+#include "metrology/ost/private/camera_sinograms.hpp"
+#include "metrology/ost/private/line_pairs.hpp"
+#include "metrology/ost/private/ost_state.hpp"
+#include "optics/chief_ray.hpp"
 
 namespace vam::metrology {
+
+namespace {
+
+// Heights of the grid that see the print, nearest to the lens' own first: there a line is the same from either end.
+std::vector<double> level_heights(const Image& mean, const RowOfHeight& map, const Eye& eye, const model::Grid& grid) {
+  constexpr std::size_t most = 32;
+  constexpr double dim = 0.2;  // of the brightest row: nothing to see there
+  std::vector<double> bright(mean.height);
+  for (int y = 0; y < mean.height; ++y) {
+    const auto [low, high] = std::minmax_element(mean.row(y), mean.row(y) + mean.width);
+    bright[y] = static_cast<double>(*high - *low);
+  }
+  const double least = dim * *std::max_element(bright.begin(), bright.end());
+  const int middle = std::clamp(round_int(eye.camera.axis_column), 0, eye.camera.columns - 1);
+  std::vector<double> heights;
+  for (int k = 0; k < grid.nz; ++k) {
+    const int row = round_int(map.row(middle, grid.z_mm(k)));
+    if (row >= 2 && row + 2 < mean.height && bright[row] >= least) heights.push_back(grid.z_mm(k));
+  }
+  std::sort(heights.begin(), heights.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  heights.resize(std::min(heights.size(), most));
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
+std::vector<double> angles_of(std::span<const CameraView> views) {
+  std::vector<double> angles_deg;
+  for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
+  return angles_deg;
+}
+
+}  // namespace
+
+std::vector<ColumnMotion> OstReconstructor::State::motion(std::span<const double> angles_deg, double x_mm,
+                                                          double y_mm) const {
+  // In the bath a column at x mm of the axis plane is at x m mm, and its ray leans by x / (n D).
+  constexpr double near_mm = 1e-3;
+  const double m = optics::impact_mm(eye.view, near_mm) / near_mm;
+  const double reach_mm = eye.view.lens_mm ? m * eye.view.bath_index * *eye.view.lens_mm : 0.0;
+  std::vector<ColumnMotion> all;
+  for (const double angle : angles_deg) {
+    const double phi = direction * angle * rad_per_deg + azimuth_rad;
+    const double across_mm = std::cos(phi) * x_mm + std::sin(phi) * y_mm;
+    const double away_mm = std::cos(phi) * y_mm - std::sin(phi) * x_mm;
+    all.push_back({across_mm / (m * eye.camera.pixel_mm), reach_mm > 0 ? -away_mm / reach_mm : 0.0});
+  }
+  return all;
+}
+
+RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
+  const State& s = *state_;
+  RunOut found;
+  if (s.absorption_per_mm > 0 || !s.options.refraction) return found;
+  const std::vector<double> angles_deg = angles_of(views);
+  const AngleGrid turn(angles_deg, 0);
+  const RowOfHeight map(s.eye);
+  const auto heights_mm = level_heights(mean_view(views), map, s.eye, s.grid);
+  if (heights_mm.empty()) return found;
+  const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
+  auto level = level_views(views, s.axis, rows);
+  undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
+  const double unit_mm = s.eye.camera.pixel_mm;
+  const PairBasis basis{{std::vector<ColumnMotion>(views.size(), {1, 0}), s.motion(angles_deg, unit_mm, 0),
+                         s.motion(angles_deg, 0, unit_mm)},
+                        s.axis.column};
+  const PairFit fit = fit_line_pairs(level, basis, [&](const std::vector<Image>& moved) {
+    return s.virtual_sinograms(camera_sinograms(moved, turn), heights_mm);
+  });
+  found.determined = fit.converged;
+  found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};
+  // Both are seen by the same lines; what these say of one alone is little for a standard deviation.
+  const double sigma_mm = unit_mm * std::hypot(fit.sigma[1], fit.sigma[2]) / std::numbers::sqrt2;
+  found.sigma_mm = {sigma_mm, sigma_mm};
+  found.column = s.axis.column + fit.value[0];
+  found.column_sigma = fit.sigma[0];
+  return found;
+}
 
 double RunOut::size_mm() const { return std::hypot(mm[0], mm[1]); }
 

@@ -7,7 +7,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
-#include "resin/curethrough/target_dose.hpp"
+#include "resin/curethrough/column_correction.hpp"
 
 namespace vam::resin {
 

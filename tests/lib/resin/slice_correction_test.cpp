@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/parallel.hpp"
+#include "resin/curethrough/column_correction.hpp"
 
 using namespace vam;
 using resin::ExposureMode;

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/error.hpp"
+#include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/cure_map.hpp"
-#include "resin/curethrough/target_dose.hpp"
 
 using namespace vam;
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/error.hpp"
+#include "resin/curethrough/column_correction.hpp"
 #include "resin/curethrough/gaps.hpp"
-#include "resin/curethrough/target_dose.hpp"
 
 using namespace vam;
 

@@ -1,4 +1,4 @@
-#include "resin/curethrough/target_dose.hpp"
+#include "resin/curethrough/column_correction.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "tomo/absorption.hpp"
+#include "tomo/axis_transmission.hpp"
 
 #include <cmath>
 
