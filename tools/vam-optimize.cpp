@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "base/aligned_memory.hpp"
 #include "base/memory.hpp"
 #include "base/per_slice.hpp"
 #include "device/os/interrupt.hpp"

@@ -2,10 +2,14 @@
 
 #include <sys/mman.h>
 
+#include <algorithm>
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <new>
 
+#include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/scratch_file.hpp"
 
@@ -15,7 +19,9 @@ namespace {
 
 constexpr std::size_t huge_page = std::size_t{2} << 20;
 constexpr std::size_t large = 2 * huge_page;
-constexpr std::size_t spare = std::size_t{256} << 20;  // of the bound, for all that is not a large block
+
+/// Of the bound, for all that is not a large block.
+std::uint64_t spare() { return std::min(std::uint64_t{256} << 20, memory_bound() / 8); }
 
 std::align_val_t alignment_of(std::size_t bytes) { return std::align_val_t{bytes < large ? 64 : huge_page}; }
 
@@ -51,6 +57,15 @@ class Mapped {
   std::size_t total_ = 0;
 };
 
+std::atomic<bool> warned{false};  // NOLINT: once a process
+
+void warn_once(const std::string& problem) {
+  if (warned.exchange(true)) return;
+  warn(problem +
+       "; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with " +
+       memory_bound_name());
+}
+
 Mapped& mapped() {
   static Mapped blocks;
   return blocks;
@@ -59,7 +74,18 @@ Mapped& mapped() {
 }  // namespace
 
 void* allocate_aligned(std::size_t bytes) {
-  if (bytes >= large && memory_left() < bytes + spare) return mapped().add(bytes);
+  if (bytes >= large) {
+    const std::uint64_t left = memory_left();
+    if (left < bytes + spare()) {
+      try {
+        void* memory = mapped().add(bytes);
+        warn_once(in_gib(static_cast<double>(left)) + " of memory are left");
+        return memory;
+      } catch (const Error&) {
+        if (bytes > left) throw;
+      }
+    }
+  }
   void* memory = ::operator new(bytes, alignment_of(bytes));
 #ifdef MADV_HUGEPAGE
   if (bytes >= large) static_cast<void>(madvise(memory, bytes, MADV_HUGEPAGE));  // a wish, no more
@@ -70,6 +96,12 @@ void* allocate_aligned(std::size_t bytes) {
 void free_aligned(void* memory, std::size_t bytes) {
   if (bytes >= large && mapped().remove(memory)) return;
   ::operator delete(memory, alignment_of(bytes));
+}
+
+void warn_of_scratch_files(double bytes, const std::string& subject) {
+  const auto left = static_cast<double>(memory_left());
+  if (bytes <= left) return;
+  warn_once(subject + ": needs " + in_gib(bytes) + " of memory, but " + in_gib(left) + " are left");
 }
 
 std::size_t bytes_in_scratch_files() { return mapped().total(); }

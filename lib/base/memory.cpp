@@ -13,7 +13,6 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam {
@@ -84,8 +83,6 @@ std::uint64_t free_of_machine() {
 
 std::uint64_t left_below(std::uint64_t most) { return most - std::min(most, taken()); }
 
-std::string in_gib(double bytes) { return format_number(bytes / bytes_per_gib, 3) + " GiB"; }
-
 void admit(std::size_t bytes) {
   static thread_local std::size_t unseen = 0;
   unseen += std::min(bytes, unseen_bytes);
@@ -112,19 +109,19 @@ void bound_memory(std::uint64_t bytes, const char* name) {
   bound = bytes > 0 ? bytes : taken() + free_of_machine();
 }
 
+std::uint64_t memory_bound() {
+  const std::uint64_t most = bound;
+  return most == everything ? taken() + free_of_machine() : most;
+}
+
+const char* memory_bound_name() { return bound_name; }
+
+std::string in_gib(double bytes) { return format_number(bytes / bytes_per_gib, 3) + " GiB"; }
+
 std::uint64_t memory_left() {
   const std::uint64_t most = bound;
   if (most == everything) return free_of_machine();
   return left_below(most);
-}
-
-void warn_of_scratch_files(double bytes, const std::string& subject) {
-  const auto left = static_cast<double>(memory_left());
-  if (bytes <= left) return;
-  warn(
-      subject + ": needs " + in_gib(bytes) + " of memory, but " + in_gib(left) +
-      " are left; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with " +
-      bound_name);
 }
 
 void require_memory(double bytes, const std::string& subject, const std::string& remedy) {

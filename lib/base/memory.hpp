@@ -22,8 +22,14 @@ void bound_memory(std::uint64_t bytes, const char* name = "a higher limit");
 /// because products of sizes in a file may exceed all integers.
 void require_memory(double bytes, const std::string& subject, const std::string& remedy);
 
-/// The same where arrays that do not fit go to scratch files (base/aligned_memory.hpp): one line of warning.
-void warn_of_scratch_files(double bytes, const std::string& subject);
+/// The bound; without one, what the process has and the machine has free.
+[[nodiscard]] std::uint64_t memory_bound();
+
+/// "12 GiB".
+[[nodiscard]] std::string in_gib(double bytes);
+
+/// What --memory is called in messages.
+[[nodiscard]] const char* memory_bound_name();
 
 /// Memory that was refused; what() has the numbers.
 class OutOfMemory : public std::bad_alloc {

@@ -60,8 +60,9 @@ ok 'coupled slices beyond --memory' sh -c "$coupled --memory 0.2 -o block.exr 2>
 ok 'a warning with both numbers and the remedy' grep -Eq \
   '^vam-optimize: warning: block.vdb: .* voxels: needs [0-9.]+ GiB of memory, but [0-9.]+ GiB are left; what does not fit is kept in scratch files in TMPDIR or /var/tmp, which is slower; allow more with --memory$' warning
 same 'the same bytes' free.exr block.exr
-TMPDIR=/proc $coupled --memory 0.2 -o x.exr 2>refused
-is 'a folder where no scratch file can be created' "$? $(tail -n 1 refused | grep -c '/proc: cannot create a scratch file')" '73 1'
+mkdir scratch
+ok 'scratch files in TMPDIR' sh -c "TMPDIR=scratch $coupled --memory 0.2 -o block.exr"
+is 'nothing is left of them' "$(ls -A scratch)" ''
 python3 "$VAM_SOURCE/tests/tools/exr.py" make large.exr space=camera kind=frames width=8192 height=8192 count=1 2>/dev/null
 sanitized || fails 71 '^vam-view: needs [0-9.e-]+ GiB of memory in addition to the [0-9.e-]+ GiB in use; --memory allows 0.1 GiB$' vam-view large.exr --memory 0.1 -o x.png
 

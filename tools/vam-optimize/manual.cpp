@@ -142,7 +142,8 @@ std::vector<std::string> notes() {
       "mirrored.",
       "Memory: three arrays of a slice and three of a sinogram's lit columns each (apg: seven and three), 4 bytes per "
       "value, of all slices if they are coupled, else of 64 slices at a time, plus 0.2 GiB and at most 512 MiB for "
-      "finished slices that recur; with --bits all projections. With --robust an iteration "
+      "finished slices that recur; with --bits all projections. Of coupled slices, what exceeds --memory is kept in "
+      "scratch files in TMPDIR (default: /var/tmp). With --robust an iteration "
       "takes three times as long and needs one more array of the slices and four more of the sinograms, and all "
       "projections are kept; each simulated printer takes about a third of the time of a plain iteration."};
 }

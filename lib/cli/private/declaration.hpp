@@ -60,7 +60,8 @@ struct Declaration {
 
 /// Of the option that every tool has.
 inline constexpr const char* memory_help =
-    "Maximum amount of memory; a computation that needs more is refused. Range: more than 0, at most 1e6. Default: the "
+    "Maximum amount of memory; a computation that needs more is refused, or uses scratch files where this page says "
+    "so. Range: more than 0, at most 1e6. Default: the "
     "memory that is available.";
 
 /// "--voxel" of "-v,--voxel".

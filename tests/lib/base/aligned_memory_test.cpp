@@ -27,7 +27,7 @@ struct Bounded {
 }  // namespace
 
 TEST_CASE("blocks that do not fit in the bound lie in scratch files, and keep their values") {
-  const Bounded bounded(64 * mib);
+  const Bounded bounded(4 * mib);  // less than a block
   auto* first = static_cast<char*>(allocate_aligned(8 * mib));
   auto* second = static_cast<char*>(allocate_aligned(8 * mib));
   CHECK(bytes_in_scratch_files() == 16 * mib);
@@ -43,7 +43,7 @@ TEST_CASE("blocks that do not fit in the bound lie in scratch files, and keep th
 }
 
 TEST_CASE("small blocks, and those that fit, lie in memory") {
-  const Bounded tight(64 * mib);
+  const Bounded tight(4 * mib);
   void* small = allocate_aligned(mib);
   CHECK(bytes_in_scratch_files() == 0);
   free_aligned(small, mib);
@@ -54,7 +54,7 @@ TEST_CASE("small blocks, and those that fit, lie in memory") {
 }
 
 TEST_CASE("a folder without room for scratch files is an error that names it") {
-  const Bounded bounded(64 * mib);
+  const Bounded bounded(4 * mib);  // less than a block
   const char* former = getenv("TMPDIR");
   const std::string kept = former != nullptr ? former : "";
   setenv("TMPDIR", "/proc", 1);
