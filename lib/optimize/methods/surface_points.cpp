@@ -52,8 +52,9 @@ class TargetVolume {
     return sum;
   }
 
-  /// Where the surface is between `at` and the next voxel: what the column of voxels through both contains, wholly
-  /// covered at one end, is its height above that end.
+  /// Where the surface is between `at` and the next voxel, 0 to 1: in a row of voxels whose first ones are covered and
+  /// whose last ones are not, the surface is as many voxels from the middle of the first as the sum of coverages less a
+  /// half. The voxels before and after are added where they are cut, too.
   [[nodiscard]] float share(const At& at, int axis) const {
     const float first = coverage(at);
     const float second = coverage(moved(at, axis, 1));
@@ -152,7 +153,7 @@ PerSlice SurfacePoints::losses(std::span<const float> misses, std::size_t slabs)
   std::vector<double> sums(slabs * lanes, 0.0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const SurfacePoint& p = points_[i];
-    sums[p.from.slab * lanes + p.from.i % lanes] += half * cost * p.weight * misses[i] * misses[i];
+    sums[p.from.slab * lanes + p.from.i % lanes] += 0.5F * cost * p.weight * misses[i] * misses[i];
   }
   PerSlice result = filled(slabs, 0.0F);
   for (std::size_t k = 0; k < sums.size(); ++k) result[k / lanes][k % lanes] = static_cast<float>(sums[k]);

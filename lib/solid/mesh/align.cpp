@@ -372,7 +372,10 @@ Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& ref
   Alignment whole = align_whole(task, pose);
   whole.overlap = overlap_of(task, pose);
   constexpr double complete = 6.0 / 7;
-  return whole.overlap >= complete ? whole : align_part(task, pose);
+  if (whole.overlap >= complete) return whole;
+  Alignment part = align_part(task, pose);
+  part.as_part = true;
+  return part;
 }
 
 }  // namespace vam::solid

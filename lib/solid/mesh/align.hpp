@@ -43,6 +43,7 @@ struct Alignment {
   int iterations = 0;  // of the final ICP
   bool converged = false;
   double overlap = 1;          // share of the reference's surface that has the print within 4 % of the size
+  bool as_part = false;        // so little that the print was taken for a part
   std::optional<Rival> rival;  // of a part of a print, where there is one
 };
 
@@ -53,8 +54,7 @@ struct Alignment {
 /// and turns about the axes that symmetry leaves undetermined; a short ICP ranks them, the best go on to the end.
 /// Where these leave more than a seventh of the reference uncovered, the print is taken for a part: poses all over the
 /// reference are tried, far points do not pull [BT74], and the best pose has a rival if another one, which no symmetry
-/// of the reference explains, matches nine
-/// tenths as many points.
+/// of the reference explains, matches nine tenths as many points.
 [[nodiscard]] Alignment align(const model::TriangleSoup& print, const model::TriangleSoup& reference_mesh,
                               const Surface& reference, const AlignOptions& options);
 

@@ -9,18 +9,13 @@
 
 namespace vam::solid {
 
-/// How far a print stands outside its design, around the surface of the design, in mm: the signed distance of the
-/// design less that of the print, both cut off at the margin of the grid [physics §13.4].
-struct PrintDeviation {
-  model::Volume mm;
-  double rms_mm = 0;  // of the print's surface
-};
-
 /// The grid of deviations from a design: its box and a margin of a twelfth of its largest side or of six voxels.
 /// voxel_mm 0: a hundredth of that side.
 [[nodiscard]] model::Grid deviation_grid(const model::TriangleSoup& design, double voxel_mm);
 
-/// The print lies where it was aligned.
+/// How far a print, where it was aligned, stands outside its design, around the surface of the design, in mm: the
+/// signed distance of the design less that of the print, both cut off at the margin of the grid [physics §13.4]. Both
+/// are closed surfaces.
 [[nodiscard]] model::Volume deviation_volume(const model::TriangleSoup& print, const model::TriangleSoup& design,
                                              const model::Grid& grid);
 

@@ -23,7 +23,7 @@ class NamedPort final : public Port {
 
 }  // namespace
 
-TEST_CASE("an answer that is not text is reported whole, with a remedy") {
+TEST_CASE("an answer that is not text is reported escaped, with a remedy") {
   const LineLink link(std::make_unique<NamedPort>());
   const std::string noise("\x0b\0\xff", 3);
   CHECK(std::string(link.malformed("get pos", noise).what()) ==
