@@ -41,6 +41,12 @@ fails 65 'RMS deviation|no grid' vam-slice design.off --compensate next.vdb --vo
 fails 64 'meshes only' vam-slice --shape sphere:diameter=6 --compensate first.vdb --voxel 0.2 -o x.vdb
 fails 64 'damping' vam-slice design.off --damping 0.5 --voxel 0.2 -o x.vdb
 fails 64 'volume-voxel' vam-sdf grown.off design.off --volume-voxel 0.1
+fails 64 '^vam-sdf: --fit-scale: the shrinkage would be missing' vam-sdf grown.off design.off --fit-scale --volume x.vdb
+fails 64 '^vam-slice: --scale: --compensate corrects' vam-slice design.off --scale 0.5 --compensate first.vdb --voxel 0.2 -o x.vdb
+fails 64 '^vam-slice: --unit: --compensate corrects' vam-slice design.off --unit in --compensate first.vdb --voxel 0.2 -o x.vdb
+awk 'NR == 2 { print $1, $2 - 1, $3; next } { line[NR] = $0 } END { for (n = 3; n < NR; ++n) print line[n] }' design.off |
+  { echo OFF; cat; } >open.off
+fails 65 'open.off: has 3 boundary edges' vam-sdf design.off open.off --align none --volume x.vdb
 fails 66 'missing' vam-slice design.off --compensate missing.vdb --voxel 0.2 -o x.vdb
 
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
