@@ -18,6 +18,10 @@ vam-view --at 1 --plane coronal --plain -o redirected.png <part.vdb
 is "plain pixels, one a voxel" "$($png size plain.png | cut -d' ' -f3-)" "8 3"
 is "a redirected file is the same" "$($png sum redirected.png)" "$($png sum plain.png)"
 
+script -qec 'vam-view part.vdb 2>.log/terminal' /dev/null </dev/null >.log/seen
+is "no image to a terminal" "$? $(cat .log/terminal)" \
+  "64 vam-view: stdout: is a terminal and the output is binary; use -o FILE or a pipe"
+
 # Sinogram: the brightest pixel of slice 2 at angle 0 is at column 44 of 64.
 $exr make sino.exr width=64 height=60 count=3
 ok "a sinogram" vam-view sino.exr -o sino.png
