@@ -8,6 +8,7 @@
 
 #include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/private/cairo_library.hpp"
 
 namespace vam::plot {
 
@@ -47,6 +48,8 @@ bool is_figure(const std::string& path) {
   return std::any_of(figure_endings().begin(), figure_endings().end(),
                      [&](const std::string& ending) { return path.ends_with(ending); });
 }
+
+void require_figures() { (void)cairo_api(); }
 
 void save(const std::string& path, const Canvas& figure, const std::string& history, double dpi) {
   if (path.ends_with(".pdf")) return write_binary(path, figure.pdf(history));
