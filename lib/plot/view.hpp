@@ -44,7 +44,7 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,
                                           const std::string& other_name, const ViewOptions& options);
 
-/// Throws Fault::data when the voxels differ; `what` has them, and the other is `name`.
+/// Throws Fault::data when the voxels of `grid`, which `name` has, are not those of the other.
 void require_same_voxels(const model::Grid& grid, const model::Grid& other, const std::string& name,
                          const std::string& remedy);
 

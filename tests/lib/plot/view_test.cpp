@@ -205,7 +205,8 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   keep(draw(plot).image(), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
-            "has 40 x 40 x 40 voxels, but the other volume has 8 x 8 x 8; compute the dose on this target"));
+            "has 40 x 40 x 40 voxels of 0.25 mm from (-4.875, -4.875, -4.875), but the other volume has "
+            "8 x 8 x 8 voxels of 1 mm from (-3.5, -3.5, 0); compute the dose on this target"));
 }
 
 TEST_CASE("the cure map tells what is missing and what is too much, but not where the surface cuts") {
@@ -238,6 +239,12 @@ TEST_CASE("two volumes are seen in the same colours, their difference with zero 
   CHECK(figure.panels[1].scale->high == 4);
   CHECK(figure.panels[2].scale->low == -2);
   CHECK(figure.panels[2].scale->high == 2);
+  const SparseVolume moved("dose", vam::model::centred_grid(2, 2, 1, 1.0, 0.5));
+  const SparseVolume finer("dose", vam::model::centred_grid(2, 2, 1, 0.5, 0));
+  for (const SparseVolume* other : {&moved, &finer}) {
+    CHECK(has(error_of([&] { (void)view_difference(one, *other, "b.vdb", {}); }, vam::Fault::data),
+              "compare volumes of one grid"));
+  }
 }
 
 TEST_CASE("colours end where one value in a thousand is beyond, which the legend says") {
