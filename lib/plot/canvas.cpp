@@ -124,6 +124,7 @@ struct Canvas::State {
 
   /// All that was drawn, on another surface, whose unit is `scale` times smaller.
   void replay(const Surface& to, double scale) const {
+    require_success(cairo().cairo_status(context.get()));  // after an error nothing more was drawn
     const Context other = context_of(to);
     cairo().cairo_scale(other.get(), scale, scale);
     cairo().cairo_set_source_surface(other.get(), surface.get(), 0, 0);

@@ -97,8 +97,8 @@ Sheet sheet_of(const ImageFigure& figure) {
   sheet.rows = (count_of(figure.panels) + sheet.columns - 1) / sheet.columns;
   const double room = room_of(figure, sheet.columns, sheet.rows);
   sheet.scale = magnification_for(figure, room, figure.square_pixels ? room : 0.75 * room);
-  sheet.width = std::round(image.width * sheet.scale.x);
-  sheet.height = std::round(image.height * sheet.scale.y);
+  sheet.width = std::max(1.0, std::round(image.width * sheet.scale.x));
+  sheet.height = std::max(1.0, std::round(image.height * sheet.scale.y));
   sheet.caption = is_single(figure) ? 0 : caption_room;
   sheet.cell = cell_width(figure, sheet);
   return sheet;

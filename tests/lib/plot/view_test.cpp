@@ -247,6 +247,17 @@ TEST_CASE("two volumes are seen in the same colours, their difference with zero 
   }
 }
 
+TEST_CASE("a section far wider than high is drawn, a pixel high") {
+  const auto grid = vam::model::centred_grid(1500, 3, 1, 0.1, 0);
+  SparseVolume volume("dose", grid);
+  const std::vector<float> slice(grid.size(), 1.0F);
+  volume.write_slices(0, 1, slice.data());
+  ViewOptions options;
+  options.plane = Plane::coronal;
+  const auto image = draw(view_volume(volume, nullptr, options)).image();
+  CHECK(std::count(image.values.begin(), image.values.end(), paint::black) > 700);
+}
+
 TEST_CASE("colours end where one value in a thousand is beyond, which the legend says") {
   const auto grid = vam::model::centred_grid(100, 100, 1, 1.0, 0);
   SparseVolume dose("dose", grid);
