@@ -127,6 +127,8 @@ fails 65 'no PNG or TIFF' vam-view hollow -o x.png
 fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
 fails 64 'jpg' vam-view part.vdb -o x.jpg
 fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
+fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
+  vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
 fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd
