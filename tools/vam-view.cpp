@@ -74,7 +74,7 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
     const double threshold = threshold_of(options, volume, with);
-    return options.cure ? plot::view_cure(volume, with.target, threshold, options.view)
+    return options.cure ? plot::view_cure(volume, with.target, threshold, with.how.circle, options.view)
                         : view_tool::print_figure(volume, with.target, threshold, options.view);
   }
   if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view);

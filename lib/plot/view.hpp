@@ -36,9 +36,10 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
 
 /// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
-/// are right either way. Throws Fault::data when the grids differ.
+/// are right either way; void outside the writable circle is shown, but does not count. Throws Fault::data when the
+/// grids differ.
 [[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
-                                    const ViewOptions& options);
+                                    const model::Circle& circle, const ViewOptions& options);
 
 /// Each section of both volumes, and by how much the second is more. Throws Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,

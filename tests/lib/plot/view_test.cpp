@@ -217,11 +217,24 @@ TEST_CASE("the cure map tells what is missing and what is too much, but not wher
   SparseVolume dose("dose", grid);
   const std::vector<float> doses{1, 0.4F, 0.2F, 0.6F, 0.1F};
   dose.write_slices(0, 1, doses.data());
-  const ImageFigure figure = view_cure(dose, target, 0.5, {});
+  const vam::model::Circle all{2, 0, 2};
+  const ImageFigure figure = view_cure(dose, target, 0.5, all, {});
   const auto& seen = figure.panels[0].picture.values;
   CHECK(seen == std::vector<Rgb>{{150, 150, 150}, paint::blue, paint::white, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (50 % of the part seen)");
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
+  // Void outside the circle is seen, but not judged.
+  const vam::model::Circle inner{2, 0, 1};
+  const ImageFigure judged = view_cure(dose, target, 0.5, inner, {});
+  CHECK(judged.panels[0].picture.values == seen);
+  CHECK(judged.legend[1].words == "missing (50 % of the part seen)");
+  CHECK(judged.legend[2].words == "overcured (100 % of the void seen)");
+  for (const Plane plane : {Plane::coronal, Plane::sagittal}) {
+    ViewOptions along;
+    along.plane = plane;
+    along.at = plane == Plane::coronal ? 0.0 : 1.0;  // the column of 0.6, in the circle
+    CHECK(view_cure(dose, target, 0.5, inner, along).legend[2].words == "overcured (100 % of the void seen)");
+  }
 }
 
 TEST_CASE("two volumes are seen in the same colours, their difference with zero in the middle") {
