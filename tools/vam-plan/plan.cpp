@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
+#include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
 #include "model/coarser.hpp"
@@ -38,35 +40,66 @@ solid::Placement placement_of(const Options& options, const model::Printer& prin
 /// What is planned, read once: it may be scaled to fit.
 class Source {
  public:
-  explicit Source(const Options& options) : options_(options) {
+  explicit Source(const Options& options)
+      : options_(options), subject_(options.shape.empty() ? io::input_name(options.input) : "shape " + options.shape) {
     if (options.shape.empty()) mesh_ = io::read_mesh(options.input);
   }
+  [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
-    const solid::Placement placement = placement_of(options_, printer, factor);
-    const solid::Writable room = room_of(printer);
-    if (!options_.shape.empty()) return solid::shape_part(options_.shape, placement, room);
-    const std::string subject = io::input_name(options_.input);
-    return solid::mesh_part(mesh_, subject, solid::place(mesh_, placement, room, subject), solid::FillMode::automatic);
+    if (!options_.shape.empty()) {
+      return solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
+    }
+    return solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic);
+  }
+  /// At the scale of the options.
+  [[nodiscard]] solid::PlacedExtent extent(const model::Printer& printer) const {
+    if (!options_.shape.empty()) return part(printer, 1).extent;
+    model::TriangleSoup placed = mesh_;  // not repaired, which takes longer than all the rest
+    solid::transform(placed, map(printer, 1));
+    return solid::extent(placed);
   }
 
  private:
+  [[nodiscard]] solid::Affine map(const model::Printer& printer, double factor) const {
+    return solid::place(mesh_, placement_of(options_, printer, factor), room_of(printer), subject_);
+  }
+
   const Options& options_;
+  std::string subject_;
   model::TriangleSoup mesh_;
 };
 
 Fit fit_of(const Source& source, const model::Printer& printer) {
-  const solid::Part part = source.part(printer, 1);
+  const solid::PlacedExtent extent = source.extent(printer);
   const solid::Writable room = room_of(printer);
   const double stretch = 1 / model::vertical_magnification(printer);
   Fit fit;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    fit.size_mm[axis] = part.extent.box.high[axis] - part.extent.box.low[axis];
+  fit.size_mm = extent.box.size();
   fit.size_mm[2] /= stretch;
-  fit.radius_mm = part.extent.radius_mm;
   fit.writable_radius_mm = room.radius_mm;
   fit.writable_height_mm = (room.high_mm - room.low_mm) / stretch;
-  fit.factor = solid::fitting_factor(part.extent, room, printer.projector.pixel_mm);
+  fit.factor = solid::fitting_factor(extent, room, printer.projector.pixel_mm);
   return fit;
+}
+
+std::string size_text(const Fit& fit) {
+  return format_number(fit.size_mm[0], 4) + " x " + format_number(fit.size_mm[1], 4) + " x " +
+         format_number(fit.size_mm[2], 4) + " mm";
+}
+
+void require_plausible(const Fit& fit, const model::Printer& printer, const std::string& subject) {
+  constexpr double most_times = 1000;
+  constexpr double rounding = 1e-9;
+  if (!(fit.factor > rounding)) {
+    throw Error{Fault::data, subject + ": no part fits the cylinder that can be written, of " +
+                                 format_number(fit.writable_radius_mm, 3) + " mm radius and " +
+                                 format_number(fit.writable_height_mm, 3) + " mm height, with pixels of " +
+                                 format_number(printer.projector.pixel_mm, 3) + " mm; check the printer's settings"};
+  }
+  if (fit.factor < 1 / most_times) {
+    throw Error{Fault::data, subject + ": is " + size_text(fit) + ", " + format_number(1 / fit.factor, 3) +
+                                 " times too large for this printer; check --unit and --scale"};
+  }
 }
 
 /// Moved by whole voxels until the rows light it.
@@ -139,17 +172,11 @@ Plan plan(const Options& options, const model::Printer& printer) {
     if (matched.bath.window_mm == 0) matched.bath.window_mm = bath_of_radius * printer.vial.radius_mm;
     made.bath = fit_of(source, matched);
   }
-  if (!(made.now.factor > 0)) {
-    throw Error{Fault::data, io::input_name(options.input) + ": lies beside the axis so that no scale makes it fit"};
-  }
-  constexpr double digits = 1000;  // rounded down, so that it can be typed
-  const double factor = made.now.fits() ? 1 : std::floor(digits * made.now.factor) / digits;
-  if (!(factor > 0)) {
-    throw Error{Fault::data, io::input_name(options.input) + ": is more than 1000 times too large; give its --unit"};
-  }
+  require_plausible(made.now, printer, source.subject());
   made.given_scale = options.scale;
-  made.scale = options.scale * factor;
-  const solid::Part part = within_rows(source.part(printer, factor), room_of(printer), printer.projector.pixel_mm);
+  made.scale = made.now.fits() ? options.scale : solid::three_digits(options.scale * made.now.factor);
+  const solid::Part part =
+      within_rows(source.part(printer, made.scale / options.scale), room_of(printer), printer.projector.pixel_mm);
   made.subject = part.subject;
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
   made.wall_voxels = wall_of(part, made.grid);

@@ -21,7 +21,6 @@ inline constexpr int iterations = 12;
 /// Whether the part fits, and at which scale.
 struct Fit {
   std::array<double, 3> size_mm{};
-  double radius_mm = 0;  // of the part, about the axis
   double writable_radius_mm = 0;
   double writable_height_mm = 0;
   double factor = 1;  // largest scale that fits, relative to that of the options

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/json.hpp"
+#include "solid/voxel/placement.hpp"
 #include "vam-plan/plan.hpp"
 
 namespace vam::plan_tool {
@@ -84,8 +85,9 @@ std::string table(const Plan& plan) {
   if (!plan.now.fits())
     text += row("scale needed", "--scale " + format_number(plan.scale, 6) + "; what follows is of that size");
   if (plan.bath) {
-    const std::string needed =
-        plan.bath->fits() ? "the part fits" : "--scale " + number(plan.given_scale * plan.bath->factor);
+    const std::string needed = plan.bath->fits()
+                                   ? "the part fits"
+                                   : "--scale " + number(solid::three_digits(plan.given_scale * plan.bath->factor));
     text += row("index bath", "a bath of the resin's index widens it to " + number(2 * plan.bath->writable_radius_mm) +
                                   " mm: " + needed);
   }
