@@ -34,6 +34,15 @@ box 10000 10000 4000 >micro.off
 ok 'a file in micrometres' sh -c 'vam-plan micro.off --no-preview --report micro.json >micro'
 holds 'as large as fits' "$(json micro.json scale) > 0.99 * $(json micro.json scale_that_fits) && $(json micro.json scale) <= $(json micro.json scale_that_fits)"
 
+# Of large parts walls are measured on larger voxels, and the estimate is coarser.
+box 16 0.05 45 >sheet.off
+ok 'a sheet in a tall part' sh -c 'vam-plan sheet.off --no-preview >sheet'
+ok 'is thinner than what is told apart' grep -q '^thinnest wall  *below 2 voxels (0.13 mm)' sheet
+fine='--set projector.columns=3840 --set projector.rows=2880 --set projector.pixel_mm=0.0173 --set projector.axis_column=1919.5 --set projector.axis_row=1439.5'
+box 11 11 5 >wide.off
+ok 'a projector of 11 million pixels' sh -c "vam-plan wide.off $fine >fine"
+ok 'coarser voxels' grep -q 'estimate on voxels of 8 pixels' fine
+
 ok 'with a resin' sh -c 'vam-plan --shape cylinder:diameter=6,height=2 --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 --report resin.json >resin'
 holds 'there is a duration' "$(json resin.json duration_s) > 0 && $(json resin.json turns) >= 1"
 # The same part at full resolution: turns differ by the coarseness of the estimate, not by a factor.

@@ -10,7 +10,10 @@
 #include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
 #include "model/coarser.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
 #include "model/magnification.hpp"
+#include "model/outside.hpp"
 #include "optics/writable_radius.hpp"
 #include "score/exposure.hpp"
 #include "solid/voxel/part.hpp"
@@ -110,52 +113,48 @@ solid::Part within_rows(solid::Part part, const solid::Writable& room, double vo
   return solid::lifted(std::move(part), up - down);
 }
 
-model::Volume filled(const solid::Part& part, double voxel_mm) {
-  model::Volume volume{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}};
+struct Filled {
+  model::Volume volume;
+  double farthest_mm = 0;  // from the axis to the centre of the farthest covered voxel
+};
+
+Filled filled(const solid::Part& part, double voxel_mm) {
+  Filled made{{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}}};
+  model::Volume& volume = made.volume;
+  require_memory(sizeof(float) * static_cast<double>(volume.grid.size()),
+                 part.subject + ": " + model::size_text(volume.grid), "plan a smaller part");
   volume.values.resize(volume.grid.size());
-  (void)solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
-    std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
-  });
-  return volume;
+  made.farthest_mm =
+      solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
+        std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
+      }).radius_mm;
+  return made;
 }
 
 /// On the printer's voxels, or on larger ones where these are too many.
-std::optional<double> wall_of(const solid::Part& part, const model::Grid& grid) {
-  const int by = std::max(1, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(grid.size()) / most_voxels))));
-  const auto wall = solid::thinnest_wall_voxels(filled(part, by * grid.voxel_mm));
-  return wall ? std::optional(by * *wall) : std::nullopt;
+void add_walls(Plan& plan, const solid::Part& part) {
+  const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
+  plan.wall_resolution = std::max(1, static_cast<int>(by));
+  plan.wall_voxels = solid::thinnest_wall_voxels(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume);
+  if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 
-/// The box of all that is covered, and the distance of its farthest voxel from the axis.
-std::pair<model::VoxelBox, double> covered(const model::Volume& volume) {
-  const model::Grid& grid = volume.grid;
-  model::VoxelBox box{{grid.nx, grid.ny, grid.nz}, {-1, -1, -1}};
-  double farthest_mm = 0;
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        if (volume.slice(k)[j * grid.nx + i] <= model::coverage_rounding) continue;
-        box.low = {std::min(box.low[0], i), std::min(box.low[1], j), std::min(box.low[2], k)};
-        box.high = {std::max(box.high[0], i), std::max(box.high[1], j), std::max(box.high[2], k)};
-        farthest_mm = std::max(farthest_mm, std::hypot(grid.x_mm(i), grid.y_mm(j)));
-      }
-    }
-  }
-  return {box, farthest_mm};
+int coarseness_for(const model::Grid& grid) {
+  int by = least_coarseness;
+  while (static_cast<double>(grid.size()) / std::pow(by, 3) > 1e6 * most_estimated) by *= 2;
+  return by;
 }
 
-optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer) {
+optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer, int coarseness) {
   optimize::PreviewTask task;
-  task.printer = model::coarser(model::coarser(printer));
-  task.target = filled(part, task.printer.projector.pixel_mm);
-  const auto [box, farthest_mm] = covered(task.target);
-  task.part = box;
+  task.printer = printer;
+  for (int by = 1; by < coarseness; by *= 2) task.printer = model::coarser(task.printer);
+  auto [target, farthest_mm] = filled(part, task.printer.projector.pixel_mm);
+  task.part = model::covered_box(target, model::coverage_rounding);
   task.radius_mm = optics::judged_radius_mm(task.printer, farthest_mm);
-  task.angles = angles;
-  task.iterations = iterations;
-  // Half a pixel of the printer is an eighth of one of these.
-  task.tolerances =
-      model::parse_tolerances("axis=" + std::to_string(0.5 / coarseness) + "px,index=0.005,angle=0.25deg");
+  task.target = std::move(target);
+  task.tolerances = model::parse_tolerances(deviations);
+  task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] /= coarseness;  // of the printer's pixels
   return optimize::preview(task);
 }
 
@@ -179,9 +178,10 @@ Plan plan(const Options& options, const model::Printer& printer) {
       within_rows(source.part(printer, made.scale / options.scale), room_of(printer), printer.projector.pixel_mm);
   made.subject = part.subject;
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
-  made.wall_voxels = wall_of(part, made.grid);
+  add_walls(made, part);
   if (options.no_preview) return made;
-  made.preview = preview_of(part, printer);
+  made.coarseness = coarseness_for(made.grid);
+  made.preview = preview_of(part, printer, made.coarseness);
   const optimize::VolumeOutcome& outcome = made.preview->outcome;
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
   if (per_radian && outcome.peak_intensity > 0 && score::window_middle(outcome.metrics) > 0) {

@@ -36,15 +36,11 @@ double worst_window(const optimize::Trials::Single& single) {
   return std::min(window(single.minus), window(single.plus));
 }
 
+/// "axis +-0.5 px"
 std::string deviation_name(std::size_t tolerance) {
-  switch (static_cast<model::Deviating>(tolerance)) {
-    case model::Deviating::axis:
-      return "axis +-0.5 px";
-    case model::Deviating::index:
-      return "index +-0.005";
-    default:
-      return "angle +-0.25 deg";
-  }
+  const auto& [name, unit, meaning] = model::tolerance_table[tolerance];
+  return std::string(name) + " +-" + format_number(model::parse_tolerances(deviations)[tolerance]) +
+         (unit.empty() ? "" : " " + std::string(unit));
 }
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
@@ -55,7 +51,7 @@ std::string print_rows(const Plan& plan) {
   std::string text = row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
                                               signed_number(window(nominal)) + " of the largest dose, VER " +
                                               number(nominal.figures.ver) + " (estimate on voxels of " +
-                                              std::to_string(coarseness) + " pixels)");
+                                              std::to_string(plan.coarseness) + " pixels)");
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
@@ -64,6 +60,14 @@ std::string print_rows(const Plan& plan) {
   return text +
          row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
                              " turns, brightest pixel " + number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
+}
+
+std::string wall_words(const Plan& plan) {
+  const auto voxels = [&](double count) {
+    return number(count) + (count == 1 ? " voxel (" : " voxels (") + number(count * plan.grid.voxel_mm) + " mm)";
+  };
+  if (!plan.wall_voxels) return "below " + voxels(plan.wall_resolution) + ": enlarge the part, or use smaller pixels";
+  return voxels(*plan.wall_voxels) + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : "");
 }
 
 Json fit_json(const Fit& fit) {
@@ -92,13 +96,7 @@ std::string table(const Plan& plan) {
                                   " mm: " + needed);
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
-  if (plan.wall_voxels) {
-    text +=
-        row("thinnest wall", number(*plan.wall_voxels) + " voxels (" + number(*plan.wall_voxels * plan.grid.voxel_mm) +
-                                 " mm)" + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : ""));
-  } else {
-    text += row("thinnest wall", "below a voxel: enlarge the part, or use smaller pixels");
-  }
+  text += row("thinnest wall", wall_words(plan));
   return plan.preview ? text + print_rows(plan) : text;
 }
 
