@@ -33,6 +33,8 @@ fails 65 'large.off' \
 box 10000 10000 4000 >micro.off
 ok 'a file in micrometres' sh -c 'vam-plan micro.off --no-preview --report micro.json >micro'
 holds 'as large as fits' "$(json micro.json scale) > 0.99 * $(json micro.json scale_that_fits) && $(json micro.json scale) <= $(json micro.json scale_that_fits)"
+deep=$(printf 'deep%.0s' $(seq 50)); mkdir -p "$deep/$deep/$deep"; cp box.off "$deep/$deep/$deep"
+ok 'a long name is not cut' sh -c "vam-plan $deep/$deep/$deep/box.off --no-preview | grep -q 'box.off: 10 x 10 x 4 mm\$'"
 
 # Of large parts walls are measured on larger voxels, and the estimate is coarser.
 box 16 0.05 45 >sheet.off

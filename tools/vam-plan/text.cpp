@@ -2,8 +2,6 @@
 #include "base/text.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "base/json.hpp"
@@ -17,9 +15,8 @@ namespace {
 std::string number(double value) { return format_number(value, 3); }
 
 std::string row(const std::string& name, const std::string& value) {
-  char text[400];
-  std::snprintf(text, sizeof text, "%-18s %s\n", name.c_str(), value.c_str());
-  return text;
+  constexpr std::size_t width = 18;
+  return name + std::string(width - std::min(width, name.size()), ' ') + " " + value + "\n";
 }
 
 std::string fit_words(const Fit& fit) {
@@ -55,7 +52,9 @@ std::string print_rows(const Plan& plan) {
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
-    return text + row("duration", "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+    return text + row("duration", plan.resin_known
+                                      ? "not known: the part gets no light in the estimate"
+                                      : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
   }
   return text +
          row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
