@@ -14,16 +14,22 @@
 #include "model/grid_size.hpp"
 #include "model/printer.hpp"
 #include "optics/writable_radius.hpp"
+#include "score/grey_score.hpp"
 #include "score/score.hpp"
 
 namespace vam::tool {
+
+/// The circle that is judged: void outside it is not.
+inline model::Circle judged_circle(const io::SparseVolume& target, const model::Printer& printer) {
+  const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
+  return model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
+}
 
 /// The circle that is judged, the threshold that the light was made for, and for a dose in mJ/cm3 of a resin with a
 /// critical dose the exposure, with that threshold where it is the dose of a whole print.
 inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& dose, const io::SparseVolume& target,
                             const model::Printer& printer) {
-  const double farthest_mm = io::farthest_mm(target, model::coverage_rounding);
-  how.circle = model::writable_circle(target.grid(), optics::judged_radius_mm(printer, farthest_mm));
+  how.circle = judged_circle(target, printer);
   how.aimed_at = threshold_dose(dose.metadata);
   how.part = io::covered_box(target, model::coverage_rounding);
   if (dose.units != "mJ/cm3" || !printer.resin.critical_dose_mj_cm3) return;
@@ -31,25 +37,36 @@ inline void settle_exposure(score::ScoreOptions& how, const io::SparseVolume& do
   if (!how.threshold && how.exposure->full_intensity_turns) how.threshold = printer.resin.critical_dose_mj_cm3;
 }
 
-/// Both on the same grid.
-inline score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
-                                  const score::ScoreOptions& how) {
+/// What is added to a score of either kind, slab by slab: both on the same grid.
+template <class Score>
+Score with_volumes(Score result, const io::SparseVolume& dose, const io::SparseVolume& target) {
   constexpr int slab = 16;
   const model::Grid& grid = target.grid();
   require_memory(2.0 * sizeof(float) * slab * static_cast<double>(grid.slice_size()),
                  target.name() + ": " + model::size_text(grid), "use larger voxels");
-  score::Score result(how, grid.nx, grid.ny);
   std::vector<float> doses(grid.slice_size() * slab);
-  std::vector<float> coverage(grid.slice_size() * slab);
+  std::vector<float> wanted(grid.slice_size() * slab);
   Progress progress("scoring", grid.nz);
   for (int k = 0; k < grid.nz; k += slab) {
     const int count = std::min(slab, grid.nz - k);
     dose.read_slices(k, count, doses.data());
-    target.read_slices(k, count, coverage.data());
-    result.add(doses.data(), coverage.data(), count);
+    target.read_slices(k, count, wanted.data());
+    result.add(doses.data(), wanted.data(), count);
     progress.tick(count);
   }
   return result;
+}
+
+/// Against coverage.
+inline score::Score score_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                  const score::ScoreOptions& how) {
+  return with_volumes(score::Score(how, target.grid().nx, target.grid().ny), dose, target);
+}
+
+/// Against a grey target.
+inline score::GreyScore score_grey_volumes(const io::SparseVolume& dose, const io::SparseVolume& target,
+                                           const score::GreyOptions& how) {
+  return with_volumes(score::GreyScore(how, target.grid().nx, target.grid().ny), dose, target);
 }
 
 }  // namespace vam::tool

@@ -207,6 +207,7 @@ void run(const cli::App& app, const Options& options) {
   if (options.live && app.given("--report")) {
     throw Error{Fault::usage, "--report: describes one volume; with --live the figures of each are written to --log"};
   }
+  if (!options.projections.empty()) plot::require_figures();
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

@@ -69,23 +69,12 @@ std::vector<model::Condition> conditions_of(const Options& options) {
   return model::parse_conditions(options.require, options.grey ? score::GreyScore::names() : score::Score::names());
 }
 
-void score_grey(Options& options, const model::Printer& printer, const std::vector<model::Condition>& conditions) {
+void score_grey(const Options& options, const model::Printer& printer,
+                const std::vector<model::Condition>& conditions) {
   const Inputs in = read(options);
-  score::GreyOptions how = options.grey_how;
-  const double farthest_mm = io::farthest_mm(in.target(), model::coverage_rounding);
-  how.circle = model::writable_circle(in.target().grid(), optics::judged_radius_mm(printer, farthest_mm));
-  how.void_rule = options.void_rule == "met"     ? score::VoidRule::met
-                  : options.void_rule == "below" ? score::VoidRule::below
-                                                 : score::VoidRule::free;
-  const model::Grid& grid = in.target().grid();
-  score::GreyScore result(how, grid.nx, grid.ny);
-  std::vector<float> dose(grid.slice_size());
-  std::vector<float> wanted(grid.slice_size());
-  for (int k = 0; k < grid.nz; ++k) {
-    in.dose().read_slices(k, 1, dose.data());
-    in.target().read_slices(k, 1, wanted.data());
-    result.add(dose.data(), wanted.data(), 1);
-  }
+  score::GreyOptions how = score_tool::grey_options(options);
+  how.circle = tool::judged_circle(in.target(), printer);
+  const score::GreyScore result = tool::score_grey_volumes(in.dose(), in.target(), how);
   io::write_report(options.report, "vam-score-grey/1", result.figures());
   if (options.report != "-") io::write_text("-", result.table());
   require_met(conditions, [&](const std::string& name) { return result.figure(name); });

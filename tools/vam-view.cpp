@@ -23,7 +23,9 @@ using view_tool::Options;
 
 void write_figure(const Options& options, const plot::ImageFigure& figure, const std::string& history) {
   if (!options.plain) return plot::save(options.output, plot::draw(figure), history, options.dpi);
-  io::write_png(options.output, plot::coloured(figure.panels.front().values, figure.scale), {{"Comment", history}});
+  const plot::Panel& panel = figure.panels.front();
+  const RgbImage pixels = panel.picture.values.empty() ? plot::coloured(panel.values, figure.scale) : panel.picture;
+  io::write_png(options.output, pixels, {{"Comment", history}});
 }
 
 io::SparseVolume target_for(const Options& options) {
@@ -74,7 +76,7 @@ plot::ImageFigure volume_figure(const Options& options, const io::SparseVolume& 
   if (options.cure || (options.render && !options.target.empty())) {
     const Judged with = judged(options, volume);
     const double threshold = threshold_of(options, volume, with);
-    return options.cure ? plot::view_cure(volume, with.target, threshold, options.view)
+    return options.cure ? plot::view_cure(volume, with.target, threshold, with.how.circle, options.view)
                         : view_tool::print_figure(volume, with.target, threshold, options.view);
   }
   if (options.render) return view_tool::body_figure(volume, options.threshold.value_or(0.5), options.view);
@@ -96,35 +98,41 @@ void show_volume(const Options& options, const std::string& history) {
   write_figure(options, volume_figure(options, volume), history);
 }
 
-void require_sections(const Options& options, const std::string& what) {
-  if (options.histogram || options.cure || !options.target.empty()) {
-    throw Error{Fault::data,
-                options.input + ": --dose-histogram, --cure-map and --target require a volume (VDB), not " + what};
+/// Options that only other kinds of files have a use for.
+void refuse(const cli::App& app, const Options& options, const std::string& what,
+            const std::vector<std::string>& flags) {
+  for (const std::string& flag : flags) {
+    if (app.given(flag))
+      throw Error{Fault::data, options.input + ": " + flag + " does not apply to " + what + "; omit it"};
   }
 }
 
-void show_images(const Options& options, io::FileType type, const std::string& history) {
-  require_sections(options, "images");
-  if (options.render || !options.compare.empty())
-    throw Error{Fault::data, options.input + ": --render and --compare require a volume (VDB), not images"};
+void show_images(const cli::App& app, const Options& options, io::FileType type) {
+  refuse(app, options, "images",
+         {"--grid", "--plane", "--target", "--dose-histogram", "--cure-map", "--render", "--threshold", "--compare"});
   if (!options.exported.empty()) {
     if (type != io::FileType::stack) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
     io::StackReader stack(options.input);
     return io::write_nrrd(options.exported, stack);
   }
   const auto images = io::open_images(options.input, type);
-  write_figure(options, plot::view_images(*images, options.view), history);
+  write_figure(options, plot::view_images(*images, options.view), app.history());
 }
 
 /// A trace of vam-optimize, or else a mesh.
-void show_other(const Options& options, const std::string& history) {
+void show_other(const cli::App& app, const Options& options) {
   if (!options.exported.empty()) throw Error{Fault::usage, "--export: requires a volume or an EXR stack"};
-  if (options.input.ends_with(".csv")) {
-    require_sections(options, "a trace");
-    return plot::save(options.output, plot::draw(view_tool::trace_plot(options)), history, options.dpi);
+  const bool trace = options.input.ends_with(".csv");
+  const std::string what = trace ? "a trace" : "a mesh";
+  refuse(app, options, what,
+         {"--grid", "--plane", "--target", "--dose-histogram", "--cure-map", "--threshold", "--at", "--sheet",
+          "--colours", "--low", "--high"});
+  if (!trace) {
+    refuse(app, options, what, {"--compare"});
+    return write_figure(options, view_tool::mesh_figure(options.input, options.view), app.history());
   }
-  require_sections(options, "a mesh");
-  write_figure(options, view_tool::mesh_figure(options.input, options.view), history);
+  refuse(app, options, what, {"--render", "--plain", "--image-size"});
+  plot::save(options.output, plot::draw(view_tool::trace_plot(options)), app.history(), options.dpi);
 }
 
 void run(const cli::App& app, Options& options) {
@@ -137,9 +145,9 @@ void run(const cli::App& app, Options& options) {
                        : options.plane == "coronal" ? plot::Plane::coronal
                                                     : plot::Plane::sagittal;
   const auto type = io::known_file_type(options.input);
-  if (!type) return show_other(options, app.history());
+  if (!type) return show_other(app, options);
   if (*type == io::FileType::volume) return show_volume(options, app.history());
-  show_images(options, *type, app.history());
+  show_images(app, options, *type);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "base/json_fwd.hpp"
 #include "model/dose_histogram.hpp"
+#include "model/grid.hpp"
 
 namespace vam::model {
 
@@ -18,6 +19,9 @@ struct VoxelBox {
     return i >= low[0] && i <= high[0] && j >= low[1] && j <= high[1] && k >= low[2] && k <= high[2];
   }
 };
+
+/// The smallest box that holds all voxels whose value is above that.
+[[nodiscard]] VoxelBox covered_box(const Volume& volume, float above);
 
 /// Void voxels within the lit resin that the part's box does not contain.
 struct Outside {

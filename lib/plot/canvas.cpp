@@ -19,6 +19,7 @@ namespace vam::plot {
 namespace {
 
 constexpr double points_per_px = 72 / screen_dpi;
+constexpr int most_pixels = 32767;  // a side of cairo's images
 
 const CairoApi& cairo() { return cairo_api(); }
 
@@ -124,6 +125,7 @@ struct Canvas::State {
 
   /// All that was drawn, on another surface, whose unit is `scale` times smaller.
   void replay(const Surface& to, double scale) const {
+    require_success(cairo().cairo_status(context.get()));  // after an error nothing more was drawn
     const Context other = context_of(to);
     cairo().cairo_scale(other.get(), scale, scale);
     cairo().cairo_set_source_surface(other.get(), surface.get(), 0, 0);
@@ -270,6 +272,11 @@ RgbImage Canvas::image(double dpi) const {
   const double scale = dpi / screen_dpi;
   const int columns = round_int(state_->width * scale);
   const int rows = round_int(state_->height * scale);
+  if (std::max(columns, rows) > most_pixels) {
+    throw Error{Fault::usage, "figure: " + std::to_string(columns) + " x " + std::to_string(rows) +
+                                  " pixels are more than " + std::to_string(most_pixels) +
+                                  " a side; reduce --image-size or --dpi, or write a PDF or SVG"};
+  }
   const Pixels pixels(columns, rows);
   state_->replay(pixels.surface(), scale);
   return pixels.give(columns, rows);

@@ -69,7 +69,7 @@ class Canvas {
             Align vertical = Align::middle, bool upwards = false);
   [[nodiscard]] static double text_width(const std::string& words, double size);
 
-  /// Pixels at this density.
+  /// Pixels at this density. Throws Fault::usage above 32767 a side.
   [[nodiscard]] RgbImage image(double dpi = screen_dpi) const;
   /// The bytes of a file; `history` becomes its description.
   [[nodiscard]] std::string pdf(const std::string& history) const;

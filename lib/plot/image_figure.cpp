@@ -59,57 +59,92 @@ std::vector<LegendEntry> legend_of(const ImageFigure& figure) {
 
 bool is_single(const ImageFigure& figure) { return figure.panels.size() == 1; }
 
-/// Rows and columns of panels; axes at the left of the first column and below the last row.
-struct Layout {
-  explicit Layout(const ImageFigure& figure);
+/// Pixels that an image may take each way: all of the figure's size, or on a sheet, which is larger, its share.
+double room_of(const ImageFigure& figure, int columns, int rows) {
+  constexpr double sheet_size = 1.4;  // of that of a single image
+  constexpr double least_px = 96;
+  if (is_single(figure)) return figure.size;
+  return std::max(sheet_size * figure.size / std::max(columns, rows), least_px);
+}
 
-  int columns;
-  int rows;
-  Spot scale{};
-  double width;  // of an image
-  double height;
-  double cell;     // width of a panel with its caption and colour bar
-  double left;     // of the first cell
-  double top;      // of the first row, with its captions
-  double caption;  // height of the captions
-  double body;     // width of all cells
-  double total;    // width of the figure
-  double foot;     // where the legend begins
-  double bottom;
+/// Panels in rows and columns, each with its caption above and its colour bar to the right.
+struct Sheet {
+  int columns = 1;
+  int rows = 1;
+  Spot scale{};      // canvas pixels per pixel of an image
+  double width = 0;  // of an image
+  double height = 0;
+  double caption = 0;  // height of the captions
+  double cell = 0;     // width of a panel
+
+  [[nodiscard]] double cells_width() const { return columns * (cell + gap) - gap; }
+  [[nodiscard]] double cells_height() const { return rows * (height + caption + gap) - gap; }
+};
+
+double cell_width(const ImageFigure& figure, const Sheet& sheet) {
+  double cell = sheet.width;
+  for (const Panel& panel : figure.panels) {
+    if (!is_single(figure)) cell = std::max(cell, std::ceil(Canvas::text_width(panel.caption, label_size)));
+    if (panel.scale) cell = std::max(cell, sheet.width + bar_room(*panel.scale, sheet.height));
+  }
+  return cell;
+}
+
+Sheet sheet_of(const ImageFigure& figure) {
+  const Image& image = figure.panels.front().values;
+  Sheet sheet;
+  sheet.columns = sheet_columns(figure);
+  sheet.rows = (count_of(figure.panels) + sheet.columns - 1) / sheet.columns;
+  const double room = room_of(figure, sheet.columns, sheet.rows);
+  sheet.scale = magnification_for(figure, room, figure.square_pixels ? room : 0.75 * room);
+  sheet.width = std::max(1.0, std::round(image.width * sheet.scale.x));
+  sheet.height = std::max(1.0, std::round(image.height * sheet.scale.y));
+  sheet.caption = is_single(figure) ? 0 : caption_room;
+  sheet.cell = cell_width(figure, sheet);
+  return sheet;
+}
+
+/// The sheet on the canvas: title above, axes at the left of the first column and below the last row, colour bar of all
+/// to the right, legend below.
+struct Layout {
+  Sheet sheet;
+  double left = 0;    // of the first cell
+  double top = 0;     // of the first row, with its captions
+  double width = 0;   // of the figure
+  double legend = 0;  // where it begins
+  double height = 0;  // of the figure
 
   [[nodiscard]] Spot corner(int panel) const {
-    return {left + (panel % columns) * (cell + gap), top + caption + (panel / columns) * (height + caption + gap)};
+    const int column = panel % sheet.columns;
+    const int row = panel / sheet.columns;
+    return {left + column * (sheet.cell + gap), top + sheet.caption + row * (sheet.height + sheet.caption + gap)};
   }
   [[nodiscard]] SpotPair box(int panel) const {
     const Spot at = corner(panel);
-    return {at, {at.x + width, at.y + height}};
+    return {at, {at.x + sheet.width, at.y + sheet.height}};
   }
   [[nodiscard]] PlotFrame frame(const ImageFigure& figure, int panel) const {
     const auto [low, high] = box(panel);
     return {low.x, low.y, high.x, high.y, figure.x, figure.y};
   }
+  /// From the first image to the last.
+  [[nodiscard]] SpotPair bar() const {
+    const double right = left + sheet.cells_width() + gap;
+    return {{right, top + sheet.caption}, {right + bar_width, top + sheet.cells_height()}};
+  }
 };
 
-Layout::Layout(const ImageFigure& figure)
-    : columns(sheet_columns(figure)), rows((count_of(figure.panels) + columns - 1) / columns) {
-  const double room = is_single(figure) ? figure.size : std::max(1.4 * figure.size / std::max(columns, rows), 96.0);
-  scale = magnification_for(figure, room, figure.square_pixels ? room : 0.75 * room);
-  width = std::round(figure.panels.front().values.width * scale.x);
-  height = std::round(figure.panels.front().values.height * scale.y);
-  caption = is_single(figure) ? 0 : caption_room;
-  cell = width;
-  for (const Panel& panel : figure.panels) {
-    if (!is_single(figure)) cell = std::max(cell, std::ceil(Canvas::text_width(panel.caption, label_size)));
-    if (panel.scale) cell = std::max(cell, width + bar_room(*panel.scale, height));
-  }
-  body = columns * (cell + gap) - gap;
-  left = std::ceil(margin + y_axis_room({0, 0, width, height, figure.x, figure.y}));
-  top = margin + (figure.title.empty() ? 0 : title_room);
-  const double body_height = rows * (height + caption + gap) - gap;
-  total = std::max(left + body + bar_room(figure.scale, body_height - caption) + margin,
-                   Canvas::text_width(figure.title, title_size) + 2 * margin);
-  foot = top + body_height + x_axis_room + 8;
-  bottom = foot + legend_height(legend_of(figure), total - left - margin) + 0.5 * margin;
+Layout layout_of(const ImageFigure& figure) {
+  Layout layout{sheet_of(figure)};
+  const Sheet& sheet = layout.sheet;
+  layout.left = std::ceil(margin + y_axis_room({0, 0, sheet.width, sheet.height, figure.x, figure.y}));
+  layout.top = margin + (figure.title.empty() ? 0 : title_room);
+  const auto [bar_top, bar_bottom] = layout.bar();
+  const double images = layout.left + sheet.cells_width() + bar_room(figure.scale, bar_bottom.y - bar_top.y);
+  layout.width = std::max(images + margin, Canvas::text_width(figure.title, title_size) + 2 * margin);
+  layout.legend = layout.top + sheet.cells_height() + x_axis_room + 8;
+  layout.height = layout.legend + legend_height(legend_of(figure), layout.width - layout.left - margin) + 0.5 * margin;
+  return layout;
 }
 
 void draw_colour_bar(Canvas& canvas, const ColourScale& scale, Spot corner, double height) {
@@ -182,17 +217,17 @@ void draw_panel(Canvas& canvas, const ImageFigure& figure, const Layout& layout,
   const auto [corner, opposite] = layout.box(number);
   canvas.paste(picture_of(panel, figure.scale), corner, opposite);
   if (panel.hatched.size() > 0) canvas.hatch(hatched_boxes(panel.hatched, {corner, opposite}));
-  draw_outline(canvas, panel, corner, layout.scale);
+  draw_outline(canvas, panel, corner, layout.sheet.scale);
   canvas.outline(corner, opposite, paint::black);
   const PlotFrame frame = layout.frame(figure, number);
-  const bool lowest = number + layout.columns >= count_of(figure.panels);
+  const bool lowest = number + layout.sheet.columns >= count_of(figure.panels);
   if (lowest) draw_x_axis(canvas, frame);
-  if (number % layout.columns == 0) draw_y_axis(canvas, frame);
+  if (number % layout.sheet.columns == 0) draw_y_axis(canvas, frame);
   if (!is_single(figure)) {
     canvas.text({0.5 * (corner.x + opposite.x), corner.y - 7}, panel.caption, label_size, paint::black, Align::middle,
                 Align::end);
   }
-  if (panel.scale) draw_colour_bar(canvas, *panel.scale, {opposite.x + gap, corner.y}, layout.height);
+  if (panel.scale) draw_colour_bar(canvas, *panel.scale, {opposite.x + gap, corner.y}, layout.sheet.height);
 }
 
 }  // namespace
@@ -206,17 +241,16 @@ RgbImage coloured(const Image& values, const ColourScale& scale) {
   return image;
 }
 
-SpotPair panel_box(const ImageFigure& figure, int panel) { return Layout(figure).box(panel); }
+SpotPair panel_box(const ImageFigure& figure, int panel) { return layout_of(figure).box(panel); }
 
 Canvas draw(const ImageFigure& figure) {
-  const Layout layout(figure);
-  Canvas canvas(ceil_int(layout.total), ceil_int(layout.bottom));
+  const Layout layout = layout_of(figure);
+  Canvas canvas(ceil_int(layout.width), ceil_int(layout.height));
   for (int n = 0; n < count_of(figure.panels); ++n) draw_panel(canvas, figure, layout, n);
-  const Spot first = layout.corner(0);
-  const double last = layout.corner(count_of(figure.panels) - 1).y + layout.height;
-  draw_colour_bar(canvas, figure.scale, {layout.left + layout.body + gap, first.y}, last - first.y);
-  canvas.text({0.5 * layout.total, margin + 10}, figure.title, title_size, paint::black, Align::middle);
-  draw_legend(canvas, legend_of(figure), {layout.left, layout.foot}, layout.total - layout.left - margin);
+  const auto [bar, bar_end] = layout.bar();
+  draw_colour_bar(canvas, figure.scale, bar, bar_end.y - bar.y);
+  canvas.text({0.5 * layout.width, margin + 10}, figure.title, title_size, paint::black, Align::middle);
+  draw_legend(canvas, legend_of(figure), {layout.left, layout.legend}, layout.width - layout.left - margin);
   return canvas;
 }
 

@@ -54,6 +54,11 @@ Spot plane_origin_mm(const model::Grid& grid, Plane plane) {
   return plane == Plane::coronal ? Spot{o[0], o[2]} : Spot{o[1], o[2]};
 }
 
+std::array<int, 2> plane_column(const model::Grid& grid, Plane plane, int index, int x, int y) {
+  if (plane == Plane::axial) return {x, grid.ny - 1 - y};
+  return plane == Plane::coronal ? std::array<int, 2>{x, index} : std::array<int, 2>{index, x};
+}
+
 std::vector<Image> planes(const io::SparseVolume& volume, Plane plane, const std::vector<int>& indices) {
   const model::Grid& grid = volume.grid();
   std::vector<Image> images(indices.size(), empty_plane(grid, plane));

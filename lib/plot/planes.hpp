@@ -1,7 +1,7 @@
 // Flat sections of a volume, as images.
 #pragma once
 
-#include <string>
+#include <array>
 #include <vector>
 
 #include "base/image.hpp"
@@ -31,6 +31,9 @@ struct PlaneAxes {
 
 /// The mm at the middle of the first column and of the lowest row.
 [[nodiscard]] Spot plane_origin_mm(const model::Grid& grid, Plane plane);
+
+/// The i and j of the voxel at pixel (x, y) of the section at that index.
+[[nodiscard]] std::array<int, 2> plane_column(const model::Grid& grid, Plane plane, int index, int x, int y);
 
 /// Sections at these indices, in their order, row 0 at the top. Reads the volume once, slab by slab.
 [[nodiscard]] std::vector<Image> planes(const io::SparseVolume& volume, Plane plane, const std::vector<int>& indices);

@@ -8,6 +8,7 @@
 
 #include "io/image/image_file.hpp"
 #include "io/stream/stream.hpp"
+#include "plot/private/cairo_library.hpp"
 
 namespace vam::plot {
 
@@ -29,6 +30,13 @@ std::string with_density(std::string png, double dpi) {
   return png.insert(header, big_endian(9) + chunk + big_endian(static_cast<std::uint32_t>(sum)));
 }
 
+/// Not to a terminal.
+void write_binary(const std::string& path, const std::string& bytes) {
+  io::OutputFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
 }  // namespace
 
 const std::vector<std::string>& figure_endings() {
@@ -41,11 +49,13 @@ bool is_figure(const std::string& path) {
                      [&](const std::string& ending) { return path.ends_with(ending); });
 }
 
+void require_figures() { (void)cairo_api(); }
+
 void save(const std::string& path, const Canvas& figure, const std::string& history, double dpi) {
-  if (path.ends_with(".pdf")) return io::write_text(path, figure.pdf(history));
+  if (path.ends_with(".pdf")) return write_binary(path, figure.pdf(history));
   if (path.ends_with(".svg")) return io::write_text(path, figure.svg(history));
   const io::ImageText text = history.empty() ? io::ImageText{} : io::ImageText{{"Comment", history}};
-  io::write_text(path, with_density(io::encode_png(figure.image(dpi), text), dpi));
+  write_binary(path, with_density(io::encode_png(figure.image(dpi), text), dpi));
 }
 
 }  // namespace vam::plot

@@ -36,15 +36,16 @@ struct ViewOptions {
 [[nodiscard]] ImageFigure view_images(io::ImageSource& images, const ViewOptions& options);
 
 /// What prints where the dose reaches the threshold: cured as wanted, missing, overcured. Voxels that the surface cuts
-/// are right either way. Throws Fault::data when the grids differ.
+/// are right either way; void outside the writable circle is shown, but does not count. Throws Fault::data when the
+/// grids differ.
 [[nodiscard]] ImageFigure view_cure(const io::SparseVolume& dose, const io::SparseVolume& target, double threshold,
-                                    const ViewOptions& options);
+                                    const model::Circle& circle, const ViewOptions& options);
 
 /// Each section of both volumes, and by how much the second is more. Throws Fault::data when the grids differ.
 [[nodiscard]] ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,
                                           const std::string& other_name, const ViewOptions& options);
 
-/// Throws Fault::data when the voxels differ; `what` has them, and the other is `name`.
+/// Throws Fault::data when the voxels of `grid`, which `name` has, are not those of the other.
 void require_same_voxels(const model::Grid& grid, const model::Grid& other, const std::string& name,
                          const std::string& remedy);
 

@@ -1,6 +1,7 @@
 // Two volumes beside each other, and their difference.
 #include "base/error.hpp"
-#include "base/text.hpp"
+#include "model/grid_place.hpp"
+#include "model/grid_size.hpp"
 #include "plot/private/view_parts.hpp"
 #include "plot/view.hpp"
 
@@ -25,12 +26,9 @@ std::vector<const Image*> pointers(const std::vector<Image>& first, const std::v
 
 void require_same_voxels(const model::Grid& grid, const model::Grid& other, const std::string& name,
                          const std::string& remedy) {
-  if (grid.nx == other.nx && grid.ny == other.ny && grid.nz == other.nz) return;
-  const auto text = [](const model::Grid& g) {
-    return std::to_string(g.nx) + " x " + std::to_string(g.ny) + " x " + std::to_string(g.nz);
-  };
-  throw Error{Fault::data,
-              name + ": has " + text(grid) + " voxels, but the other volume has " + text(other) + "; " + remedy};
+  if (model::same_voxels(grid, other)) return;
+  throw Error{Fault::data, name + ": has " + model::place_text(grid) + ", but the other volume has " +
+                               model::place_text(other) + "; " + remedy};
 }
 
 ImageFigure view_difference(const io::SparseVolume& volume, const io::SparseVolume& other,

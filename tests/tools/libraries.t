@@ -17,4 +17,11 @@ for tool in vam-resample vam-stage; do
   command -v "$tool" >/dev/null || continue
   is "$tool: no libraries of volumes and drawing" "$(ldd "$(command -v "$tool")" | grep -E 'openvdb|opencv|cairo')" ''
 done
+# Who ends with a figure asks for its libraries first.
+mkdir broken
+: >broken/libpangocairo-1.0.so.0
+fails 69 'install the package libpangocairo' \
+  env LD_LIBRARY_PATH="$PWD/broken" vam-optimize --tradeoff front.png absent.vdb -o absent.exr
+fails 69 'install the package libpangocairo' \
+  env LD_LIBRARY_PATH="$PWD/broken" vam-ost absent --projections sums.png -o scatter.vdb
 done_testing

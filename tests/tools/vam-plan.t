@@ -23,6 +23,28 @@ holds 'a bath of the resin lets more in' "$(json large.json index_bath.scale_tha
 # Without refraction all of the resin is lit, but for the outermost ray: 12.7 mm.
 holds 'nearly all of the vial' "$(json large.json index_bath.writable_radius_mm) > 12.5"
 
+# The bath's scale, too.
+bath='--set bath.index=1.53 --set bath.window_mm=19.05'
+scale=$(sed -n 's/^index bath .*--scale //p' large)
+ok 'vam-slice takes the scale of the bath' vam-slice large.off --scale "$scale" --voxel 0.065 $bath -o large.vdb
+fails 65 'large.off' \
+  vam-slice large.off --scale "$(awk "BEGIN { print 1.02 * $scale }")" --voxel 0.065 $bath -o none.vdb
+# A part whose file is in micrometres: three digits of a small number.
+box 10000 10000 4000 >micro.off
+ok 'a file in micrometres' sh -c 'vam-plan micro.off --no-preview --report micro.json >micro'
+holds 'as large as fits' "$(json micro.json scale) > 0.99 * $(json micro.json scale_that_fits) && $(json micro.json scale) <= $(json micro.json scale_that_fits)"
+deep=$(printf 'deep%.0s' $(seq 50)); mkdir -p "$deep/$deep/$deep"; cp box.off "$deep/$deep/$deep"
+ok 'a long name is not cut' sh -c "vam-plan $deep/$deep/$deep/box.off --no-preview | grep -q 'box.off: 10 x 10 x 4 mm\$'"
+
+# Of large parts walls are measured on larger voxels, and the estimate is coarser.
+box 16 0.05 45 >sheet.off
+ok 'a sheet in a tall part' sh -c 'vam-plan sheet.off --no-preview >sheet'
+ok 'is thinner than what is told apart' grep -q '^thinnest wall  *below 2 voxels (0.13 mm)' sheet
+fine='--set projector.columns=3840 --set projector.rows=2880 --set projector.pixel_mm=0.0173 --set projector.axis_column=1919.5 --set projector.axis_row=1439.5'
+box 11 11 5 >wide.off
+ok 'a projector of 11 million pixels' sh -c "vam-plan wide.off $fine >fine"
+ok 'coarser voxels' grep -q 'estimate on voxels of 8 pixels' fine
+
 ok 'with a resin' sh -c 'vam-plan --shape cylinder:diameter=6,height=2 --set resin.critical_dose_mj_cm3=50 --set resin.absorption_per_mm=0.05 --report resin.json >resin'
 holds 'there is a duration' "$(json resin.json duration_s) > 0 && $(json resin.json turns) >= 1"
 # The same part at full resolution: turns differ by the coarseness of the estimate, not by a factor.
@@ -36,6 +58,11 @@ fails 66 'none.stl' vam-plan none.stl
 echo hello >text.stl
 fails 65 'text.stl' vam-plan text.stl
 fails 64 'give only one of them' vam-plan box.off --shape cylinder
-fails 65 'more than 1000 times too large' vam-plan box.off --scale 10000
+fails 65 'box.off: is 1e[+]05 x 1e[+]05 x 4e[+]04 mm, [0-9e+.]* times too large for this printer; check --unit' \
+  vam-plan box.off --scale 10000
+fails 65 '^vam-plan: shape cylinder:diameter=20000,height=2: is 2e[+]04 x 2e[+]04 x 2 mm' \
+  vam-plan --shape cylinder:diameter=20000,height=2
+fails 65 'box.off: no part fits the cylinder that can be written, of 8.* mm radius and 0.065 mm height' \
+  vam-plan box.off --set projector.rows=1
 fails 73 'missing/plan.json' vam-plan box.off --no-preview --report missing/plan.json
 done_testing

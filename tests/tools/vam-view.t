@@ -18,6 +18,10 @@ vam-view --at 1 --plane coronal --plain -o redirected.png <part.vdb
 is "plain pixels, one a voxel" "$($png size plain.png | cut -d' ' -f3-)" "8 3"
 is "a redirected file is the same" "$($png sum redirected.png)" "$($png sum plain.png)"
 
+script -qec 'vam-view part.vdb 2>.log/terminal' /dev/null </dev/null >.log/seen
+is "no image to a terminal" "$? $(cat .log/terminal)" \
+  "64 vam-view: stdout: is a terminal and the output is binary; use -o FILE or a pipe"
+
 # Sinogram: the brightest pixel of slice 2 at angle 0 is at column 44 of 64.
 $exr make sino.exr width=64 height=60 count=3
 ok "a sinogram" vam-view sino.exr -o sino.png
@@ -51,7 +55,14 @@ fails 64 'exclude each other' vam-view wider.vdb --target small.vdb --cure-map -
 fails 64 'requires --cure-map' vam-view wider.vdb --threshold 1 -o x.png
 fails 65 'nothing prints at a threshold of 99' vam-view wider.vdb --target small.vdb --render --threshold 99 -o x.png
 fails 65 'compare volumes of one grid' vam-view small.vdb --compare part.vdb -o x.png
-fails 65 'require a volume' vam-view trace.csv --dose-histogram -o x.png
+fails 65 'does not apply to a trace' vam-view trace.csv --dose-histogram -o x.png
+fails 65 'trace.csv: --render does not apply to a trace' vam-view trace.csv --render -o x.png
+fails 65 'trace.csv: --plain does not apply to a trace' vam-view trace.csv --plain -o x.png
+fails 65 'box.off: --compare does not apply to a mesh' vam-view box.off --compare blue.ply -o x.png
+fails 65 'box.off: --at does not apply to a mesh' vam-view box.off --at 1 -o x.png
+ok "a mesh without axes" vam-view blue.ply --plain --image-size 100 -o plain-blue.png
+is "as many pixels, in its colours" \
+  "$($png size plain-blue.png) $($png get plain-blue.png 50 50 | awk '{ print ($1 < 5 && $2 < 5 && $3 > 80) }')" "100 100 8 3 1"
 
 # Frames of a projector, as EXR, images and video: the same pixels
 small_printer >printer.toml
@@ -117,12 +128,14 @@ fails 65 'cut.mkv' vam-view cut.mkv -o x.png
 fails 65 'no axial section at 90 mm' vam-view part.vdb --at 90 -o x.png
 fails 65 'has no image at 9; the nearest is z = 0.52 mm' vam-view sino.exr --at 9 -o x.png
 fails 65 'target' vam-view part.vdb --grid dose -o x.png
-fails 65 'require a volume' vam-view sino.exr --dose-histogram -o x.png
+fails 65 'does not apply to images' vam-view sino.exr --dose-histogram -o x.png
 mkdir hollow
 fails 65 'no PNG or TIFF' vam-view hollow -o x.png
 fails 64 'must end in .png' vam-view part.vdb --plain -o x.svg
 fails 64 'jpg' vam-view part.vdb -o x.jpg
 fails 64 '--dpi' vam-view part.vdb --dpi 1 -o x.png
+fails 64 'pixels are more than 32767 a side; reduce --image-size or --dpi' \
+  vam-view part.vdb --image-size 4000 --dpi 1200 -o x.png
 fails 64 'must be below' vam-view part.vdb --low 2 --high 1 -o x.png
 fails 64 'part.vdb' vam-view part.vdb -o part.vdb
 fails 64 'volume or an EXR stack' vam-view frames.mkv --export x.nrrd

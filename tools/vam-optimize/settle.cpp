@@ -11,6 +11,7 @@
 #include "io/settings/recorded_tolerances.hpp"
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
+#include "plot/save.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -133,6 +134,7 @@ void settle_tradeoff(const cli::App& app, Options& options) {
                 "--tradeoff: sets the maximum intensity and the iterations; omit --max-intensity, --turns, --shortest, "
                 "--until, --iterations, --patience and --grey-target, and use a method with --max-intensity"};
   }
+  if (plot::is_figure(options.tradeoff)) plot::require_figures();
   options.until.clear();
   options.raising = optimize::front_raising;
   options.limit.of_even = optimize::shortest_of_even;

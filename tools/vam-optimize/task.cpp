@@ -1,7 +1,6 @@
 #include "vam-optimize/task.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "base/error.hpp"
 #include "base/text.hpp"
@@ -51,10 +50,7 @@ optimize::VolumeSource::Read padded(const std::vector<io::SparseVolume>& volumes
       const int from = k + n - margin.below;
       if (from < 0 || from >= inner.nz) continue;
       volume.read_slices(from, 1, slice.data());
-      for (int j = 0; j < inner.ny; ++j) {
-        std::copy_n(slice.data() + static_cast<std::ptrdiff_t>(j) * inner.nx, inner.nx,
-                    to + static_cast<std::ptrdiff_t>(j + margin.side) * scene.grid.nx + margin.side);
-      }
+      light::place_slice(slice.data(), inner, margin, to);
     }
   };
 }
@@ -105,26 +101,11 @@ optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
 
 }  // namespace
 
-namespace {
-
-/// In the grid of all that the light reaches.
-model::VoxelBox part_box(const Scene& scene, const io::SparseVolume& target) {
-  model::VoxelBox box = io::covered_box(target, model::coverage_rounding);
-  const std::array<int, 3> margin{scene.margin.side, scene.margin.side, scene.margin.below};
-  for (std::size_t a = 0; a < 3; ++a) {
-    box.low[a] += margin[a];
-    box.high[a] += margin[a];
-  }
-  return box;
-}
-
-}  // namespace
-
 optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Options& options) {
   optimize::VolumeTask task;
   task.source = make_source(scene, in, options);
   task.circle = scene.circle;
-  task.part = part_box(scene, in.target.front());
+  task.part = light::moved(io::covered_box(in.target.front(), model::coverage_rounding), scene.margin);
   task.demands = options.demands;
   task.limits = options.limits;
   task.limit = limit(scene, options);

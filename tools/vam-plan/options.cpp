@@ -15,21 +15,22 @@ cli::Manual manual() {
        "index-matching bath would help; whether it will print, how long that takes, and how wide the process window "
        "remains if the printer deviates from its settings. If the part does not fit, all that follows is of the part "
        "at the scale that fits.",
-       "Whether it prints is estimated on voxels of " + std::to_string(coarseness) + " pixels, with " +
-           std::to_string(angles) + " angles and " + std::to_string(iterations) +
-           " iterations of the default method of vam-optimize. The deviations are half a pixel of "
-           "projector.axis_column, 0.005 of resin.index and 0.25 degrees between part and frames, one at a time, "
-           "either way: the smaller process window of the two is stated, as a fraction of the largest dose. Features "
-           "below " +
-           std::to_string(coarseness) +
-           " pixels are blurred in the estimate; at full resolution windows are wider and walls are sharper. "
-           "vam-optimize has the last word.",
+       "Whether it prints is estimated on voxels of " + std::to_string(least_coarseness) + " pixels, with " +
+           std::to_string(optimize::PreviewTask{}.angles) + " angles and " +
+           std::to_string(optimize::PreviewTask{}.iterations) +
+           " iterations of the default method of vam-optimize; voxels are larger by a power of 2 where the part has "
+           "more than " +
+           std::to_string(most_estimated) + " million of them. The deviations, one at a time and either way, are " +
+           deviations +
+           " (as in --robust of vam-optimize): the smaller process window of the two is stated, as a fraction of the "
+           "largest dose. Features below a voxel of the estimate are blurred; at full resolution windows are wider and "
+           "walls are sharper. vam-optimize has the last word.",
        "The duration requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm."},
       {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
       {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
        "Walls: the distance between the void on both sides of the part's middle, exceeded in 99 of 100 places; good "
-       "to a voxel or two."},
+       "to a voxel or two, which are larger for parts of more than 16 million voxels."},
       {"vam-slice", "vam-optimize", "vam-score"}};
 }
 

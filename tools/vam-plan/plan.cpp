@@ -5,10 +5,15 @@
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/memory.hpp"
+#include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/input_name.hpp"
 #include "model/coarser.hpp"
+#include "model/dose_metrics.hpp"
+#include "model/grid_size.hpp"
 #include "model/magnification.hpp"
+#include "model/outside.hpp"
 #include "optics/writable_radius.hpp"
 #include "score/exposure.hpp"
 #include "solid/voxel/part.hpp"
@@ -38,35 +43,66 @@ solid::Placement placement_of(const Options& options, const model::Printer& prin
 /// What is planned, read once: it may be scaled to fit.
 class Source {
  public:
-  explicit Source(const Options& options) : options_(options) {
+  explicit Source(const Options& options)
+      : options_(options), subject_(options.shape.empty() ? io::input_name(options.input) : "shape " + options.shape) {
     if (options.shape.empty()) mesh_ = io::read_mesh(options.input);
   }
+  [[nodiscard]] const std::string& subject() const { return subject_; }
   [[nodiscard]] solid::Part part(const model::Printer& printer, double factor) const {
-    const solid::Placement placement = placement_of(options_, printer, factor);
-    const solid::Writable room = room_of(printer);
-    if (!options_.shape.empty()) return solid::shape_part(options_.shape, placement, room);
-    const std::string subject = io::input_name(options_.input);
-    return solid::mesh_part(mesh_, subject, solid::place(mesh_, placement, room, subject), solid::FillMode::automatic);
+    if (!options_.shape.empty()) {
+      return solid::shape_part(options_.shape, placement_of(options_, printer, factor), room_of(printer));
+    }
+    return solid::mesh_part(mesh_, subject_, map(printer, factor), solid::FillMode::automatic);
+  }
+  /// At the scale of the options.
+  [[nodiscard]] solid::PlacedExtent extent(const model::Printer& printer) const {
+    if (!options_.shape.empty()) return part(printer, 1).extent;
+    model::TriangleSoup placed = mesh_;  // not repaired, which takes longer than all the rest
+    solid::transform(placed, map(printer, 1));
+    return solid::extent(placed);
   }
 
  private:
+  [[nodiscard]] solid::Affine map(const model::Printer& printer, double factor) const {
+    return solid::place(mesh_, placement_of(options_, printer, factor), room_of(printer), subject_);
+  }
+
   const Options& options_;
+  std::string subject_;
   model::TriangleSoup mesh_;
 };
 
 Fit fit_of(const Source& source, const model::Printer& printer) {
-  const solid::Part part = source.part(printer, 1);
+  const solid::PlacedExtent extent = source.extent(printer);
   const solid::Writable room = room_of(printer);
   const double stretch = 1 / model::vertical_magnification(printer);
   Fit fit;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    fit.size_mm[axis] = part.extent.box.high[axis] - part.extent.box.low[axis];
+  fit.size_mm = extent.box.size();
   fit.size_mm[2] /= stretch;
-  fit.radius_mm = part.extent.radius_mm;
   fit.writable_radius_mm = room.radius_mm;
   fit.writable_height_mm = (room.high_mm - room.low_mm) / stretch;
-  fit.factor = solid::fitting_factor(part.extent, room, printer.projector.pixel_mm);
+  fit.factor = solid::fitting_factor(extent, room, printer.projector.pixel_mm);
   return fit;
+}
+
+std::string size_text(const Fit& fit) {
+  return format_number(fit.size_mm[0], 4) + " x " + format_number(fit.size_mm[1], 4) + " x " +
+         format_number(fit.size_mm[2], 4) + " mm";
+}
+
+void require_plausible(const Fit& fit, const model::Printer& printer, const std::string& subject) {
+  constexpr double most_times = 1000;
+  constexpr double rounding = 1e-9;
+  if (!(fit.factor > rounding)) {
+    throw Error{Fault::data, subject + ": no part fits the cylinder that can be written, of " +
+                                 format_number(fit.writable_radius_mm, 3) + " mm radius and " +
+                                 format_number(fit.writable_height_mm, 3) + " mm height, with pixels of " +
+                                 format_number(printer.projector.pixel_mm, 3) + " mm; check the printer's settings"};
+  }
+  if (fit.factor < 1 / most_times) {
+    throw Error{Fault::data, subject + ": is " + size_text(fit) + ", " + format_number(1 / fit.factor, 3) +
+                                 " times too large for this printer; check --unit and --scale"};
+  }
 }
 
 /// Moved by whole voxels until the rows light it.
@@ -77,52 +113,48 @@ solid::Part within_rows(solid::Part part, const solid::Writable& room, double vo
   return solid::lifted(std::move(part), up - down);
 }
 
-model::Volume filled(const solid::Part& part, double voxel_mm) {
-  model::Volume volume{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}};
+struct Filled {
+  model::Volume volume;
+  double farthest_mm = 0;  // from the axis to the centre of the farthest covered voxel
+};
+
+Filled filled(const solid::Part& part, double voxel_mm) {
+  Filled made{{solid::grid_around(part.extent, voxel_mm, 0, part.lattice, part.subject), {}}};
+  model::Volume& volume = made.volume;
+  require_memory(sizeof(float) * static_cast<double>(volume.grid.size()),
+                 part.subject + ": " + model::size_text(volume.grid), "plan a smaller part");
   volume.values.resize(volume.grid.size());
-  (void)solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
-    std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
-  });
-  return volume;
+  made.farthest_mm =
+      solid::fill(part, volume.grid, [&](int k0, int count, const float* slices) {
+        std::copy_n(slices, static_cast<std::size_t>(count) * volume.grid.slice_size(), volume.slice(k0));
+      }).radius_mm;
+  return made;
 }
 
 /// On the printer's voxels, or on larger ones where these are too many.
-std::optional<double> wall_of(const solid::Part& part, const model::Grid& grid) {
-  const int by = std::max(1, static_cast<int>(std::ceil(std::cbrt(static_cast<double>(grid.size()) / most_voxels))));
-  const auto wall = solid::thinnest_wall_voxels(filled(part, by * grid.voxel_mm));
-  return wall ? std::optional(by * *wall) : std::nullopt;
+void add_walls(Plan& plan, const solid::Part& part) {
+  const double by = std::ceil(std::cbrt(static_cast<double>(plan.grid.size()) / most_voxels));
+  plan.wall_resolution = std::max(1, static_cast<int>(by));
+  plan.wall_voxels = solid::thinnest_wall_voxels(filled(part, plan.wall_resolution * plan.grid.voxel_mm).volume);
+  if (plan.wall_voxels) *plan.wall_voxels *= plan.wall_resolution;
 }
 
-/// The box of all that is covered, and the distance of its farthest voxel from the axis.
-std::pair<model::VoxelBox, double> covered(const model::Volume& volume) {
-  const model::Grid& grid = volume.grid;
-  model::VoxelBox box{{grid.nx, grid.ny, grid.nz}, {-1, -1, -1}};
-  double farthest_mm = 0;
-  for (int k = 0; k < grid.nz; ++k) {
-    for (int j = 0; j < grid.ny; ++j) {
-      for (int i = 0; i < grid.nx; ++i) {
-        if (volume.slice(k)[j * grid.nx + i] <= model::coverage_rounding) continue;
-        box.low = {std::min(box.low[0], i), std::min(box.low[1], j), std::min(box.low[2], k)};
-        box.high = {std::max(box.high[0], i), std::max(box.high[1], j), std::max(box.high[2], k)};
-        farthest_mm = std::max(farthest_mm, std::hypot(grid.x_mm(i), grid.y_mm(j)));
-      }
-    }
-  }
-  return {box, farthest_mm};
+int coarseness_for(const model::Grid& grid) {
+  int by = least_coarseness;
+  while (static_cast<double>(grid.size()) / std::pow(by, 3) > 1e6 * most_estimated) by *= 2;
+  return by;
 }
 
-optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer) {
+optimize::Preview preview_of(const solid::Part& part, const model::Printer& printer, int coarseness) {
   optimize::PreviewTask task;
-  task.printer = model::coarser(model::coarser(printer));
-  task.target = filled(part, task.printer.projector.pixel_mm);
-  const auto [box, farthest_mm] = covered(task.target);
-  task.part = box;
+  task.printer = printer;
+  for (int by = 1; by < coarseness; by *= 2) task.printer = model::coarser(task.printer);
+  auto [target, farthest_mm] = filled(part, task.printer.projector.pixel_mm);
+  task.part = model::covered_box(target, model::coverage_rounding);
   task.radius_mm = optics::judged_radius_mm(task.printer, farthest_mm);
-  task.angles = angles;
-  task.iterations = iterations;
-  // Half a pixel of the printer is an eighth of one of these.
-  task.tolerances =
-      model::parse_tolerances("axis=" + std::to_string(0.5 / coarseness) + "px,index=0.005,angle=0.25deg");
+  task.target = std::move(target);
+  task.tolerances = model::parse_tolerances(deviations);
+  task.tolerances[static_cast<std::size_t>(model::Deviating::axis)] /= coarseness;  // of the printer's pixels
   return optimize::preview(task);
 }
 
@@ -139,24 +171,20 @@ Plan plan(const Options& options, const model::Printer& printer) {
     if (matched.bath.window_mm == 0) matched.bath.window_mm = bath_of_radius * printer.vial.radius_mm;
     made.bath = fit_of(source, matched);
   }
-  if (!(made.now.factor > 0)) {
-    throw Error{Fault::data, io::input_name(options.input) + ": lies beside the axis so that no scale makes it fit"};
-  }
-  constexpr double digits = 1000;  // rounded down, so that it can be typed
-  const double factor = made.now.fits() ? 1 : std::floor(digits * made.now.factor) / digits;
-  if (!(factor > 0)) {
-    throw Error{Fault::data, io::input_name(options.input) + ": is more than 1000 times too large; give its --unit"};
-  }
+  require_plausible(made.now, printer, source.subject());
   made.given_scale = options.scale;
-  made.scale = options.scale * factor;
-  const solid::Part part = within_rows(source.part(printer, factor), room_of(printer), printer.projector.pixel_mm);
+  made.scale = made.now.fits() ? options.scale : solid::three_digits(options.scale * made.now.factor);
+  const solid::Part part =
+      within_rows(source.part(printer, made.scale / options.scale), room_of(printer), printer.projector.pixel_mm);
   made.subject = part.subject;
   made.grid = solid::grid_around(part.extent, printer.projector.pixel_mm, 0, part.lattice, part.subject);
-  made.wall_voxels = wall_of(part, made.grid);
+  add_walls(made, part);
   if (options.no_preview) return made;
-  made.preview = preview_of(part, printer);
+  made.coarseness = coarseness_for(made.grid);
+  made.preview = preview_of(part, printer, made.coarseness);
   const optimize::VolumeOutcome& outcome = made.preview->outcome;
   const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  made.resin_known = per_radian.has_value();
   if (per_radian && outcome.peak_intensity > 0 && score::window_middle(outcome.metrics) > 0) {
     made.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,
                                          optimize::DoseWindow{}.threshold());

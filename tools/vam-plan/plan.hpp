@@ -14,14 +14,13 @@
 
 namespace vam::plan_tool {
 
-inline constexpr int coarseness = 4;  // pixels per voxel of the estimate
-inline constexpr int angles = 90;
-inline constexpr int iterations = 12;
+inline constexpr int least_coarseness = 4;  // pixels per voxel of the estimate
+inline constexpr int most_estimated = 2;    // million voxels: those of larger parts are larger by a power of 2
+inline constexpr const char* deviations = "axis=0.5px,index=0.005,angle=0.25deg";
 
 /// Whether the part fits, and at which scale.
 struct Fit {
   std::array<double, 3> size_mm{};
-  double radius_mm = 0;  // of the part, about the axis
   double writable_radius_mm = 0;
   double writable_height_mm = 0;
   double factor = 1;  // largest scale that fits, relative to that of the options
@@ -31,13 +30,16 @@ struct Fit {
 struct Plan {
   std::string subject;
   Fit now;
-  std::optional<Fit> bath;  // with a bath of the resin's index; none: it has one
-  double given_scale = 1;   // by the options
-  double scale = 1;         // of what follows, of the file's coordinates
-  model::Grid grid;         // at the printer's pixels
-  std::optional<double> wall_voxels;
+  std::optional<Fit> bath;            // with a bath of the resin's index; none: it has one
+  double given_scale = 1;             // by the options
+  double scale = 1;                   // of what follows, of the file's coordinates
+  model::Grid grid;                   // at the printer's pixels
+  std::optional<double> wall_voxels;  // of that grid; none: there is no wall as thick as the resolution
+  int wall_resolution = 1;            // in voxels
   std::optional<optimize::Preview> preview;
-  std::optional<score::ExposurePlan> exposure;  // none: the resin is not known
+  int coarseness = least_coarseness;  // pixels per voxel of the preview
+  bool resin_known = false;
+  std::optional<score::ExposurePlan> exposure;  // none: the resin is not known, or gets no light
 };
 
 /// Throws Error: no_input, data.

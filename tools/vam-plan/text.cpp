@@ -2,11 +2,10 @@
 #include "base/text.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "base/json.hpp"
+#include "solid/voxel/placement.hpp"
 #include "vam-plan/plan.hpp"
 
 namespace vam::plan_tool {
@@ -16,9 +15,8 @@ namespace {
 std::string number(double value) { return format_number(value, 3); }
 
 std::string row(const std::string& name, const std::string& value) {
-  char text[400];
-  std::snprintf(text, sizeof text, "%-18s %s\n", name.c_str(), value.c_str());
-  return text;
+  constexpr std::size_t width = 18;
+  return name + std::string(width - std::min(width, name.size()), ' ') + " " + value + "\n";
 }
 
 std::string fit_words(const Fit& fit) {
@@ -35,15 +33,11 @@ double worst_window(const optimize::Trials::Single& single) {
   return std::min(window(single.minus), window(single.plus));
 }
 
+/// "axis +-0.5 px"
 std::string deviation_name(std::size_t tolerance) {
-  switch (static_cast<model::Deviating>(tolerance)) {
-    case model::Deviating::axis:
-      return "axis +-0.5 px";
-    case model::Deviating::index:
-      return "index +-0.005";
-    default:
-      return "angle +-0.25 deg";
-  }
+  const auto& [name, unit, meaning] = model::tolerance_table[tolerance];
+  return std::string(name) + " +-" + format_number(model::parse_tolerances(deviations)[tolerance]) +
+         (unit.empty() ? "" : " " + std::string(unit));
 }
 
 std::string signed_number(double value) { return (value >= 0 ? "+" : "") + number(value); }
@@ -54,15 +48,25 @@ std::string print_rows(const Plan& plan) {
   std::string text = row("will it print", std::string(prints ? "yes" : "not everywhere") + ": process window " +
                                               signed_number(window(nominal)) + " of the largest dose, VER " +
                                               number(nominal.figures.ver) + " (estimate on voxels of " +
-                                              std::to_string(coarseness) + " pixels)");
+                                              std::to_string(plan.coarseness) + " pixels)");
   for (const auto& single : plan.preview->trials.singles)
     text += row("  " + deviation_name(single.tolerance), "process window " + signed_number(worst_window(single)));
   if (!plan.exposure) {
-    return text + row("duration", "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+    return text + row("duration", plan.resin_known
+                                      ? "not known: the part gets no light in the estimate"
+                                      : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
   }
   return text +
          row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
                              " turns, brightest pixel " + number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
+}
+
+std::string wall_words(const Plan& plan) {
+  const auto voxels = [&](double count) {
+    return number(count) + (count == 1 ? " voxel (" : " voxels (") + number(count * plan.grid.voxel_mm) + " mm)";
+  };
+  if (!plan.wall_voxels) return "below " + voxels(plan.wall_resolution) + ": enlarge the part, or use smaller pixels";
+  return voxels(*plan.wall_voxels) + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : "");
 }
 
 Json fit_json(const Fit& fit) {
@@ -84,19 +88,14 @@ std::string table(const Plan& plan) {
   if (!plan.now.fits())
     text += row("scale needed", "--scale " + format_number(plan.scale, 6) + "; what follows is of that size");
   if (plan.bath) {
-    const std::string needed =
-        plan.bath->fits() ? "the part fits" : "--scale " + number(plan.given_scale * plan.bath->factor);
+    const std::string needed = plan.bath->fits()
+                                   ? "the part fits"
+                                   : "--scale " + number(solid::three_digits(plan.given_scale * plan.bath->factor));
     text += row("index bath", "a bath of the resin's index widens it to " + number(2 * plan.bath->writable_radius_mm) +
                                   " mm: " + needed);
   }
   text += row("slices", std::to_string(plan.grid.nz) + " of " + number(plan.grid.voxel_mm) + " mm");
-  if (plan.wall_voxels) {
-    text +=
-        row("thinnest wall", number(*plan.wall_voxels) + " voxels (" + number(*plan.wall_voxels * plan.grid.voxel_mm) +
-                                 " mm)" + (*plan.wall_voxels < 3 ? "; walls below 3 voxels seldom print" : ""));
-  } else {
-    text += row("thinnest wall", "below a voxel: enlarge the part, or use smaller pixels");
-  }
+  text += row("thinnest wall", wall_words(plan));
   return plan.preview ? text + print_rows(plan) : text;
 }
 

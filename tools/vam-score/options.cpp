@@ -72,6 +72,14 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
+score::GreyOptions grey_options(const Options& options) {
+  score::GreyOptions how = options.grey_how;
+  how.void_rule = options.void_rule == "met"     ? score::VoidRule::met
+                  : options.void_rule == "below" ? score::VoidRule::below
+                                                 : score::VoidRule::free;
+  return how;
+}
+
 void check(const cli::App& app, const Options& options) {
   if (!options.grey) return;
   for (const char* flag :

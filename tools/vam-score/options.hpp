@@ -31,6 +31,8 @@ struct Options {
 
 [[nodiscard]] cli::Manual manual();
 void declare(cli::App& app, Options& options);
+/// The circle is not known yet.
+[[nodiscard]] score::GreyOptions grey_options(const Options& options);
 /// Throws Fault::usage for options that a grey target has no use for.
 void check(const cli::App& app, const Options& options);
 

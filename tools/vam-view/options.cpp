@@ -54,7 +54,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--image-size", "PX", options.view.size, {64, 16384},
              "Approximate length of the longer side of the image without axes and title.")
       .was("--size");
-  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; it has 96 of --image-size.");
+  app.option("--dpi", "N", options.dpi, {24, 2400}, "Pixels per inch of a PNG; --image-size is at 96.");
   app.option("--title", "TEXT", options.title, "Title of the figure; '' omits it.");
   app.default_is("names of file and content");
   app.flag("--plain", options.plain, "Write only the colour-mapped values, one pixel each, without axes.");

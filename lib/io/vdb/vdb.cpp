@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -14,9 +13,10 @@
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/parallel.hpp"
-#include "base/text.hpp"
 #include "io/stream/finite.hpp"
 #include "io/vdb/private/grid.hpp"
+#include "model/grid_place.hpp"
+#include "model/grid_size.hpp"
 
 namespace vam::io {
 
@@ -177,27 +177,13 @@ const std::string& SparseVolume::name() const { return state_->name; }
 const model::Grid& SparseVolume::grid() const { return state_->grid; }
 
 void SparseVolume::extend_to(const model::Grid& grid) {
-  const model::Grid& own = state_->grid;
-  const int inner[3] = {own.nx, own.ny, own.nz};
-  const int outer[3] = {grid.nx, grid.ny, grid.nz};
-  Coord shift;
-  bool fits = std::abs(own.voxel_mm / grid.voxel_mm - 1) < 1e-3 / std::max({grid.nx, grid.ny, grid.nz});
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double place = (own.origin_mm[a] - grid.origin_mm[a]) / grid.voxel_mm;
-    shift[axis] = round_int(place);
-    fits = fits && std::abs(place - shift[axis]) < 1e-3 && shift[axis] >= 0 && shift[axis] + inner[axis] <= outer[axis];
+  const auto place = model::place_in(grid, state_->grid);
+  if (!place) {
+    throw Error{Fault::data, "the grid '" + state_->name + "' has " + model::place_text(state_->grid) +
+                                 ", which are not among the " + model::place_text(grid) +
+                                 " it is compared with; make both from the same target"};
   }
-  if (!fits) {
-    const auto text = [](const model::Grid& g) {
-      return std::to_string(g.nx) + " x " + std::to_string(g.ny) + " x " + std::to_string(g.nz) + " voxels of " +
-             format_number(g.voxel_mm) + " mm from (" + format_number(g.origin_mm[0]) + ", " +
-             format_number(g.origin_mm[1]) + ", " + format_number(g.origin_mm[2]) + ")";
-    };
-    throw Error{Fault::data, "the grid '" + state_->name + "' has " + text(own) + ", which are not among the " +
-                                 text(grid) + " it is compared with; make both from the same target"};
-  }
-  state_->first -= shift;
+  state_->first -= Coord((*place)[0], (*place)[1], (*place)[2]);
   state_->grid = grid;
 }
 

@@ -1,6 +1,7 @@
 #include "light/grids/lit_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/index.hpp"
@@ -58,6 +59,22 @@ model::Grid extended(const model::Grid& grid, const Margin& margin) {
   all.origin_mm[1] -= margin.side * grid.voxel_mm;
   all.origin_mm[2] -= margin.below * grid.voxel_mm;
   return all;
+}
+
+model::VoxelBox moved(model::VoxelBox box, const Margin& margin) {
+  const std::array<int, 3> by{margin.side, margin.side, margin.below};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] += by[axis];
+    box.high[axis] += by[axis];
+  }
+  return box;
+}
+
+void place_slice(const float* slice, const model::Grid& grid, const Margin& margin, float* to) {
+  const int width = grid.nx + 2 * margin.side;
+  for (int j = 0; j < grid.ny; ++j) {
+    std::copy_n(slice + product(j, grid.nx), grid.nx, to + product(j + margin.side, width) + margin.side);
+  }
 }
 
 }  // namespace vam::light

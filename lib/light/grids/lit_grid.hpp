@@ -2,6 +2,7 @@
 #pragma once
 
 #include "model/grid.hpp"
+#include "model/outside.hpp"
 #include "model/pose.hpp"
 #include "model/printer.hpp"
 
@@ -22,5 +23,9 @@ struct Margin {
 
 /// The grid with so many voxels more on its sides; those that it had stay in place.
 [[nodiscard]] model::Grid extended(const model::Grid& grid, const Margin& margin);
+/// A box of its voxels, in the grid with the margin.
+[[nodiscard]] model::VoxelBox moved(model::VoxelBox box, const Margin& margin);
+/// The values of a slice of the grid into one of the grid with the margin, whose other voxels stay as they are.
+void place_slice(const float* slice, const model::Grid& grid, const Margin& margin, float* to);
 
 }  // namespace vam::light

@@ -1,7 +1,6 @@
 #include "optimize/run/preview.hpp"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 #include "light/blur/gaussian_blur.hpp"
@@ -19,24 +18,9 @@ namespace {
 model::Volume extended(const model::Volume& target, const light::Margin& margin) {
   model::Volume wide{light::extended(target.grid, margin), {}};
   wide.values.assign(wide.grid.size(), 0.0F);
-  for (int k = 0; k < target.grid.nz; ++k) {
-    for (int j = 0; j < target.grid.ny; ++j) {
-      const float* row = target.slice(k) + static_cast<std::ptrdiff_t>(j) * target.grid.nx;
-      std::copy_n(
-          row, target.grid.nx,
-          wide.slice(k + margin.below) + static_cast<std::ptrdiff_t>(j + margin.side) * wide.grid.nx + margin.side);
-    }
-  }
+  for (int k = 0; k < target.grid.nz; ++k)
+    light::place_slice(target.slice(k), target.grid, margin, wide.slice(k + margin.below));
   return wide;
-}
-
-model::VoxelBox moved(model::VoxelBox box, const light::Margin& margin) {
-  const std::array<int, 3> by{margin.side, margin.side, margin.below};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] += by[axis];
-    box.high[axis] += by[axis];
-  }
-  return box;
 }
 
 model::StackInfo info_of(const model::Printer& printer, const model::Grid& grid, int angles) {
@@ -64,7 +48,7 @@ Preview preview(const PreviewTask& wanted) {
     std::copy_n(lit.slice(k), static_cast<std::size_t>(count) * lit.grid.slice_size(), out);
   };
   task.circle = model::writable_circle(lit.grid, wanted.radius_mm);
-  task.part = moved(wanted.part, margin);
+  task.part = light::moved(wanted.part, margin);
   task.limits.iterations = wanted.iterations;
   task.limits.patience = 0;
   task.limit.of_even = usual_of_even;

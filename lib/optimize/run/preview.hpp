@@ -15,7 +15,7 @@ struct PreviewTask {
   double radius_mm = 0;    // of the resin that is constrained (optics::judged_radius_mm)
   model::VoxelBox part;    // its box in the target
   int angles = 90;
-  int iterations = 20;
+  int iterations = 12;
   model::Tolerances tolerances{};
 };
 

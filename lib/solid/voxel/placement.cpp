@@ -55,16 +55,11 @@ Affine place(const ExtentUnder& under, const Placement& placement, const Writabl
   return scaling({1, 1, placement.stretch_z}) * map;
 }
 
-/// Rounded down, so that what is pasted fits.
-std::string three_digits(double value) {
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 2);
-  return format_number(std::floor(value / step * (1 + 1e-12)) * step, 3);
-}
-
 /// "give --scale 0.264 or --fit-writable": what makes the part fit.
 std::string smaller(const PlacementAdvice& advice, double factor) {
   const std::string& size = advice.size;
-  return "give " + (factor > 0 ? size + " " + three_digits(advice.value * factor) : "a smaller " + size) +
+  return "give " +
+         (factor > 0 ? size + " " + format_number(three_digits(advice.value * factor), 3) : "a smaller " + size) +
          advice.or_fit;
 }
 
@@ -94,6 +89,14 @@ Writable whole_resin(const model::Printer& printer) {
   Writable resin = writable(printer, model::resin_radius_mm(printer.vial));
   resin.from_all_sides = false;
   return resin;
+}
+
+double three_digits(double value) {
+  constexpr double rounding = 1e-12;  // 0.415 may be a little less
+  const double decimals = 2 - std::floor(std::log10(value));
+  const double power = std::pow(10.0, std::abs(decimals));  // exact: a step of 0.001 is not
+  return decimals > 0 ? std::floor(value * power * (1 + rounding)) / power
+                      : std::floor(value / power * (1 + rounding)) * power;
 }
 
 Affine upright(const std::string& axis) {

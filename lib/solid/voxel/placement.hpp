@@ -59,6 +59,9 @@ struct PlacedExtent {
 /// factor will do.
 [[nodiscard]] double fitting_factor(const PlacedExtent& part, const Writable& room, double voxel_mm);
 
+/// The largest number of three digits that is not above a positive value: a scale that is typed so fits.
+[[nodiscard]] double three_digits(double value);
+
 /// The map from the file's coordinates to the target's frame. Throws Fault::data when the part has no size, or when
 /// voxels are too large for fit_writable.
 [[nodiscard]] Affine place(const model::TriangleSoup& soup, const Placement& placement, const Writable& room,

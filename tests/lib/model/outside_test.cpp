@@ -6,6 +6,17 @@
 
 using namespace vam::model;
 
+TEST_CASE("the covered box holds all voxels above a value, and no more") {
+  Volume volume{centred_grid(5, 4, 3, 1), std::vector<float>(60)};
+  CHECK(covered_box(volume, 0).high[0] < covered_box(volume, 0).low[0]);
+  volume.values[(1 * 4 + 2) * 5 + 3] = 0.5F;
+  volume.values[(2 * 4 + 1) * 5 + 3] = 0.6F;
+  volume.values[0] = 0.1F;
+  const VoxelBox box = covered_box(volume, 0.1F);
+  CHECK(box.low == std::array<int, 3>{3, 1, 1});
+  CHECK(box.high == std::array<int, 3>{3, 2, 2});
+}
+
 TEST_CASE("what lies outside the box is counted against the threshold") {
   OutsideDoses doses;
   for (const float dose : {0.1F, 0.5F, 0.79F, 0.81F, 0.9F}) doses.add(dose);

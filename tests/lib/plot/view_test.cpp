@@ -205,7 +205,8 @@ TEST_CASE("the histogram counts whole voxels inside, and outside within the circ
   keep(draw(plot).image(), "dose-histogram.png");
   const SparseVolume other("target", vam::model::centred_grid(8, 8, 8, 1, 0));
   CHECK(has(error_of([&] { (void)dose_histogram(dose, other, circle, options); }, vam::Fault::data),
-            "has 40 x 40 x 40 voxels, but the other volume has 8 x 8 x 8; compute the dose on this target"));
+            "has 40 x 40 x 40 voxels of 0.25 mm from (-4.875, -4.875, -4.875), but the other volume has "
+            "8 x 8 x 8 voxels of 1 mm from (-3.5, -3.5, 0); compute the dose on this target"));
 }
 
 TEST_CASE("the cure map tells what is missing and what is too much, but not where the surface cuts") {
@@ -216,11 +217,24 @@ TEST_CASE("the cure map tells what is missing and what is too much, but not wher
   SparseVolume dose("dose", grid);
   const std::vector<float> doses{1, 0.4F, 0.2F, 0.6F, 0.1F};
   dose.write_slices(0, 1, doses.data());
-  const ImageFigure figure = view_cure(dose, target, 0.5, {});
+  const vam::model::Circle all{2, 0, 2};
+  const ImageFigure figure = view_cure(dose, target, 0.5, all, {});
   const auto& seen = figure.panels[0].picture.values;
   CHECK(seen == std::vector<Rgb>{{150, 150, 150}, paint::blue, paint::white, paint::vermilion, paint::white});
   CHECK(figure.legend[1].words == "missing (50 % of the part seen)");
   CHECK(figure.legend[2].words == "overcured (50 % of the void seen)");
+  // Void outside the circle is seen, but not judged.
+  const vam::model::Circle inner{2, 0, 1};
+  const ImageFigure judged = view_cure(dose, target, 0.5, inner, {});
+  CHECK(judged.panels[0].picture.values == seen);
+  CHECK(judged.legend[1].words == "missing (50 % of the part seen)");
+  CHECK(judged.legend[2].words == "overcured (100 % of the void seen)");
+  for (const Plane plane : {Plane::coronal, Plane::sagittal}) {
+    ViewOptions along;
+    along.plane = plane;
+    along.at = plane == Plane::coronal ? 0.0 : 1.0;  // the column of 0.6, in the circle
+    CHECK(view_cure(dose, target, 0.5, inner, along).legend[2].words == "overcured (100 % of the void seen)");
+  }
 }
 
 TEST_CASE("two volumes are seen in the same colours, their difference with zero in the middle") {
@@ -238,6 +252,23 @@ TEST_CASE("two volumes are seen in the same colours, their difference with zero 
   CHECK(figure.panels[1].scale->high == 4);
   CHECK(figure.panels[2].scale->low == -2);
   CHECK(figure.panels[2].scale->high == 2);
+  const SparseVolume moved("dose", vam::model::centred_grid(2, 2, 1, 1.0, 0.5));
+  const SparseVolume finer("dose", vam::model::centred_grid(2, 2, 1, 0.5, 0));
+  for (const SparseVolume* other : {&moved, &finer}) {
+    CHECK(has(error_of([&] { (void)view_difference(one, *other, "b.vdb", {}); }, vam::Fault::data),
+              "compare volumes of one grid"));
+  }
+}
+
+TEST_CASE("a section far wider than high is drawn, a pixel high") {
+  const auto grid = vam::model::centred_grid(1500, 3, 1, 0.1, 0);
+  SparseVolume volume("dose", grid);
+  const std::vector<float> slice(grid.size(), 1.0F);
+  volume.write_slices(0, 1, slice.data());
+  ViewOptions options;
+  options.plane = Plane::coronal;
+  const auto image = draw(view_volume(volume, nullptr, options)).image();
+  CHECK(std::count(image.values.begin(), image.values.end(), paint::black) > 700);
 }
 
 TEST_CASE("colours end where one value in a thousand is beyond, which the legend says") {

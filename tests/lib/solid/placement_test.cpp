@@ -35,6 +35,17 @@ std::string data_error(const std::function<void()>& work) {
 
 }  // namespace
 
+TEST_CASE("a size that is typed is rounded down to three digits, as written") {
+  CHECK(three_digits(0.41567) == 0.415);
+  CHECK(three_digits(0.415) == 0.415);
+  CHECK(three_digits(0.1 * 3) == 0.3);
+  CHECK(three_digits(0.0019199) == 0.00191);
+  CHECK(three_digits(1.2e-7) == 1.2e-7);
+  CHECK(three_digits(1) == 1);
+  CHECK(three_digits(123.9) == 123);
+  CHECK(three_digits(98765) == 98700);
+}
+
 TEST_CASE("rotations are right-handed, about x, then y, then z; quarter turns are exact") {
   CHECK(rotation({90, 0, 0})({0, 1, 0}) == Point{0, 0, 1});
   CHECK(rotation({0, 90, 0})({0, 0, 1}) == Point{1, 0, 0});
