@@ -37,7 +37,7 @@ void Live::begin() {
 
 device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns) {
   const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
-                                              : device::followed_angle(options_.follow, clock_);
+                                              : device::followed_angle(options_.follow, clock_, 360.0 * turns);
   begin();
   device::PlayPlan plan;
   plan.frames_per_turn = frames_per_turn;
