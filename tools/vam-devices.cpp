@@ -1,6 +1,7 @@
 // vam-devices: the devices of this machine, and why some cannot be used.
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/json.hpp"
@@ -9,6 +10,7 @@
 #include "device/open/find.hpp"
 #include "device/port/lines.hpp"
 #include "io/settings/report.hpp"
+#include "model/device_schemes.hpp"
 
 namespace {
 
@@ -19,6 +21,24 @@ struct Options {
   bool probe = false;
   std::string report;
 };
+
+void add_options(std::vector<std::string>& notes, const std::string& kind, const auto& schemes) {
+  notes.push_back("Options of a " + kind + ", after a question mark and separated by &:");
+  for (std::string& line : model::options_of(schemes)) notes.push_back(std::move(line));
+}
+
+std::vector<std::string> notes() {
+  std::vector<std::string> notes{
+      "Duration. About a second, the time allowed for replies of network cameras; with --probe up to 4 s more per "
+      "port.",
+      "Limits. A camera in another subnet is not found; give its IP address (aravis:192.168.1.7)."};
+  add_options(notes, "stage", model::stage_schemes);
+  add_options(notes, "camera", model::camera_schemes);
+  add_options(notes, "display", model::display_schemes);
+  add_options(notes, "light engine", model::light_schemes);
+  add_options(notes, "relay (projector.relay)", model::relay_schemes);
+  return notes;
+}
 
 cli::Manual manual() {
   return {
@@ -38,13 +58,12 @@ cli::Manual manual() {
        {"A simulated stage on a pseudo-terminal, queried for its identity:",
         "vam-sim-stage --link port --die-with-parent >pty & while [ ! -s pty ]; do sleep 0.1; done; "
         "LD_PRELOAD=$(vam-sim-stage --shim) vam-devices --port \"$PWD/port\" --probe"}},
-      {"Duration. About a second, the time allowed for replies of network cameras; with --probe up to 4 s more per "
-       "port.",
-       "Limits. A camera in another subnet is not found; give its IP address (aravis:192.168.1.7)."},
+      notes(),
       {"vam-stage", "vam-capture", "vam-project", "vam-print"},
       {},
       {},
-      true};
+      true,
+      false};
 }
 
 struct Kind {

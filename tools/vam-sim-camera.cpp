@@ -67,7 +67,10 @@ cli::Manual manual() {
        "The camera server of Aravis sustains about 50 frames of 0.3 megapixels per second."},
       {"vam-capture", "vam-calibrate", "vam-sim-stage", "vam-project"},
       {},
-      {{75, "The address is in use by another camera, or cannot serve one."}}};
+      {{75, "The address is in use by another camera, or cannot serve one."},
+       {129, "SIGHUP."},
+       {130, "SIGINT."},
+       {143, "SIGTERM."}}};
 }
 
 void declare_scene(cli::App& app, Options& o) {

@@ -75,7 +75,12 @@ cli::Manual manual() {
        "pos, move abs, home)."},
       {"vam-stage", "vam-sim-camera"},
       {},
-      {{69, "No pseudo-terminal is available."}, {129, "SIGHUP."}, {130, "SIGINT."}, {143, "SIGTERM."}}};
+      {{69, "No pseudo-terminal is available, or the library of --shim is missing."},
+       {129, "SIGHUP."},
+       {130, "SIGINT."},
+       {143, "SIGTERM."}},
+      false,
+      false};
 }
 
 void declare(cli::App& app, Options& options) {
@@ -127,7 +132,7 @@ std::string shim_path() {
     const auto candidate = prefix / folder / "vam-pty-shim.so";
     if (std::filesystem::exists(candidate)) return candidate;
   }
-  throw Error{Fault::no_input, "vam-pty-shim.so: not found beside this program; reinstall the tools"};
+  throw Error{Fault::absent, "vam-pty-shim.so: not found beside this program; reinstall the tools"};
 }
 
 class Link {

@@ -66,9 +66,9 @@ std::vector<std::string> description() {
       "stored "
       "microsteps per turn). tic:00312345?steps_per_deg=88.9 is a stepper motor behind a Pololu Tic on USB; the serial "
       "number may be omitted if there is only one. sim: is a PI controller simulated inside the tool; its options are "
-      "speed_error, ripple (relative), jitter_ms, latency_ms, acceleration_deg_s2, travel_deg, home_deg, seed, fault "
-      "and "
-      "log. vam-sim-stage(1) serves this simulator on a pseudo-terminal. Protocols and fault handling are described in "
+      "those of vam-sim-stage(1) on stage, replies and faults, with underscores (?speed_error=0.01&start_angle=30). "
+      "vam-sim-stage serves this simulator on a pseudo-terminal. vam-devices(1) lists the options of all devices. "
+      "Protocols and fault handling are described in "
       "vam-devices(7).",
       "A device has one user at a time: a second one exits with status 75 and names the process that holds it."};
 }
@@ -104,7 +104,7 @@ cli::Manual manual() {
           {{"Identify the controller and its limits, here of a simulated stage:", "vam-stage identify --device sim:"},
            {"Find the reference and move to 20 degrees:", "vam-stage move --device sim: --home --angle 20"},
            {"One turn of a simulated stage that is 1 % too fast and replies up to 5 ms late:",
-            "vam-stage spin --device 'sim:?speed_error=0.01&jitter_ms=5' --speed 90 --run-up 0.25 --rate 10 "
+            "vam-stage spin --device 'sim:?speed_error=0.01&jitter=5' --speed 90 --run-up 0.25 --rate 10 "
             ">angles.jsonl"}},
           notes(),
           {"vam-project", "vam-sim-stage", "vam-capture"},
@@ -139,7 +139,9 @@ void add_home(cli::App& command, Options& options) {
 void add_move(cli::App& app, Options& options, std::string& chosen) {
   auto& move = app.subcommand("move", "turn to an angle and wait for standstill", chosen);
   add_common(move, options);
-  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.").was("--to");
+  move.option("--angle", "DEG", options.angle_deg, {-1e6, 1e6}, "Target angle; it may exceed 360 degrees.")
+      .was("--to")
+      .required();
   move.flag("--relative", options.relative, "The angle is relative to the present one.");
   add_home(move, options);
   add_speed(move, options);

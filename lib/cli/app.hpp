@@ -27,6 +27,7 @@ struct Manual {
   std::vector<std::string> files = {};                        // paragraphs on what its files hold beside the usual
   std::vector<ExitStatus> statuses = {};                      // beside those of all tools; device_statuses
   bool locks = false;                                         // looks up who reserves devices, if it drives none
+  bool reads = true;                                          // files; else it never ends with 65 or 66
 };
 
 /// For the manuals of tools that drive devices.

@@ -1,29 +1,161 @@
-// What device strings may begin with, before the colon. The tables of lib/device/open hold how each is opened, and the
-// compiler compares them with these; help texts, the comments of the printer file and tests/tools/devices.t follow.
+// What device strings may consist of: scheme, place and options. The tables of lib/device/open hold how each is opened,
+// and the compiler compares them with these; what is accepted, help texts, the list in vam-devices(1), the comments of
+// the printer file and tests/tools/devices.t follow.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vam::model {
+
+/// "baud=N", with what it is and its default, for people.
+struct DeviceOption {
+  std::string_view name;
+  std::string_view value;
+  std::string_view text;
+};
+
+/// A name that an option has had; it works for one release.
+struct FormerOption {
+  std::string_view name;
+  std::string_view present;
+};
 
 struct DeviceScheme {
   std::string_view scheme;
   std::string_view place;  // what follows the colon, for people
+  std::span<const DeviceOption> options = {};
+  std::span<const FormerOption> former = {};
 };
 
-inline constexpr std::array stage_schemes{DeviceScheme{"gcs", "PATH"}, DeviceScheme{"tic", "SERIAL"},
-                                          DeviceScheme{"grbl", "PATH"}, DeviceScheme{"zaber", "PATH"},
-                                          DeviceScheme{"sim", ""}};
-inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP"}, DeviceScheme{"v4l2", "PATH"},
-                                           DeviceScheme{"replay", "PLACE"}, DeviceScheme{"sim", ""}};
-inline constexpr std::array display_schemes{DeviceScheme{"drm", "CONNECTOR"}, DeviceScheme{"sdl", "SCREEN"},
-                                            DeviceScheme{"null", ""}};
-inline constexpr std::array light_schemes{DeviceScheme{"dlpc350", "SERIAL"}, DeviceScheme{"dlpc900", "SERIAL"},
-                                          DeviceScheme{"sim", ""}};
-inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH"}, DeviceScheme{"sim", ""}};
+inline constexpr DeviceOption gcs_options[] = {
+    {"baud", "N", "rate of the port; default: detected"},
+    {"address", "N", "controller of a daisy chain, 1 to 16; default: none"},
+    {"axis", "NAME", "axis of the controller; default: 1"},
+    {"timeout_s", "S", "longest wait for a reply, 0.01 to 0.4; default: 0.2"}};
+inline constexpr DeviceOption tic_options[] = {
+    {"steps_per_deg", "N", "microsteps per degree of the stage, negative to reverse it; required"}};
+inline constexpr DeviceOption grbl_options[] = {
+    {"baud", "N", "rate of the port; default: 115200"},
+    {"axis", "X|Y|Z", "axis of the stage; default: X"},
+    {"home", "switch|here",
+     "what --home does: search the homing switch, or take the present position as 0 degrees for "
+     "one command; default: switch"}};
+inline constexpr DeviceOption zaber_options[] = {
+    {"baud", "N", "rate of the port; default: 115200"},
+    {"address", "N", "device of the chain, 1 to 99; default: 1"},
+    {"axis", "N", "axis of the device, 1 to 9; default: 1"},
+    {"steps_per_deg", "N", "microsteps per degree; default: as stored in the device"}};
+inline constexpr DeviceOption sim_stage_options[] = {  // those of vam-sim-stage(1)
+    {"acceleration", "DEG/S2", "acceleration of ramps and smooth stops; default: 60"},
+    {"speed_error", "FRACTION", "relative; default: 0"},
+    {"ripple", "FRACTION", "amplitude of a speed ripple of 30 degrees; default: 0"},
+    {"max_speed", "DEG/S", "maximum speed; default: 90"},
+    {"min_angle", "DEG", "lower limit of travel; default: -36000"},
+    {"max_angle", "DEG", "upper limit of travel; default: 36000"},
+    {"start_angle", "DEG", "angle at power-on, from the reference; default: 17"},
+    {"reply_delay", "MS", "delay of replies; default: 0.5"},
+    {"jitter", "MS", "additional random delay; default: 0"},
+    {"address", "N", "address in a daisy chain; default: 1"},
+    {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"},
+    {"seed", "N", "of the random numbers; default: 1"},
+    {"log", "FILE", "the simulator's own log"}};
+inline constexpr FormerOption former_sim_stage_options[] = {{"acceleration_deg_s2", "acceleration"},
+                                                            {"jitter_ms", "jitter"},
+                                                            {"latency_ms", "reply_delay"},
+                                                            {"home_deg", "start_angle"},
+                                                            {"travel_deg", "max_angle"}};
+inline constexpr DeviceOption aravis_options[] = {
+    {"packet_size", "BYTES", "of GigE Vision, 576 to 9000; default: as the camera has it"},
+    {"buffers", "N", "frames that can wait in memory, 10 to 1000; default: 20"}};
+inline constexpr DeviceOption v4l2_options[] = {
+    {"buffers", "N", "frames that can wait in memory, 2 to 64; default: 10"}};
+inline constexpr DeviceOption replay_options[] = {
+    {"pace", "real|virtual", "wait for the recorded times, or do not; default: virtual"}};
+inline constexpr DeviceOption sim_camera_options[] = {  // those of vam-sim-camera(1), and some of the sensor
+    {"part", "BODIES", "shape of the print"},
+    {"lit", "S", "exposed time that completes the print"},
+    {"follow", "FILE", "stage angle, from this log of vam-sim-stage"},
+    {"speed", "DEG/S", "stage speed without follow"},
+    {"flips", "FILE", "log of vam-project"},
+    {"axis_offset", "PX", "rotation axis from the middle of the sensor"},
+    {"tilt", "DEG", "tilt of the axis"},
+    {"centre", "PX", "vial from projector.axis_column, in projector columns"},
+    {"wobble", "MM", "vial's axis from the rotation axis"},
+    {"wobble_phase", "DEG", "stage angle of its largest column"},
+    {"beam", "MM", "width of a pixel's beam in focus"},
+    {"focus", "MM", "place of the focus along the beam"},
+    {"divergence", "DEG", "increase of the beam's width"},
+    {"projector_gamma", "N", "gamma of the projector"},
+    {"vignetting", "FRACTION", "loss of intensity in the corners"},
+    {"glow", "FRACTION", "fluorescence of the resin"},
+    {"card", "1", "uniform card in place of the vial"},
+    {"columns", "PX", "sensor columns"},
+    {"rows", "PX", "sensor rows"},
+    {"bits", "N", "depth of grey levels, 8 to 16; default: 8"},
+    {"background", "FRACTION", "background light"},
+    {"noise", "FRACTION", "standard deviation of noise"},
+    {"lag", "MS", "delay of the time stamps"},
+    {"drop", "FRAMES", "frames that are dropped"},
+    {"incomplete", "FRAMES", "frames that arrive incomplete"},
+    {"unplug", "N", "disconnect before this frame"},
+    {"shrink", "N", "from this frame on, half the agreed height"},
+    {"pace", "real|virtual", "wait for the frame period, or do not; default: real"},
+    {"seed", "N", "of the random numbers"},
+    {"log", "FILE", "the simulator's own log"}};
+inline constexpr FormerOption former_sim_camera_options[] = {{"tilt_deg", "tilt"},
+                                                             {"centre_px", "centre"},
+                                                             {"wobble_mm", "wobble"},
+                                                             {"wobble_deg", "wobble_phase"},
+                                                             {"beam_mm", "beam"},
+                                                             {"focus_mm", "focus"},
+                                                             {"divergence_deg", "divergence"},
+                                                             {"speed_deg_s", "speed"},
+                                                             {"lit_s", "lit"},
+                                                             {"lag_ms", "lag"},
+                                                             {"shown", "flips"},
+                                                             {"angles", "follow"},
+                                                             {"axis_column", "axis_offset"},
+                                                             {"gamma", "projector_gamma"},
+                                                             {"lose", "drop"},
+                                                             {"cut", "incomplete"},
+                                                             {"vanish", "unplug"}};
+inline constexpr DeviceOption drm_options[] = {
+    {"mode", "COLUMNSxROWS@HZ", "mode of the display, the rate may be omitted; default: the preferred one"},
+    {"bpc", "N", "maximum bits per colour on the cable, 6 to 16; default: unchanged"}};
+inline constexpr DeviceOption null_options[] = {
+    {"hz", "N", "vertical blanks per second, 5 to 1000; default: 60"},
+    {"miss", "N", "show every N-th flip one vertical blank late; default: none"}};
+inline constexpr DeviceOption light_options[] = {
+    {"current_percent", "N", "LED current, in per cent of full; default: unchanged"},
+    {"max_current_percent", "N", "limit, if below projector.max_led_current_percent"},
+    {"leds", "LETTERS", "LEDs in use, of r, g and b; default: b"}};
+inline constexpr DeviceOption sim_light_options[] = {
+    light_options[0], light_options[1], light_options[2], {"log", "FILE", "the simulator's own log"}};
+inline constexpr DeviceOption relay_options[] = {{"baud", "N", "rate of the port; default: 115200"}};
+inline constexpr DeviceOption sim_relay_options[] = {
+    {"fault", "FAULTS", "faults to inject, as KIND@COMMAND:N, separated by commas"},
+    {"log", "FILE", "the simulator's own log"}};
+
+inline constexpr std::array stage_schemes{
+    DeviceScheme{"gcs", "PATH", gcs_options}, DeviceScheme{"tic", "SERIAL", tic_options},
+    DeviceScheme{"grbl", "PATH", grbl_options}, DeviceScheme{"zaber", "PATH", zaber_options},
+    DeviceScheme{"sim", "", sim_stage_options, former_sim_stage_options}};
+inline constexpr std::array camera_schemes{DeviceScheme{"aravis", "ID-or-IP", aravis_options},
+                                           DeviceScheme{"v4l2", "PATH", v4l2_options},
+                                           DeviceScheme{"replay", "PLACE", replay_options},
+                                           DeviceScheme{"sim", "", sim_camera_options, former_sim_camera_options}};
+inline constexpr std::array display_schemes{DeviceScheme{"drm", "CONNECTOR", drm_options},
+                                            DeviceScheme{"sdl", "SCREEN"}, DeviceScheme{"null", "", null_options}};
+inline constexpr std::array light_schemes{DeviceScheme{"dlpc350", "SERIAL", light_options},
+                                          DeviceScheme{"dlpc900", "SERIAL", light_options},
+                                          DeviceScheme{"sim", "", sim_light_options}};
+inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH", relay_options},
+                                          DeviceScheme{"sim", "", sim_relay_options}};
 
 /// "a:PATH, b:SERIAL or sim:", of a table whose rows have a scheme and a place.
 [[nodiscard]] std::string forms_of(const auto& table) {
@@ -33,6 +165,21 @@ inline constexpr std::array relay_schemes{DeviceScheme{"relay", "PATH"}, DeviceS
     forms += std::string(row->scheme) + ":" + std::string(row->place);
   }
   return forms;
+}
+
+/// "sim: baud=N (rate of the port); ...": a line for each scheme that has options.
+[[nodiscard]] std::vector<std::string> options_of(const auto& table) {
+  std::vector<std::string> lines;
+  for (const DeviceScheme& row : table) {
+    if (row.options.empty()) continue;
+    std::string line = std::string(row.scheme) + ":";
+    for (const auto& option : row.options) {
+      line += (&option == row.options.data() ? " " : "; ") + std::string(option.name) + "=" +
+              std::string(option.value) + " (" + std::string(option.text) + ")";
+    }
+    lines.push_back(line + ".");
+  }
+  return lines;
 }
 
 /// Whether a table of backends has these schemes, in their order.

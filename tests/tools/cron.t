@@ -10,7 +10,7 @@ cp "$VAM_SOURCE/scripts/vam-calibrate-all" "$VAM_SOURCE/scripts/vam-print" prefi
 for tool in "$tools"/vam-*; do ln -s "$tool" prefix/bin; done
 cat >printer.toml <<TOML
 [stage]
-device = "sim:?acceleration_deg_s2=1000&log=$PWD/truth"
+device = "sim:?acceleration=1000&log=$PWD/truth"
 speed_deg_s = 85
 [camera]
 device = "sim:?follow=$PWD/truth&lit=0.001&columns=128&rows=96&part=cylinder:x=2,diameter=3,height=8"

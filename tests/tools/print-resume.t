@@ -6,7 +6,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 trials=$((${VAM_TRIALS:-10} / 5))
 tiny_print frames.exr
-printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
+printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
 print() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --max-missed-lit 0.9 --run-up 0.05 --uncalibrated --frames-per-turn 60 "$@"; }
 cat >judge.py <<'PY'
 # The largest difference, over 60 stage angles, between the showing times in the first run and those in the others

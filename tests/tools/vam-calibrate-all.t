@@ -6,7 +6,7 @@
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 mkdir keep
 judge="python3 $VAM_SOURCE/tests/tools/scan_judge.py"
-camera_bench "sim:?acceleration_deg_s2=1000&log=$PWD/truth" 85
+camera_bench "sim:?acceleration=1000&log=$PWD/truth" 85
 value() { json "cal/current-$1.json" "values.$2.value"; }
 sigma() { json "cal/current-$1.json" "values.$2.sigma"; }
 within() { near "$1 is within its stated sigma" "$2" "$3" "4 * $4"; }  # within NAME GOT WANT SIGMA: one of 16 000 is not

@@ -10,6 +10,7 @@ kept() { ls cal | grep -c "^cal-lab-1-$1-.*json"; }  # records of a scan
 geometry='columns=512 pitch=4 width=2 radius=12.4'
 $scans sweep sweep axis=249.3 $geometry
 $scans ramp ramp
+$scans ramp darkness full=0
 $scans flat flat
 $scans beam beam
 $scans turn turn axis=61.25 wobble=2 phase=40
@@ -52,6 +53,14 @@ vam-calibrate beam beam --pixel 0.0035 --first -6.35 --spacing 1.27 >beam.json
 is 'beam: status 0' $? 0
 near 'beam: the divergence' "$(value beam.json divergence)" 0.6417 "2 * $(sigma beam.json divergence) + 0.002"
 is 'beam: eleven planes' "$(python3 -c 'import json; print(len(json.load(open("beam.json"))["planes"]))')" 11
+
+# Black that is the camera's own dark: the contrast is a limit, in words.
+vam-calibrate response ramp >contrast.json
+vam-calibrate response ramp --dark darkness/00000.png >limit.json
+near 'response: the contrast of a black that is seen' "$(value contrast.json contrast)" 101 3
+is 'response: of one that is not, a lower limit' "$(json limit.json values.contrast.method) $(sigma limit.json contrast)" \
+  'lower limit: black is not distinguished from no light 0.0'
+holds 'response: no higher than a camera resolves' "$(value limit.json contrast) > 100 && $(value limit.json contrast) <= 4096"
 
 cat >printer.toml <<'TOML'
 [projector]

@@ -54,10 +54,10 @@ is 'a mesh is unsealed' "$(vam-check a.off)" 'a.off: file of another kind, unsea
 
 # ---- records, reports, printer files -------------------------------------------------------------------------------
 vam-slice --print-printer --set vial.radius_mm=11.5 -o printer.toml
-is 'a printer file is unsealed by default' "$(vam-check printer.toml)" 'printer.toml: file of another kind, unsealed'
+is 'a printer file is unsealed by default' "$(vam-check printer.toml)" 'printer.toml: printer file, unsealed'
 vam-check --seal printer.toml && vam-check --seal printer.toml
 is 'a printer file is sealed once' "$(grep -c '^# sealed xxh3:' printer.toml) $(vam-check printer.toml)" \
-  '1 printer.toml: file of another kind, sealed'
+  '1 printer.toml: printer file, sealed'
 ok 'a sealed printer file is read' vam-slice --print-printer --printer printer.toml -o again.toml
 sed 's/^radius_mm = 11.5/radius_mm = 17.5/' printer.toml >changed.toml
 fails 65 "changed.toml: changed after it was written .* remove its last line '# sealed" vam-slice --print-printer --printer changed.toml -o x.toml

@@ -22,6 +22,32 @@ fails 64 'unknown option|unexpected|not expected' vam-devices --aks
 fails 64 '' vam-devices ttyUSB0
 fails 73 'missing' vam-devices --report missing/x.json
 
+# Every option that a device accepts is in the manual, and those of simulators are named as those of their programs.
+vam-devices --man | tr -s ' \n' ' ' >page
+accepted() { "$@" 2>&1 | sed -n 's/.* options: \(.*\))$/\1/p' | tr -d ,; }
+{
+  for scheme in gcs tic grbl zaber sim; do echo "$scheme $(accepted vam-stage identify --device "$scheme:?none=1")"; done
+  for scheme in aravis v4l2 replay sim; do echo "$scheme $(accepted vam-capture identify --device "$scheme:?none=1")"; done
+  for scheme in drm null; do echo "$scheme $(accepted vam-project --pattern grey -o "$scheme:?none=1")"; done
+  for scheme in dlpc350 dlpc900 sim; do echo "$scheme $(accepted vam-project --pattern grey -o null: --light "$scheme:?none=1")"; done
+  for scheme in relay sim; do echo "$scheme $(accepted vam-project --pattern grey -o null: --set "projector.relay=$scheme:?none=1")"; done
+} >schemes
+is 'every scheme lists its options when one is unknown' "$(wc -l <schemes) $(awk 'NF < 2' schemes)" '16 '
+while read -r scheme options; do
+  for option in $options; do grep -q "$scheme:.* $option=" page || echo "$scheme $option"; done
+done <schemes >undocumented
+is 'every option is in the manual' "$(cat undocumented)" ''
+{
+  for option in $(accepted vam-stage identify --device 'sim:?none=1'); do
+    vam-sim-stage --help | grep -q -- "--$(echo "$option" | tr _ -) " || echo "vam-sim-stage $option"
+  done
+  for option in $(accepted vam-capture identify --device 'sim:?none=1'); do
+    case $option in bits | pace) continue ;; esac  # of what is no program
+    vam-sim-camera --help | grep -Eq -- "--$(echo "$option" | tr _ -)( |$)" || echo "vam-sim-camera $option"
+  done
+} >unlike
+is 'the simulators have the same names' "$(cat unlike)" ''
+
 # A stage on a serial port: free, probed, in use, without permission, and no stage at all.
 shim=$(vam-sim-stage --shim)
 stage_up

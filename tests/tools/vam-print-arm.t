@@ -5,7 +5,7 @@
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 PATH=$VAM_SOURCE/scripts:$PATH; export PATH
 tiny_print frames.exr
-printf '[stage]\ndevice = "sim:?acceleration_deg_s2=9000&travel_deg=1e7"\nspeed_deg_s = 90\n' >>printer.toml
+printf '[stage]\ndevice = "sim:?acceleration=9000&min_angle=-1e7&max_angle=1e7"\nspeed_deg_s = 90\n' >>printer.toml
 dry() { vam-print frames.exr --display null: --light sim: --max-missed 0.9 --run-up 0.05 "$@"; }
 print() { dry --uncalibrated "$@"; }
 
@@ -36,7 +36,7 @@ holds 'turns to the critical dose are those of vam-optimize' "($got - $wanted) ^
 plan --display drm:X --set vial.radius_mm=6 --set stage.device=grbl:/nowhere --view-step 90 --set 'camera.device=v4l2:/nowhere' >plan.txt 2>errors
 is 'a plan continues after a problem' "$? $(grep -c 'failed$' plan.txt) $(grep -c . errors)" '65 4 4'
 ok 'each reported in one line' sh -c 'grep -q "vial.radius_mm 12.7, now 6" errors && grep -q "drm:X: no such" errors && grep -q "/nowhere: not a serial" errors && grep -q "/nowhere: cannot open" errors'
-plan --set 'stage.device=sim:?travel_deg=360' >plan.txt 2>errors
+plan --set 'stage.device=sim:?min_angle=-360&max_angle=360' >plan.txt 2>errors
 is 'travel beyond the limits' "$? $(grep -c 'require travel from .* but the controller allows -360 to 360' errors)" '65 1'
 is 'no plan leaves anything' "$(ls -d print-* 2>/dev/null)" ''
 
@@ -67,7 +67,7 @@ vam-print: warning: --missed-lit is now --max-missed-lit'
 # A condition that is never met.
 vam-slice --shape half-cylinder:diameter=3,height=2 --voxel 0.26 -o part.vdb
 print --turns 2 --view-step 10 --until 'iou>=0.99' --target part.vdb --isovalue 0.001 --run unmet --set stage.speed_deg_s=45 \
-  --set stage.device="sim:?acceleration_deg_s2=9000&log=$PWD/truth" \
+  --set stage.device="sim:?acceleration=9000&log=$PWD/truth" \
   --set camera.axis_column=63.5 --set camera.tilt_deg=0 --set camera.pixel_mm=0.26 --set camera.device="sim:?follow=$PWD/truth&lit=0.01&columns=128&rows=96" >out 2>errors
 is 'a condition that is not met is status 1' "$? $(grep -c . errors)" '1 1'
 sed 's/^/# /' errors
@@ -208,10 +208,13 @@ if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=400k none small 2>/dev/null; the
   trap 'umount small 2>/dev/null; rm -rf "$scratch"' EXIT
   print --turns 50 --run small/run --light "sim:?log=$PWD/full-leds" >out 2>errors
   is 'a full disk ends a print' "$? $(grep -c 'No space left on device' errors)" '74 1'
-  ok 'reported with the name of a tool' grep -Eq '^(vam-[a-z]+|tee): ' errors
+  is 'reported with the name of the tool or of the file' "$(grep -Evc '^vam-[a-z]+: .*small/run' errors)" 0
   is 'the light is off' "$(grep -o '"bits":[0-9]*' full-leds | tail -n 1)" '"bits":0'
   is 'and a summary is written' "$(json small/run/summary.json status) $(json small/run/summary.json outcome | grep -c failed)" '74 1'
   holds 'which states the progress' "$(json small/run/summary.json reached.lit_flips) > 0"
+  umount small
+  mount -t tmpfs -o size=60k none small
+  fails 74 '^vam-print: small/run: has no room for 64 kB' print --run small/run
   umount small
 else
   echo '# no small disk can be mounted: none is filled'

@@ -51,11 +51,11 @@ follow() {  # follow LEDS FLIPS OPTIONS...: the lines of a stage, without a scre
   leds=$1; flips=$2; shift 2
   vam-project part.exr -o null: --follow - --light "sim:?log=$leds" --log $flips --max-missed 0.9 "$@"
 }
-(vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 | sed -u 550q | follow leds2 flips2) 2>errors2 &
+(vam-stage spin --device 'sim:?acceleration=1000' --speed 85 --run-up 0.5 | sed -u 550q | follow leds2 flips2) 2>errors2 &
 early=$!
-(vam-stage spin --device 'sim:?acceleration_deg_s2=1000&speed_error=0.03' --speed 85 --run-up 0.1 | follow leds3 flips3) 2>errors3 &
+(vam-stage spin --device 'sim:?acceleration=1000&speed_error=0.03' --speed 85 --run-up 0.1 | follow leds3 flips3) 2>errors3 &
 fast=$!
-vam-stage spin --device 'sim:?acceleration_deg_s2=1000' --speed 85 --run-up 0.5 | follow leds flips --report report.json
+vam-stage spin --device 'sim:?acceleration=1000' --speed 85 --run-up 0.5 | follow leds flips --report report.json
 is 'a followed print has status 0' $? 0
 is 'the light came on once and went off once' "$(grep -o '"bits":[0-9]*' leds | tail -n 3 | tr '\n' ' ')" '"bits":0 "bits":4 "bits":0 '
 holds 'about four seconds of light at 60 Hz' "$(json report.json lit_flips) > 200 && $(json report.json lit_flips) < 260"

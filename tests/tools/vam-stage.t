@@ -12,7 +12,7 @@ fails 64 'did you mean baud' vam-stage identify --device gcs:/dev/null?boud=1
 fails 64 'out of range' vam-stage spin --turns 0
 fails 64 "'0' is not one of 1, -1" vam-stage spin --direction 0 --log events
 fails 65 "200 deg/s exceeds the stage's maximum of 90; give a lower --speed" vam-stage move --device sim: --home --angle 9 --speed 200
-fails 64 'not a number' vam-stage spin --device 'sim:?jitter_ms=much'
+fails 64 'not a number' vam-stage spin --device 'sim:?jitter=much'
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/null
 fails 69 'not a serial port' vam-stage identify --device gcs:/dev/ttyS_none
 fails 73 'cannot be written' vam-stage identify --log missing/log
@@ -41,8 +41,11 @@ ok 'identify' vam-stage identify --device sim:
 vam-stage identify --set stage.device=sim: >about
 is 'the model is marked as simulated' "$(json about model) $(json about simulated)" 'C-863.11 true'
 ok 'ports' vam-stage ports
-quiet 'move' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3' --home --angle 20 --speed 80
-fails 76 'limits' vam-stage move --device 'sim:?acceleration_deg_s2=1000&home_deg=3&travel_deg=10' --home --angle 20
+fails 64 '.--angle: missing' vam-stage move --device sim: --home
+is 'former names of options work, with a warning' \
+  "$(vam-stage identify --device 'sim:?jitter_ms=1' 2>&1 >/dev/null)" "vam-stage: warning: device 'sim:?jitter_ms=1': option jitter_ms is now jitter"
+quiet 'move' vam-stage move --device 'sim:?acceleration=1000&start_angle=3' --home --angle 20 --speed 80
+fails 76 'limits' vam-stage move --device 'sim:?acceleration=1000&start_angle=3&max_angle=10' --home --angle 20
 vam-stage follow --device sim: --duration 0.2 --rate 50 >samples
 is 'follow prints its samples' "$(wc -l <samples)" 10
 holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle_deg) == 17"
@@ -51,7 +54,7 @@ holds 'and reports the stage angle' "$(sed -n 3p samples | json /dev/stdin angle
 stage_up --acceleration 5000 --max-speed 720
 stage identify >about
 is 'identify over the line' "$(json about serial)" 0116012345
-fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move --device "gcs:$PWD/stage?axis=7" --log why
+fails 64 'no axis 7; the controller has 1' env LD_PRELOAD=$shim vam-stage move --angle 0 --device "gcs:$PWD/stage?axis=7" --log why
 quiet 'home over the line' stage home
 stage spin --speed 360 --run-up 0.25 --turns 1 --log events >samples 2>errors
 is 'spin has status 0' $? 0

@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/text.hpp"
 #include "io/settings/calibration_record.hpp"
+#include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "metrology/calibrate/wobble.hpp"
 #include "vam-calibrate/scan.hpp"
@@ -17,6 +18,12 @@ namespace vam::calibrate_tool {
 namespace {
 
 constexpr double wanted_radius_sigma = 2e-3;  // of the radius, so that a change of 0.5 % is distinguished from noise
+// What the fit's own sigma does not know: how far the resin's absorption is as stated, as a part of what it changes;
+// and as found on the simulated bench what is left of the noise that is cut off at level 0, as a part of its
+// correction, and a beam that is 0.7 mm wide or widens by 2 degrees, as a part of the radius.
+constexpr double unsure_of_absorption = 0.2;
+constexpr double unsure_of_cut_off = 1.0 / 3;
+constexpr double unsure_of_beam = 1e-4;
 constexpr double allowed_shift_px = 1;
 constexpr double allowed_radius_change = 0.005;
 
@@ -43,8 +50,8 @@ void compare_edges(const ScanOptions& options, const model::Calibration& calibra
   }
 }
 
-// The frames of one sweep, by the pattern's frame: how many, and the sum of each height's means.
-using Sweep = std::map<int, std::pair<int, std::vector<double>>>;
+// The frames of one sweep, by the pattern's frame: the sum of each height's readings.
+using Sweep = std::map<int, std::vector<metrology::BandReading>>;
 
 struct Sweeps {
   std::map<long, Sweep> by_angle;  // stage angle in whole degrees, 0...359; -1: not known
@@ -55,27 +62,35 @@ struct Sweeps {
 Sweeps read_sweeps(const ScanOptions& options, const model::Printer& printer) {
   Sweeps sweeps;
   each_frame(options, printer, FrameKind::steady, [&](const ScanFrame& frame) {
-    const auto means = metrology::band_means(frame.image, options.heights);
+    const auto readings = metrology::band_readings(frame.image, options.heights);
     const long angle = std::isfinite(frame.angle_deg) ? (std::lround(frame.angle_deg) % 360 + 360) % 360 : -1;
-    auto& [count, sum] = sweeps.by_angle[angle][frame.shown];
-    sum.resize(means.size());
-    for (std::size_t b = 0; b < means.size(); ++b) sum[b] += means[b];
-    ++count;
+    auto& sum = sweeps.by_angle[angle][frame.shown];
+    sum.resize(readings.size());
+    for (std::size_t b = 0; b < readings.size(); ++b) sum[b].add(readings[b]);
     sweeps.rows = frame.image.height;
     sweeps.row_mm = frame.pixel_mm;
   });
   return sweeps;
 }
 
-metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, const Sweep& sweep) {
+std::vector<double> means_of(const std::vector<metrology::BandReading>& readings) {
+  std::vector<double> means;
+  for (const auto& reading : readings) means.push_back(reading.mean());
+  return means;
+}
+
+// corrected: for noise that the camera cuts off at level 0.
+metrology::SweepScan to_scan(const ScanOptions& options, const Sweeps& sweeps, const Sweep& sweep, bool corrected) {
   metrology::SweepScan scan;
   scan.width_px = options.width_px;
-  scan.signal.resize(options.heights);
+  std::vector<std::vector<metrology::BandReading>> readings(options.heights);
   for (const auto& [shown, sum] : sweep) {
     scan.column.push_back(shown * options.pitch_px + 0.5 * (options.width_px - 1));
-    for (std::size_t b = 0; b < scan.signal.size(); ++b) scan.signal[b].push_back(sum.second[b] / sum.first);
+    for (std::size_t b = 0; b < readings.size(); ++b) readings[b].push_back(sum[b]);
   }
-  const int band_rows = sweeps.rows / options.heights;  // as band_means() cuts them
+  for (const auto& band : readings)
+    scan.signal.push_back(corrected ? metrology::without_cut_off(band) : means_of(band));
+  const int band_rows = sweeps.rows / options.heights;  // as band_readings() cuts them
   for (int b = 0; b < options.heights; ++b) {
     scan.height_mm.push_back((0.5 * options.heights - b - 0.5) * band_rows * sweeps.row_mm);
   }
@@ -119,6 +134,11 @@ metrology::VialEdges combine(const std::vector<double>& angles, const std::vecto
   return out;
 }
 
+double radius_in_clear_resin_mm(const metrology::SweepScan& scan, model::Printer printer) {
+  printer.resin.absorption_per_mm = 0;
+  return metrology::find_edges(scan, printer).radius_mm.value;
+}
+
 }  // namespace
 
 Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
@@ -126,16 +146,26 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
   std::vector<double> angles;
   std::vector<metrology::VialEdges> all;
   std::size_t positions = 0;
+  double cut_off_mm = 0;   // by how much the correction changes the radius
+  double absorbed_mm = 0;  // and the absorption
   for (const auto& [angle, sweep] : sweeps.by_angle) {
-    const metrology::SweepScan scan = to_scan(options, sweeps, sweep);
+    const metrology::SweepScan scan = to_scan(options, sweeps, sweep, true);
+    const metrology::SweepScan plain = to_scan(options, sweeps, sweep, false);
     angles.push_back(static_cast<double>(angle));
     all.push_back(metrology::find_edges(scan, printer));
     positions = scan.column.size();
+    if (all.size() == 1) absorbed_mm = all.back().radius_mm.value - radius_in_clear_resin_mm(scan, printer);
+    if (scan.signal == plain.signal) continue;
+    const double plain_mm = metrology::find_edges(plain, printer).radius_mm.value;
+    cut_off_mm += (all.back().radius_mm.value - plain_mm) / static_cast<double>(sweeps.by_angle.size());
   }
   if (all.empty())
     throw Error{Fault::data, options.from + ": no frame shows a single line of the sweep; check --flips"};
   Finding finding;
-  const auto found = combine(angles, all, finding, printer.projector.pixel_mm);
+  auto found = combine(angles, all, finding, printer.projector.pixel_mm);
+  stats::Measured& radius = found.radius_mm;
+  radius.sigma = std::hypot(std::hypot(radius.sigma, unsure_of_absorption * absorbed_mm),
+                            unsure_of_cut_off * cut_off_mm, unsure_of_beam * radius.value);
   const char* method =
       all.size() > 1 ? "edge fit of fluorescence, mean over the stage angles" : "edge fit of fluorescence";
   finding.value("axis_column", found.axis_column, "px", method);
@@ -147,6 +177,8 @@ Finding scan_edges(const ScanOptions& options, const model::Printer& printer) {
                                {"width_px", options.width_px},
                                {"positions", positions},
                                {"heights", options.heights},
+                               {"cut_off_mm", cut_off_mm},
+                               {"absorbed_mm", absorbed_mm},
                                {"pixel_mm", printer.projector.pixel_mm},
                                {"throw_mm", model::columns_lens_mm(printer.projector).value_or(0)}};
   if (all.size() > 1) finding.facts["settings"]["stage_angles_deg"] = angles;

@@ -31,11 +31,20 @@ std::map<int, std::vector<double>> by_level(const ScanOptions& options, std::map
   return levels;
 }
 
+// Black that is not distinguished from the dark frames gives a lower limit: the contrast for the most that it may be.
+void add_contrast(const stats::Measured& black, Finding& finding) {
+  constexpr double resolved = 1.0 / 4096;  // of full: of a camera of 12 bits
+  if (black.value > 3 * black.sigma && black.value > resolved) {
+    const stats::Measured contrast{1 / black.value, black.sigma / std::pow(black.value, 2), black.n};
+    return finding.value("contrast", contrast, "1", "full grey over black");
+  }
+  const double most = std::max(black.value + 2 * black.sigma, resolved);
+  finding.value("contrast", {1 / most, 0, black.n}, "1", "lower limit: black is not distinguished from no light");
+}
+
 Finding finding_of(const metrology::ResponseCurve& curve, const std::string& instrument) {
   Finding finding;
-  const stats::Measured& black = curve.intensity.front();
-  const double least = std::max(black.value, 1e-9);
-  finding.value("contrast", {1 / least, black.sigma / std::pow(least, 2), black.n}, "1", "full grey over black");
+  add_contrast(curve.intensity.front(), finding);
   std::string csv = "# of " + instrument + ", by vam-calibrate response\ngrey,intensity\n";
   Json levels = Json::array();
   for (std::size_t i = 0; i < curve.grey.size(); ++i) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <utility>
 
 #include "base/error.hpp"
@@ -95,8 +96,12 @@ std::unique_ptr<FrameStore> open_store(const cli::App& app, const Options& o, co
   return o.live ? open_stream(o.output, info, o.stack) : open_stack(o.output, info, o.stack);
 }
 
-std::unique_ptr<device::AngleSource> open_angles(const Options& o) {
-  if (!o.follow.empty()) return device::followed_angle(o.follow, device::real_clock());
+std::unique_ptr<device::AngleSource> open_angles(const Options& o, const device::CapturePlan& plan) {
+  if (!o.follow.empty()) {
+    const double never = std::numeric_limits<double>::infinity();
+    const double last_deg = o.every_deg ? (static_cast<double>(plan.frames) - 0.5) * *o.every_deg : never;
+    return device::followed_angle(o.follow, device::real_clock(), last_deg);
+  }
   if (o.speed_deg_s) return device::elapsed_angle(*o.speed_deg_s, device::real_clock());
   if (o.angle_deg) return device::standing_angle(*o.angle_deg);
   return nullptr;
@@ -180,7 +185,7 @@ void take(const cli::App& app, const Options& options) {
   check(options, printer);
   const device::CapturePlan plan = plan_of(options, printer);
   device::EventLog log(options.log);
-  const auto angles = open_angles(options);
+  const auto angles = open_angles(options, plan);
   const auto camera = open_camera(options, printer);
   const auto store = open_store(app, options, printer, *camera, plan.frames);
   Json about = facts(*camera);

@@ -35,9 +35,14 @@ void Live::begin() {
   if (relay_ != nullptr) relay_->close();
 }
 
+device::Lamp* Live::lamp() {
+  if (relay_ == nullptr) return light_.get();
+  return &relayed_.emplace(light_.get(), *relay_);
+}
+
 device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns) {
   const auto angles = options_.follow.empty() ? device::elapsed_angle(speed_deg_s, clock_)
-                                              : device::followed_angle(options_.follow, clock_);
+                                              : device::followed_angle(options_.follow, clock_, 360.0 * turns);
   begin();
   device::PlayPlan plan;
   plan.frames_per_turn = frames_per_turn;
@@ -47,12 +52,12 @@ device::PlayTally Live::play(int frames_per_turn, double speed_deg_s, int turns)
   plan.latency_s = 1e-3 * options_.latency_ms.value_or(0);
   plan.allowed_missed = options_.allowed_missed;
   plan.allowed_missed_lit = options_.allowed_missed_lit;
-  return ended(device::play(*display_, light_.get(), *angles, clock_, plan, logger()));
+  return ended(device::play(*display_, lamp(), *angles, clock_, plan, logger()));
 }
 
 device::PlayTally Live::play_through(double hold_s, bool forever) {
   begin();
-  return ended(device::play_through(*display_, light_.get(), clock_, frames_, hold_s, forever, logger()));
+  return ended(device::play_through(*display_, lamp(), clock_, frames_, hold_s, forever, logger()));
 }
 
 device::PlayTally Live::ended(const device::PlayTally& tally) {

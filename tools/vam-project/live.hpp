@@ -3,12 +3,15 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "device/os/event_log.hpp"
+#include "device/projector/light_engine.hpp"
 #include "device/projector/player.hpp"
+#include "device/projector/relayed_lamp.hpp"
 #include "device/safety/relay.hpp"
 #include "io/image/frame_sink.hpp"
 #include "vam-project/options.hpp"
@@ -30,6 +33,7 @@ class Live {
 
  private:
   void begin();
+  [[nodiscard]] device::Lamp* lamp();
   device::PlayTally ended(const device::PlayTally& tally);
   std::function<void(const device::FlipRecord&)> logger();
 
@@ -39,6 +43,7 @@ class Live {
   device::Clock& clock_;
   std::unique_ptr<device::Relay> relay_;
   std::unique_ptr<device::LightEngine> light_;
+  std::optional<device::RelayedLamp> relayed_;
   std::unique_ptr<device::Display> display_;
   int frames_ = 0;
 };

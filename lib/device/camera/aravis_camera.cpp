@@ -382,7 +382,6 @@ class AravisCamera final : public Camera {
 }  // namespace
 
 std::unique_ptr<Camera> open_aravis_camera(const Address& address, const CameraSettings& settings, Clock& clock) {
-  address.allow({"packet_size", "buffers"});
   return std::make_unique<AravisCamera>(address, settings, clock);
 }
 

@@ -61,7 +61,6 @@ class ReplayCamera final : public Camera {
 
 std::unique_ptr<Camera> open_replay_camera(const Address& address, const CameraSettings& settings,
                                            const CameraBench& bench, Clock& clock) {
-  address.allow({"pace"});
   if (settings.exposure_us || settings.fps || settings.binning || settings.trigger != "free" || settings.gain ||
       settings.black_level || settings.gamma != 1) {
     throw Error{Fault::usage, "device '" + address.text +

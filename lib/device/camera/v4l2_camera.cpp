@@ -342,7 +342,6 @@ std::unique_ptr<V4l2Driver> kernel_v4l2() { return std::make_unique<KernelV4l2>(
 
 std::unique_ptr<Camera> open_v4l2_camera(const Address& address, const CameraSettings& settings,
                                          std::unique_ptr<V4l2Driver> driver, Clock& clock) {
-  address.allow({"buffers"});
   if (settings.binning.value_or(1) != 1 || settings.trigger != "free") {
     throw Error{Fault::usage, "device '" + address.text + "': V4L2 supports neither binning nor triggers"};
   }

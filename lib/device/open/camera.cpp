@@ -43,7 +43,7 @@ std::string camera_devices() { return model::forms_of(model::camera_schemes); }
 std::unique_ptr<Camera> open_camera(const std::string& device, const CameraSettings& settings, const CameraBench& bench,
                                     Clock& clock) {
   require_named(device, "camera", "aravis:192.168.1.7");
-  const Address address = parse_address(device, schemes_of(backends));
+  const Address address = parse_device(device, model::camera_schemes);
   return backend_of(backends, address).open(address, settings, bench, clock);
 }
 

@@ -32,7 +32,7 @@ bool names_display(const std::string& output) {
 
 std::unique_ptr<Display> open_display(const std::string& device, const DisplayMode& wanted, Clock& clock,
                                       Guardian* guardian) {
-  const Address address = parse_address(device, schemes_of(backends));
+  const Address address = parse_device(device, model::display_schemes);
   return backend_of(backends, address).open(address, wanted, clock, guardian);
 }
 

@@ -14,13 +14,11 @@ namespace vam::device {
 namespace {
 
 std::unique_ptr<LightEngine> open_sim(const Address& address, const LightSettings& settings, Guardian*) {
-  address.allow({"current_percent", "max_current_percent", "leds", "log"});
   return make_dlp_light(sim::make_sim_dlp({}, sim::file_sim_log(address.word("log", ""))), settings, real_clock(),
                         nullptr);
 }
 
 std::unique_ptr<LightEngine> open_dlp(const Address& address, const LightSettings& settings, Guardian* guardian) {
-  address.allow({"current_percent", "max_current_percent", "leds"});
   auto link = open_usb(usb_id(address.scheme, address.place), 0);
   auto lock = std::make_unique<DeviceLock>(link->name());
   if (guardian != nullptr) guardian->keep(lock->handle());
@@ -52,8 +50,9 @@ void refuse_steps(const Address& address) {
 std::string light_devices() { return model::forms_of(model::light_schemes); }
 
 std::unique_ptr<LightEngine> open_light(const std::string& device, double max_current_percent, Guardian* guardian) {
-  const Address address = parse_address(device, schemes_of(backends));
-  refuse_steps(address);
+  const Address given = parse_scheme(device, model::light_schemes);
+  refuse_steps(given);
+  const Address address = with_known_options(given, model::light_schemes);
   LightSettings settings;
   if (address.options.contains("current_percent")) {
     settings.current_percent = address.number("current_percent", 0, 0, 100);

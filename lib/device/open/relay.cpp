@@ -13,7 +13,6 @@ namespace vam::device {
 namespace {
 
 std::unique_ptr<Relay> open_sim(const Address& address, Guardian* guardian) {
-  address.allow({"fault", "log"});
   auto& clock = real_clock();
   auto device =
       sim::make_sim_relay(sim::sim_settings(address), clock.now_s(), sim::file_sim_log(address.word("log", "")));
@@ -21,7 +20,6 @@ std::unique_ptr<Relay> open_sim(const Address& address, Guardian* guardian) {
 }
 
 std::unique_ptr<Relay> open_serial_relay(const Address& address, Guardian* guardian) {
-  address.allow({"baud"});
   auto lock = std::make_unique<DeviceLock>(address.place);
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto relay = std::make_unique<Relay>(
@@ -42,7 +40,7 @@ static_assert(model::has_schemes(backends, model::relay_schemes));
 
 std::unique_ptr<Relay> open_relay(const std::string& device, Guardian* guardian) {
   if (device.empty()) return nullptr;
-  const Address address = parse_address(device, schemes_of(backends));
+  const Address address = parse_device(device, model::relay_schemes);
   return backend_of(backends, address).open(address, guardian);
 }
 

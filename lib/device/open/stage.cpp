@@ -17,7 +17,6 @@ namespace vam::device {
 namespace {
 
 std::unique_ptr<Stage> open_sim(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow(sim::sim_option_names());
   auto device =
       sim::make_sim_gcs(sim::sim_settings(address), clock.now_s(), sim::file_sim_log(address.word("log", "")));
   return make_gcs_stage(sim::make_sim_port(std::move(device), clock), clock, {}, "1", guardian);
@@ -31,7 +30,6 @@ std::unique_ptr<DeviceLock> lock_device(const std::string& name, Guardian* guard
 }
 
 std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow({"baud", "address", "axis", "timeout_s"});
   GcsSettings settings;
   settings.address = address.integer("address", 1, 16);
   settings.timeout_s = address.number("timeout_s", settings.timeout_s, 0.01, 0.4);
@@ -46,7 +44,6 @@ std::unique_ptr<Stage> open_gcs(const Address& address, Clock& clock, Guardian* 
 }
 
 std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow({"baud", "axis", "home"});
   const std::string axis = address.word("axis", "X");
   if (axis != "X" && axis != "Y" && axis != "Z") {
     throw Error{Fault::usage, "device '" + address.text + "': axis=" + axis + " is not one of X, Y, Z"};
@@ -63,7 +60,6 @@ std::unique_ptr<Stage> open_grbl(const Address& address, Clock& clock, Guardian*
 }
 
 std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow({"steps_per_deg"});
   const double steps_per_deg = address.number("steps_per_deg", 0, -1e6, 1e6);
   if (steps_per_deg == 0) {
     throw Error{Fault::usage,
@@ -77,7 +73,6 @@ std::unique_ptr<Stage> open_tic(const Address& address, Clock& clock, Guardian* 
 }
 
 std::unique_ptr<Stage> open_zaber(const Address& address, Clock& clock, Guardian* guardian) {
-  address.allow({"baud", "address", "axis", "steps_per_deg"});
   ZaberSettings settings;
   settings.address = address.integer("address", 1, 99).value_or(settings.address);
   settings.axis = address.integer("axis", 1, 9).value_or(settings.axis);
@@ -105,7 +100,7 @@ std::string stage_devices() { return model::forms_of(model::stage_schemes); }
 
 std::unique_ptr<Stage> open_stage(const std::string& device, Clock& clock, Guardian* guardian) {
   require_named(device, "stage", "gcs:/dev/ttyUSB0");
-  const Address address = parse_address(device, schemes_of(backends));
+  const Address address = parse_device(device, model::stage_schemes);
   return backend_of(backends, address).open(address, clock, guardian);
 }
 

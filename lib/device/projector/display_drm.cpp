@@ -179,7 +179,6 @@ class DrmDisplay final : public Display {
 
 std::unique_ptr<Display> open_drm_display(const Address& address, const DisplayMode&, Clock& clock,
                                           Guardian* guardian) {
-  address.allow({"mode", "bpc"});
   auto lock = std::make_unique<DeviceLock>("drm-" + address.place);
   if (guardian != nullptr) guardian->keep(lock->handle());
   auto display = std::make_unique<DrmDisplay>(address.place, address.word("mode", ""), address.integer("bpc", 6, 16),

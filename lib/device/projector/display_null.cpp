@@ -39,7 +39,6 @@ class NullDisplay final : public Display {
 }  // namespace
 
 std::unique_ptr<Display> open_null_display(const Address& address, const DisplayMode& wanted, Clock& clock, Guardian*) {
-  address.allow({"hz", "miss"});
   DisplayMode mode = wanted;
   mode.hz = address.number("hz", wanted.hz, 5, 1000);  // every blank is a heartbeat
   return std::make_unique<NullDisplay>(mode, address.integer("miss", 2, 1000000).value_or(0), clock);

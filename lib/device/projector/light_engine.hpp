@@ -10,6 +10,7 @@
 #include "device/os/clock.hpp"
 #include "device/os/lock.hpp"
 #include "device/port/usb_link.hpp"
+#include "device/projector/lamp.hpp"
 #include "device/safety/guardian.hpp"
 
 namespace vam::device {
@@ -22,18 +23,16 @@ struct LightSettings {
 
 /// A DLP controller on USB. Between on() and dark() the guardian holds the order to darken. Throws Error: absent, busy
 /// (no answer), protocol (NACK, wrong answer, or a setting that does not read back), usage (current above the limit).
-class LightEngine {
+class LightEngine : public Lamp {
  public:
-  virtual ~LightEngine() = default;
   /// Model, firmware, status bits.
   virtual Json identify() = 0;
   /// Awake, video input, linear grey (DLPC350: gamma off; DLPC900: video pattern mode, which needs an image at its
   /// input) and current set, each read back. LEDs stay off. The bytes of a current mean what board and polarity make
   /// of them: on a LightCrafter 4500 255 is none and 0 full current.
   virtual void prepare() = 0;
-  virtual void on() = 0;
   /// LEDs off, read back. Never by the current: whether 0 or 255 is dark differs between boards.
-  virtual void dark() = 0;
+  void dark() override = 0;
   /// dark(), then no pattern, then asleep: what the destructor of an engine does that was prepared.
   virtual void standby() = 0;
 

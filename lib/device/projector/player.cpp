@@ -20,11 +20,11 @@ constexpr double told_late_s = 0.002;
 // image to be still showing.
 class DarkOnExit {
  public:
-  DarkOnExit(Display& display, LightEngine* light, const std::function<void(const FlipRecord&)>& log)
-      : display_(display), light_(light), log_(log) {}
+  DarkOnExit(Display& display, Lamp* lamp, const std::function<void(const FlipRecord&)>& log)
+      : display_(display), lamp_(lamp), log_(log) {}
   ~DarkOnExit() {
     try {
-      if (light_ != nullptr) light_->dark();
+      if (lamp_ != nullptr) lamp_->cut();
     } catch (...) {
       // The guardian still holds the order.
     }
@@ -41,7 +41,7 @@ class DarkOnExit {
 
  private:
   Display& display_;
-  LightEngine* light_;
+  Lamp* lamp_;
   const std::function<void(const FlipRecord&)>& log_;
 };
 
@@ -123,9 +123,9 @@ Json to_json(const FlipRecord& record) {
   return line;
 }
 
-PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
+PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log) {
-  const DarkOnExit dark(display, light, log);
+  const DarkOnExit dark(display, lamp, log);
   Presenter presenter(display, log);
   const double step_deg = 360.0 / plan.frames_per_turn;
   const double end_deg = 360.0 * plan.turns;
@@ -149,7 +149,7 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
     const bool lit = predicted->angle_deg >= plan.from_deg;
     if (!light_is_on && predicted->angle_deg >= plan.from_deg - light_lead_s * speed_deg_s && speed_deg_s > 0) {
       require_flips(presenter.tally(), expected, plan.allowed_missed, "in the run-up");
-      if (light != nullptr) light->on();
+      if (lamp != nullptr) lamp->on();
       light_is_on = switched = true;
     }
     const auto nearest = static_cast<long>(std::lround(predicted->angle_deg / step_deg));
@@ -160,15 +160,15 @@ PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock&
     if (lit) require_flips(presenter.tally(), expected, allowed, "in the print");
   }
   presenter.show(-1, *angles.at(clock.now_s()), false);
-  if (light != nullptr) light->dark();  // here, where an engine that stays lit is an error
+  if (lamp != nullptr) lamp->dark();  // here, where an engine that stays lit is an error
   return presenter.tally();
 }
 
-PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int frames, double hold_s, bool forever,
+PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, int frames, double hold_s, bool forever,
                        const std::function<void(const FlipRecord&)>& log) {
-  const DarkOnExit dark(display, light, log);
+  const DarkOnExit dark(display, lamp, log);
   Presenter presenter(display, log);
-  if (light != nullptr) light->on();
+  if (lamp != nullptr) lamp->on();
   const double start_s = clock.now_s();
   for (;;) {
     check_interrupted();
@@ -177,7 +177,7 @@ PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int f
     presenter.show(static_cast<int>(std::max(0L, n) % frames), {}, true);
   }
   presenter.show(-1, {}, false);
-  if (light != nullptr) light->dark();
+  if (lamp != nullptr) lamp->dark();
   return presenter.tally();
 }
 

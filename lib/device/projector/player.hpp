@@ -5,7 +5,7 @@
 
 #include "base/json_fwd.hpp"
 #include "device/projector/display.hpp"
-#include "device/projector/light_engine.hpp"
+#include "device/projector/lamp.hpp"
 #include "device/stage/angle_source.hpp"
 
 namespace vam::device {
@@ -39,16 +39,16 @@ struct PlayTally {
 };
 
 /// Shows black until the predicted angle at the next vertical blank is plan.from_deg, then for every vertical blank the
-/// frame nearest to the angle in the middle of its showing, then black from 360 * turns on. The light engine (may be
-/// null) goes on a tenth of a second before that and off right after the last frame. The run-up is a dry run, and
+/// frame nearest to the angle in the middle of its showing, then black from 360 * turns on. The lamp (may be null)
+/// goes on a tenth of a second before that and off right after the last frame. The run-up is a dry run, and
 /// judged more strictly: a frame that stays on for a blank too long costs little of a print, a print that ends costs
 /// the vial. Throws Fault::busy when more than the allowed part of flips is missed, before light when that was in the
 /// run-up; and what display, light and source throw. Black and dark whenever it leaves.
-PlayTally play(Display& display, LightEngine* light, AngleSource& angles, Clock& clock, const PlayPlan& plan,
+PlayTally play(Display& display, Lamp* lamp, AngleSource& angles, Clock& clock, const PlayPlan& plan,
                const std::function<void(const FlipRecord&)>& log);
 
 /// Shows all frames one after the other, each for hold_s, with light, once or until a signal. For test patterns.
-PlayTally play_through(Display& display, LightEngine* light, Clock& clock, int frames, double hold_s, bool forever,
+PlayTally play_through(Display& display, Lamp* lamp, Clock& clock, int frames, double hold_s, bool forever,
                        const std::function<void(const FlipRecord&)>& log);
 
 }  // namespace vam::device

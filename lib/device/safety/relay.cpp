@@ -113,9 +113,15 @@ void Relay::beat() {
   sent_s_ = now_s;
 }
 
-void Relay::open() {
+void Relay::cut() {
   if (!std::exchange(closed_, false)) return;
+  opening_ = true;
   port_->write("O");
+}
+
+void Relay::open() {
+  cut();
+  if (!std::exchange(opening_, false)) return;
   for (std::string line = answer(patience_s); line != "open"; line = answer(patience_s)) {
     if (line.empty()) throw Error{Fault::busy, port_->name() + ": relay has not confirmed that it opened"};
   }

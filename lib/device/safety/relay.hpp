@@ -29,7 +29,9 @@ class Relay {
   /// To be called at every step of the print: sends a heartbeat each 50 ms and looks at the answers without waiting.
   /// Throws Fault::protocol when it has opened, Fault::busy when it has not answered for as long as it waits.
   void beat();
-  /// Opens it. Throws Fault::busy when it does not say so; the guardian keeps its order then.
+  /// Has it open, without waiting for its reply; no heartbeat follows.
+  void cut();
+  /// cut(), then waits for the reply. Throws Fault::busy when there is none; the guardian keeps its order then.
   void open();
 
   void hold(std::unique_ptr<DeviceLock> lock) { lock_ = std::move(lock); }
@@ -46,6 +48,7 @@ class Relay {
   double answered_s_ = 0;
   bool simulated_ = false;
   bool closed_ = false;
+  bool opening_ = false;  // told so, and has not replied
   std::optional<int> action_;
 };
 

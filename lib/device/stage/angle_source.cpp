@@ -49,22 +49,26 @@ class StandingAngle final : public AngleSource {
 
 class FollowedAngle final : public AngleSource {
  public:
-  FollowedAngle(const std::string& path, Clock& clock) : clock_(clock) {
+  FollowedAngle(const std::string& path, Clock& clock, double last_deg) : clock_(clock), last_deg_(last_deg) {
     fd_ = path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (fd_ < 0) throw Error{Fault::no_input, path + ": cannot open: " + std::strerror(errno)};
   }
   ~FollowedAngle() override { close(fd_); }
 
   void update() override {
-    while (readable()) {
+    while (!ended_ && readable()) {
       std::array<char, 4096> bytes{};
       const ssize_t count = read(fd_, bytes.data(), bytes.size());
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) throw Error{Fault::busy, "stage angles: input ended" + so_far() + "; see the error of vam-stage"};
+      if (count <= 0 && !complete()) {
+        throw Error{Fault::busy, "stage angles: input ended" + so_far() + "; see the error of vam-stage"};
+      }
+      ended_ = count <= 0;
+      if (ended_) break;
       buffer_.append(bytes.data(), count);
       take_lines();
     }
-    if (lines_ > 0 && clock_.now_s() - heard_s_ > stale_s) {
+    if (lines_ > 0 && !complete() && clock_.now_s() - heard_s_ > stale_s) {
       throw Error{Fault::busy, "stage angles: none for " + format_number(stale_s) + " s" + so_far()};
     }
   }
@@ -75,6 +79,8 @@ class FollowedAngle final : public AngleSource {
   }
 
  private:
+  [[nodiscard]] bool complete() const { return lines_ > 0 && last_.angle_deg >= last_deg_; }
+
   bool readable() const {
     pollfd ready{fd_, POLLIN, 0};
     return poll(&ready, 1, 0) > 0;
@@ -97,6 +103,8 @@ class FollowedAngle final : public AngleSource {
   }
 
   Clock& clock_;
+  double last_deg_;
+  bool ended_ = false;
   int fd_ = -1;
   std::string buffer_;
   long lines_ = 0;
@@ -113,8 +121,8 @@ std::unique_ptr<AngleSource> elapsed_angle(double speed_deg_s, Clock& clock) {
 
 std::unique_ptr<AngleSource> standing_angle(double angle_deg) { return std::make_unique<StandingAngle>(angle_deg); }
 
-std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock) {
-  return std::make_unique<FollowedAngle>(path, clock);
+std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock, double last_deg) {
+  return std::make_unique<FollowedAngle>(path, clock, last_deg);
 }
 
 }  // namespace vam::device

@@ -27,8 +27,9 @@ class AngleSource {
 [[nodiscard]] std::unique_ptr<AngleSource> standing_angle(double angle_deg);
 
 /// By the lines of vam-stage from a file, FIFO, or "-" (stdin): their running line fit, extrapolated. update() throws
-/// Fault::data for a bad line, Fault::busy when nothing came for 0.5 s or the lines have ended. Before the first line
-/// it waits without limit. Throws Fault::no_input when the file cannot be opened.
-[[nodiscard]] std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock);
+/// Fault::data for a bad line, Fault::busy when nothing came for 0.5 s or the lines have ended, unless they have
+/// reached last_deg: after the last turn vam-stage writes nothing while it brakes, and who is late still needs the
+/// angles before. Before the first line it waits without limit. Throws Fault::no_input when the file cannot be opened.
+[[nodiscard]] std::unique_ptr<AngleSource> followed_angle(const std::string& path, Clock& clock, double last_deg);
 
 }  // namespace vam::device

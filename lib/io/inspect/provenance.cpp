@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "io/exr/stack.hpp"
 #include "io/image/any_frames.hpp"
+#include "io/settings/printer_file.hpp"
 #include "io/settings/sealed_text.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
@@ -58,7 +59,8 @@ std::vector<ProvenanceEntry> inspect_text(const std::string& path) {
     if (json.contains("tool") && json["tool"].is_string()) finding.history.push_back(json["tool"].get<std::string>());
     return {finding};
   }
-  return {{"file of another kind", require_text_seal(text, name), "", {}}};
+  const char* kind = has_printer_section(text) ? "printer file" : "file of another kind";
+  return {{kind, require_text_seal(text, name), "", {}}};
 }
 
 }  // namespace

@@ -254,6 +254,13 @@ void warn_of_cut(const std::string& text, const std::string& file) {
 
 }  // namespace
 
+bool has_printer_section(std::string_view text) {
+  const auto names = section_names();
+  const std::string lines = "\n" + std::string(text);
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return lines.find("\n[" + name + "]") != std::string::npos; });
+}
+
 Printer parse_printer(std::string_view toml, const std::string& subject) {
   Printer printer = read_settings(toml, subject);
   centre_axis(printer);

@@ -25,6 +25,9 @@ enum class Records { apply, ignore };
 /// Settings from TOML text, absent ones at their defaults. `subject` begins every message. Throws Fault::data.
 [[nodiscard]] model::Printer parse_printer(std::string_view toml, const std::string& subject);
 
+/// Whether a text has the heading of one of its sections, right or wrong as the rest may be.
+[[nodiscard]] bool has_printer_section(std::string_view text);
+
 /// Commented TOML with every setting; parses back to the same settings, number for number.
 [[nodiscard]] std::string printer_toml(const model::Printer& printer);
 

@@ -77,31 +77,18 @@ void fit_axis(const SweepScan& scan, double pixel_mm, std::span<const LitBand> l
 
 }  // namespace
 
-std::vector<double> band_means(const Image& frame, int bands) {
-  if (frame.height < bands) {
-    throw Error{Fault::data, "sweep: " + std::to_string(frame.height) + " rows are too few for " +
-                                 std::to_string(bands) + " heights"};
-  }
-  const int rows = frame.height / bands;
-  std::vector<double> means(bands);
-  for (int b = 0; b < bands; ++b) {
-    double sum = 0;
-    for (int y = b * rows; y < (b + 1) * rows; ++y) {
-      for (int x = 0; x < frame.width; ++x) sum += frame(x, y);
-    }
-    means[b] = sum / rows / frame.width;
-  }
-  return means;
-}
-
 VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
   require_camera_beside(printer.camera.azimuth_deg);
   const std::vector<LitBand> lit = lit_bands(scan);
-  // How the camera sees an edge depends a little on the radius: the one that the steepest changes give will do.
+  // How the camera sees an edge depends a little on the radius: the one that the steepest changes give, then the
+  // fitted.
   model::Printer about = printer;
   about.vial.radius_mm = vial_radius_mm(printer, 0.5 * (lit.front().first.fall - lit.front().first.rise));
   VialEdges out;
-  fit_bands(scan, edge_shapes(about), lit, out);
+  for (int pass = 0; pass < 2; ++pass) {
+    fit_bands(scan, edge_shapes(about), lit, out);
+    about.vial.radius_mm = radius_mm(printer, out.edge_px.value);
+  }
   fit_axis(scan, printer.projector.pixel_mm, lit, out);
   const double edge_px = out.edge_px.value;
   const double slope = vial_radius_mm(printer, edge_px + 1) - vial_radius_mm(printer, edge_px);

@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "base/image.hpp"
 #include "base/stats/measured.hpp"
 #include "model/printer.hpp"
 
@@ -17,10 +16,6 @@ struct SweepScan {
   std::vector<double> height_mm;            // of each band's middle, upwards
   std::vector<std::vector<double>> signal;  // [band][frame], mean camera value
 };
-
-/// The mean of each of `bands` equally high bands of rows, top to bottom; a remainder at the bottom is left out.
-/// Throws Fault::data when the image has fewer rows.
-[[nodiscard]] std::vector<double> band_means(const Image& frame, int bands);
 
 struct VialEdges {
   stats::Measured axis_column;  // where the vial's middle appears at height 0, projector columns

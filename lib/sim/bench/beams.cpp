@@ -48,7 +48,9 @@ std::vector<double> blurred(const std::vector<double>& light, double sigma) {
 }  // namespace
 
 SimBeams::SimBeams(const model::Printer& printer)
-    : pixel_mm_(printer.projector.pixel_mm), radius_mm_(model::resin_radius_mm(printer.vial)) {
+    : pixel_mm_(printer.projector.pixel_mm),
+      radius_mm_(model::resin_radius_mm(printer.vial)),
+      absorption_per_mm_(printer.resin.absorption_per_mm) {
   const SimShells shells = outer_shells(printer, printer.resin.index);
   const auto lens_mm = model::columns_lens_mm(printer.projector);
   double grazing_mm = 0;
@@ -90,8 +92,13 @@ std::vector<SimBeams::Crossing> SimBeams::along(const SimRay& sight, double azim
     const double light_mm =
         0.5 * (one.transmittance + next.transmittance) * (columns_[i + 1] - columns_[i]) * pixel_mm_;
     const double middle = 0.5 * (from + to);
-    crossings[i] = {light_mm / std::abs(slant) * (to - from) / (last - first),
-                    sight.offset_mm * std::sin(turn) + middle * std::cos(turn)};
+    const double x_mm = sight.offset_mm * std::cos(turn) - middle * std::sin(turn);
+    const double y_mm = sight.offset_mm * std::sin(turn) + middle * std::cos(turn);
+    const double beam_rad = 0.5 * (one.turn_rad + next.turn_rad);
+    const double come_mm = model::half_chord(radius_mm_, 0.5 * (one.offset_mm + next.offset_mm)) -
+                           x_mm * std::sin(beam_rad) + y_mm * std::cos(beam_rad);  // in the resin
+    const double left = std::exp(-absorption_per_mm_ * std::max(0.0, come_mm));
+    crossings[i] = {left * light_mm / std::abs(slant) * (to - from) / (last - first), y_mm};
   }
   return crossings;
 }

@@ -18,46 +18,6 @@ namespace vam::sim {
 
 namespace {
 
-// As vam-sim-camera(1) has them, with underscores.
-const std::vector<std::string>& option_names() {
-  static const std::vector<std::string> names{
-      "columns",    "rows", "axis_offset", "tilt",  "centre", "wobble", "wobble_phase", "beam",   "divergence",
-      "focus",      "glow", "card",        "noise", "lag",    "lit",    "background",   "part",   "projector_gamma",
-      "vignetting", "drop", "flips",       "seed",  "follow", "speed",  "incomplete",   "unplug", "bits",
-      "pace",       "log",  "shrink"};
-  return names;
-}
-
-// The former names, which work for one release.
-device::Address with_present_names(const device::Address& address) {
-  device::Address renamed = address;
-  const auto rename = [&renamed, &address](const char* former, const char* present) {
-    auto option = renamed.options.extract(former);
-    if (option.empty()) return;
-    warn("device '" + address.text + "': option " + former + " is now " + present);
-    option.key() = present;
-    renamed.options.insert(std::move(option));
-  };
-  rename("tilt_deg", "tilt");
-  rename("centre_px", "centre");
-  rename("wobble_mm", "wobble");
-  rename("wobble_deg", "wobble_phase");
-  rename("beam_mm", "beam");
-  rename("focus_mm", "focus");
-  rename("divergence_deg", "divergence");
-  rename("speed_deg_s", "speed");
-  rename("lit_s", "lit");
-  rename("lag_ms", "lag");
-  rename("shown", "flips");
-  rename("angles", "follow");
-  rename("axis_column", "axis_offset");
-  rename("gamma", "projector_gamma");
-  rename("lose", "drop");
-  rename("cut", "incomplete");
-  rename("vanish", "unplug");
-  return renamed;
-}
-
 SimCameraSettings settings_of(const device::Address& address, const device::CameraSettings& requested,
                               const device::CameraBench& room) {
   SimCameraSettings sim;
@@ -218,11 +178,8 @@ std::string fingerprint(const GreyImage& levels) {
   return text.data();
 }
 
-std::unique_ptr<device::Camera> open_sim_camera(const device::Address& requested,
-                                                const device::CameraSettings& settings,
+std::unique_ptr<device::Camera> open_sim_camera(const device::Address& address, const device::CameraSettings& settings,
                                                 const device::CameraBench& bench, device::Clock& clock) {
-  const device::Address address = with_present_names(requested);
-  address.allow(option_names());
   if (!address.place.empty()) throw Error{Fault::usage, "device '" + address.text + "': sim: takes no place"};
   if (settings.trigger != "free" && settings.trigger != "software") {
     throw Error{Fault::usage,

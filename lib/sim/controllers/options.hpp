@@ -1,15 +1,13 @@
-// Simulators are configured by options of their device string: sim:?speed_error=0.01&jitter_ms=5&log=truth.jsonl.
+// Simulators are configured by options of their device string: sim:?speed_error=0.01&jitter=5&log=truth.jsonl.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "device/os/address.hpp"
 #include "sim/controllers/gcs.hpp"
 
 namespace vam::sim {
 
-[[nodiscard]] const std::vector<std::string>& sim_option_names();
 [[nodiscard]] SimGcsSettings sim_settings(const device::Address& address);
 
 /// Writes each line to the file as it comes; nothing when path is empty.

@@ -15,7 +15,7 @@ TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are error
   std::array<int, 2> line{};
   const auto start = [&](VirtualClock& clock) {
     REQUIRE(pipe(line.data()) == 0);
-    return followed_angle("/dev/fd/" + std::to_string(line[0]), clock);
+    return followed_angle("/dev/fd/" + std::to_string(line[0]), clock, 26);
   };
   const auto say = [&](const std::string& text) {
     REQUIRE(write(line[1], text.data(), text.size()) == static_cast<ssize_t>(text.size()));
@@ -46,6 +46,18 @@ TEST_CASE("Followed lines: a prediction, then stale, ended or bad ones are error
     CHECK(message_of([&] { angles->update(); }).find("ended") != std::string::npos);
     close(line[0]);
   }
+  {  // a stage that has come where it must, and brakes: who is late still has the angles before
+    VirtualClock clock(50);
+    const auto angles = start(clock);
+    for (int i = 0; i <= 104; ++i) say(to_line({50 + 0.01 * i, 0.25 * i, 0.01}) + "\n");
+    angles->update();
+    clock.sleep_until(52.5);
+    CHECK_NOTHROW(angles->update());
+    close(line[1]);
+    CHECK_NOTHROW(angles->update());
+    CHECK(angles->at(51.03)->angle_deg == doctest::Approx(25.75));
+    close(line[0]);
+  }
   VirtualClock clock;
-  CHECK(fault_of([&] { (void)followed_angle("/nonexistent", clock); }) == Fault::no_input);
+  CHECK(fault_of([&] { (void)followed_angle("/nonexistent", clock, 26); }) == Fault::no_input);
 }

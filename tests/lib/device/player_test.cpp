@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "device/open/display.hpp"
+#include "device/projector/light_engine.hpp"
 #include "fault_of.hpp"
 #include "sim/controllers/dlp.hpp"
 #include "steady_angle.hpp"

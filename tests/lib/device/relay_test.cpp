@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/json.hpp"
+#include "device/projector/relayed_lamp.hpp"
 #include "fault_of.hpp"
 #include "sim/controllers/relay.hpp"
 #include "virtual_stage.hpp"
@@ -91,6 +92,37 @@ TEST_CASE("No light without an answer of the relay") {
   lab.relay.close();
   lab.show(2);
   CHECK(lab.state() == "closed");
+}
+
+namespace {
+
+// An engine that takes long to go dark.
+struct SlowLamp final : Lamp {
+  explicit SlowLamp(RelayLab& of) : lab(of) {}
+  void on() override {}
+  void dark() override {
+    lab.clock.sleep_until(lab.clock.now_s() + 0.2);
+    relay_was = lab.state();
+  }
+  RelayLab& lab;
+  std::string relay_was;
+};
+
+}  // namespace
+
+TEST_CASE("When a print fails the relay opens before the light engine replies, at its end after it") {
+  for (const bool fails : {false, true}) {
+    RelayLab lab;
+    lab.relay.close();
+    lab.show(0.1);
+    SlowLamp engine(lab);
+    RelayedLamp lamp(&engine, lab.relay);
+    fails ? lamp.cut() : lamp.dark();
+    CHECK(engine.relay_was == (fails ? "open: order" : "closed"));
+    CHECK_NOTHROW(lab.relay.beat());  // none follows
+    lab.relay.open();
+    CHECK(lab.state() == "open: order");
+  }
 }
 
 TEST_CASE("Another device is not taken for a relay") {

@@ -4,6 +4,7 @@
 
 #include "coverage.hpp"
 #include "fault_of.hpp"
+#include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "oracle/calibration_scans.hpp"
 
@@ -37,8 +38,8 @@ SweepScan swept(const vam::oracle::SweepTruth& truth, double pitch_px, double fi
   scan.signal.resize(bands);
   for (double column = first; column <= last; column += pitch_px) {
     scan.column.push_back(column);
-    const auto means = band_means(bench.frame(column, scan.width_px, height_mm, 32, random), bands);
-    for (int b = 0; b < bands; ++b) scan.signal[b].push_back(means[b]);
+    const auto readings = band_readings(bench.frame(column, scan.width_px, height_mm, 32, random), bands);
+    for (int b = 0; b < bands; ++b) scan.signal[b].push_back(readings[b].mean());
   }
   return scan;
 }
@@ -96,5 +97,5 @@ TEST_CASE("Vial edges: a sweep without an edge, a dark one, and an image without
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 500, 800, random), printer_of(truth)); }) == Fault::data);
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 4, 800, 1000, random), printer_of(truth)); }) == Fault::data);
   CHECK(fault_of([&] { (void)find_edges(swept(truth, 100, 0, 1000, random), printer_of(truth)); }) == Fault::data);
-  CHECK(fault_of([] { (void)band_means(Image(4, 2), 3); }) == Fault::data);
+  CHECK(fault_of([] { (void)band_readings(Image(4, 2), 3); }) == Fault::data);
 }

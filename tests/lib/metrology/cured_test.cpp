@@ -49,6 +49,15 @@ TEST_CASE("a reference on a finer grid is the same reference") {
   CHECK(cured(print, 0.5, design).iou > 0.99);
 }
 
+TEST_CASE("of a target on another grid all is missing before anything is cured, and no more") {
+  const auto design = box(model::centred_grid(40, 20, 10, 0.2), -2.05, 0.95);
+  for (const double voxel_mm : {0.13, 0.17, 0.31}) {
+    model::Volume dark{model::centred_grid(61, 41, 21, voxel_mm), {}};
+    dark.values.assign(dark.grid.size(), 0.0F);
+    CHECK(cured(dark, 0.5, design).missing_percent() == doctest::Approx(100));
+  }
+}
+
 TEST_CASE("sum projections are seen from above, the front and the side, z and y upwards") {
   const model::Grid grid{3, 4, 5, 0.5, {0, 0, 0}};
   model::Volume volume{grid, std::vector<float>(grid.size())};

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "fault_of.hpp"
 #include "metrology/calibrate/beam.hpp"
+#include "metrology/calibrate/cut_off.hpp"
 #include "metrology/calibrate/vial_place.hpp"
 #include "optics/patterns.hpp"
 #include "sim/bench/scene.hpp"
@@ -22,11 +24,12 @@ Image fractions(const GreyImage& levels) {
   return image;
 }
 
-metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px) {
+metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px, int bits = 16, bool corrected = false) {
   const optics::PatternPlan line{"sweep", 1, pitch_px, 2 * pitch_px, 0};
   const auto& projector = bench.printer.projector;
-  const sim::SimScene scene(bench, 1, 16);
+  const sim::SimScene scene(bench, 1, bits);
   metrology::SweepScan scan;
+  std::vector<std::vector<metrology::BandReading>> readings(3);
   scan.width_px = line.width_px;
   scan.height_mm = {2, 0, -2};
   scan.signal.resize(3);
@@ -34,9 +37,13 @@ metrology::SweepScan swept(const sim::SimBench& bench, int pitch_px) {
     const GreyImage image = optics::pattern_frame(line, projector, n);
     const Image frame = fractions(scene.render({0, &image, 0}, 20000, n));
     scan.column.push_back(n * line.pitch_px + 0.5 * (line.width_px - 1));
-    const auto means = metrology::band_means(frame, 3);
-    for (std::size_t b = 0; b < 3; ++b) scan.signal[b].push_back(means[b]);
+    const auto bands = metrology::band_readings(frame, 3);
+    for (std::size_t b = 0; b < 3; ++b) {
+      readings[b].push_back(bands[b]);
+      scan.signal[b].push_back(bands[b].mean());
+    }
   }
+  for (std::size_t b = 0; corrected && b < 3; ++b) scan.signal[b] = metrology::without_cut_off(readings[b]);
   return scan;
 }
 
@@ -77,6 +84,52 @@ TEST_CASE("Edges in a bath on the simulated bench: no bias, telecentric or throu
     const auto [centre_px, radius] = edges_off(bench, 2);
     CHECK(std::abs(centre_px) < 1e-3);
     CHECK(std::abs(radius) < 5e-5);
+  }
+}
+
+// Of a dim sweep nearly all pixels are dark, and noise below level 0 is cut off: without correction the radius is
+// several of its sigmas too small.
+TEST_CASE("Edges in the dark of a camera that cuts noise off: corrected at several radii") {
+  for (const double radius_mm : {7.0, 9.0, 11.0}) {
+    CAPTURE(radius_mm);
+    sim::SimBench bench = small_bench();
+    bench.bodies.clear();
+    bench.beam_mm = 0.5;
+    bench.glow = 4;
+    bench.noise = 0.004;
+    bench.background = 0;
+    bench.printer.projector.telecentric = true;
+    bench.printer.vial.radius_mm = radius_mm;
+    const auto plain = metrology::find_edges(swept(bench, 2, 8), bench.printer).radius_mm;
+    const auto found = metrology::find_edges(swept(bench, 2, 8, true), bench.printer).radius_mm;
+    CHECK(plain.value - radius_mm < -2 * plain.sigma);
+    const double sigma = std::hypot(found.sigma, (found.value - plain.value) / 3);
+    CHECK(std::abs(found.value - radius_mm) < 2 * sigma);
+    CHECK(std::abs(found.value - radius_mm) < 0.5 * std::abs(plain.value - radius_mm));
+  }
+}
+
+// A black level that shows the noise whole, and a bright scene, are left as they are.
+TEST_CASE("Nothing is corrected where no noise is cut off") {
+  sim::SimBench bench = small_bench();
+  bench.noise = 0.002;
+  bench.background = 0.02;
+  CHECK(swept(bench, 8, 8, true).signal == swept(bench, 8, 8).signal);
+}
+
+// An edge is steeper the less light is left there; the simulator absorbs it, too.
+TEST_CASE("Edges in a resin that absorbs: no bias at several radii") {
+  for (const double radius_mm : {7.0, 9.0, 11.0}) {
+    for (const double absorption_per_mm : {0.05, 0.15}) {
+      CAPTURE(radius_mm);
+      CAPTURE(absorption_per_mm);
+      sim::SimBench bench = small_bench();
+      bench.beam_mm = 0.5;
+      bench.printer.projector.telecentric = true;
+      bench.printer.vial.radius_mm = radius_mm;
+      bench.printer.resin.absorption_per_mm = absorption_per_mm;
+      CHECK(std::abs(edges_off(bench, 4).second) < 5e-5);
+    }
   }
 }
 

@@ -2,19 +2,45 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "device/os/address.hpp"
+#include "model/device_schemes.hpp"
 
 namespace vam::device {
 
-template <class Backend, std::size_t count>
-[[nodiscard]] std::vector<std::string> schemes_of(const Backend (&backends)[count]) {
+/// Scheme, place and options as they stand. Throws Fault::usage for a scheme that is not in the table.
+[[nodiscard]] inline Address parse_scheme(const std::string& device, std::span<const model::DeviceScheme> table) {
   std::vector<std::string> schemes;
-  for (const Backend& backend : backends) schemes.emplace_back(backend.scheme);
-  return schemes;
+  for (const auto& row : table) schemes.emplace_back(row.scheme);
+  return parse_address(device, schemes);
+}
+
+/// Former names of options become the present ones, with a warning. Throws Fault::usage for an option that the table
+/// does not have.
+[[nodiscard]] inline Address with_known_options(Address address, std::span<const model::DeviceScheme> table) {
+  auto row = table.begin();
+  while (address.scheme != row->scheme) ++row;
+  for (const auto& [name, present] : row->former) {
+    auto option = address.options.extract(std::string(name));
+    if (option.empty()) continue;
+    warn("device '" + address.text + "': option " + std::string(name) + " is now " + std::string(present));
+    option.key() = present;
+    address.options.insert(std::move(option));
+  }
+  std::vector<std::string> known;
+  for (const auto& option : row->options) known.emplace_back(option.name);
+  address.allow(known);
+  return address;
+}
+
+[[nodiscard]] inline Address parse_device(const std::string& device, std::span<const model::DeviceScheme> table) {
+  return with_known_options(parse_scheme(device, table), table);
 }
 
 /// Throws Fault::usage when there is no device of this kind: a simulator is used only if it is named.
@@ -24,7 +50,7 @@ inline void require_named(const std::string& device, const std::string& kind, co
                                 ".device in the printer file, e.g. " + example + "; sim: is a simulated one"};
 }
 
-/// The address was parsed with schemes_of(backends), so one of them has its scheme.
+/// The address was parsed with the table that has the schemes of `backends`, so one of them has its scheme.
 template <class Backend, std::size_t count>
 [[nodiscard]] const Backend& backend_of(const Backend (&backends)[count], const Address& address) {
   const Backend* found = backends;

@@ -27,6 +27,7 @@ class SimBeams {
  private:
   double pixel_mm_;
   double radius_mm_;  // of the resin
+  double absorption_per_mm_;
   std::vector<double> columns_;
   std::vector<SimRay> rays_;
 };
