@@ -197,6 +197,21 @@ TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to 
   }
 }
 
+TEST_CASE("A camera is waited for three periods and an exposure beyond a second, or as long as requested") {
+  CameraSettings settings;
+  CHECK(settings.patience_s(0.5) == doctest::Approx(2.5));
+  settings.exposure_us = 2e6;
+  CHECK(settings.patience_s(0.5) == doctest::Approx(4.5));
+  settings.timeout_s = 0.25;
+  CHECK(settings.patience_s(0.5) == 0.25);
+  CameraMode mode;
+  mode.columns = 4;
+  mode.rows = 3;
+  CHECK_FALSE(another_size(mode, 4, 3));
+  CHECK(another_size(mode, 4, 2) == "4 x 2 pixels instead of 4 x 3");
+  CHECK(another_size(mode, 5, 3) == "5 x 3 pixels instead of 4 x 3");
+}
+
 TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full stays full") {
   GreyImage image;
   const std::vector<std::uint8_t> padded{1, 2, 0, 3, 4, 0};
