@@ -6,6 +6,7 @@
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <sstream>
 
@@ -45,20 +46,23 @@ void check_count(std::uint64_t count, const char* what, const std::string& bytes
 }
 
 void check_ply_header(const std::string& bytes) {
-  std::istringstream lines(bytes.substr(0, bytes.find("end_header")));
   bool in_element = false;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
+  std::size_t begin = 0;
+  for (int line = 0; begin < bytes.size(); ++line) {
+    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+    std::istringstream words(bytes.substr(begin, end - begin));
+    begin = end + 1;
+    if (line < 2) continue;  // magic word and format
     std::string keyword;
     std::string name;
     std::uint64_t count = 0;
     const bool counted = static_cast<bool>(words >> keyword >> name >> count);
+    if (keyword == "end_header") return;
     in_element = in_element || keyword == "element";
     if (keyword == "property" && !in_element) throw MeshProblem{"the PLY header has a property of no element"};
     if (counted && keyword == "element") check_count(count, name.c_str(), bytes);
   }
-  if (bytes.find("end_header") == std::string::npos)
-    throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
+  throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
 }
 
 // The first line that is neither empty, comment nor the magic word holds the counts.

@@ -229,4 +229,13 @@ TEST_CASE("a PLY property without an element is reported") {
   std::string line;
   CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
   CHECK(line.find("the PLY header has a property of no element") != std::string::npos);
+  for (const char* before_the_end : {"pre_end_header\n", "comment end_header\n", ""}) {  // which ends none
+    scratch::spill(folder / "a.ply", std::string("ply\nformat ascii 1.0\n") + before_the_end +
+                                         "property list uchar int vertex_indices\nend_header\n");
+    CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
+    CHECK(line.find("the PLY header has a property of no element") != std::string::npos);
+  }
+  scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_heade");
+  CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
+  CHECK(line.find("has no end_header") != std::string::npos);
 }
