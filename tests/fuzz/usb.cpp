@@ -19,7 +19,7 @@ class Answers final : public UsbLink {
   void write_report(const std::string&) override {}
   std::string read_report() override { return take(64); }
   [[nodiscard]] const std::string& name() const override { return name_; }
-  [[nodiscard]] Json about() const override { return {{"usb_id", usb_id_}}; }
+  [[nodiscard]] Json about() const override { return {{"usb_id", usb_id_}, {"serial", "1"}}; }
 
  private:
   std::string take(std::size_t size) {

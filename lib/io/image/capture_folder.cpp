@@ -47,10 +47,18 @@ std::optional<double> optional_number(const Json& line, const char* key) {
   return found->get<double>();
 }
 
-CaptureRecord to_record(const Json& line) {
+// Of a frame. `where` begins the message.
+long number_of(const Json& value, const std::string& where) {
+  constexpr long most = 1L << 48;
+  const long number = value.is_number_integer() ? value.get<long>() : most + 1;
+  if (number >= -most && number <= most) return number;
+  throw Error{Fault::data, where + ": " + value.dump() + " is not the number of a frame; remove the line"};
+}
+
+CaptureRecord to_record(const Json& line, const std::string& where) {
   CaptureRecord record;
-  record.place = line.at("frame").get<long>();
-  record.number = line.at("number").get<long>();
+  record.place = number_of(line.at("frame"), where);
+  record.number = number_of(line.at("number"), where);
   record.t_monotonic_s = line.at("t_monotonic_s").get<double>();
   record.time_sigma_s = optional_number(line, "time_sigma_s");
   record.device_s = optional_number(line, "device_s");
@@ -93,9 +101,10 @@ void add_line(CaptureManifest& manifest, const std::string& text, const std::str
       manifest.head = text;
       if (line.at("schema") != "vam-capture/1") throw Error{Fault::data, where + ": is not a manifest of vam-capture"};
     } else if (line.contains("dropped")) {
-      manifest.dropped += line.at("dropped").at(1).get<long>() - line.at("dropped").at(0).get<long>() + 1;
+      const Json& range = line.at("dropped");
+      manifest.dropped += number_of(range.at(1), where) - number_of(range.at(0), where) + 1;
     } else {
-      const CaptureRecord record = to_record(line);
+      const CaptureRecord record = to_record(line, where);
       const auto [there, fresh] = manifest.frames.try_emplace(record.place, record);
       if (!fresh && (record.complete || !there->second.complete)) there->second = record;
     }

@@ -104,8 +104,7 @@ void decode_narrow(TIFF* tiff, const std::string& name, GreyImage& image) {
     refuse(name, "it is truncated, damaged or of another kind");
   }
   std::transform(raster.begin(), raster.end(), image.values.begin(), [](std::uint32_t p) {
-    return static_cast<std::uint16_t>(
-        luma(static_cast<int>(TIFFGetR(p)), static_cast<int>(TIFFGetG(p)), static_cast<int>(TIFFGetB(p))));
+    return static_cast<std::uint16_t>(luma(TIFFGetR(p), TIFFGetG(p), TIFFGetB(p)));
   });
 }
 

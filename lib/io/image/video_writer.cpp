@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/text.hpp"
 #include "io/image/private/av_handles.hpp"
 #include "io/image/private/ffv1.hpp"
 #include "io/image/private/video.hpp"
@@ -145,7 +146,8 @@ struct VideoWriter::State {
     if (lossless) {
       codec->gop_size = 1;  // every frame stands alone
       av::api().av_opt_set_int(codec.get(), "level", 3, 0);
-      codec->slices = 4;
+      // libavcodec 59 loses flat pixels of slices one pixel high or wide, as of frames of 2 x 2.
+      codec->slices = std::min(codec->width, codec->height) < 4 ? 1 : 4;
       av::api().av_opt_set_int(codec->priv_data, "slicecrc", 1, 0);
     } else {
       av::api().av_opt_set(codec->priv_data, "preset", "veryfast", 0);
@@ -247,6 +249,10 @@ struct VideoWriter::State {
 VideoWriter::VideoWriter(const std::string& path, const VideoFormat& format) {
   if (!path.ends_with(".mkv") && !path.ends_with(".mp4")) {
     throw Error{Fault::usage, path + ": a video ends in .mkv (lossless) or .mp4 (lossy preview)"};
+  }
+  if (std::min(format.width, format.height) < 2) {  // libavcodec 59 loses them
+    throw Error{Fault::usage, path + ": a video has at least 2 x 2 pixels, not " +
+                                  size_text(format.width, format.height) + "; write images"};
   }
   av::api().av_log_set_level(AV_LOG_QUIET);
   state_ = std::make_unique<State>(path, format);

@@ -6,6 +6,7 @@
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <sstream>
 
@@ -44,21 +45,34 @@ void check_count(std::uint64_t count, const char* what, const std::string& bytes
                     " faces; it is truncated or damaged"};
 }
 
+// CGAL takes coordinates of other types for floats.
+void check_ply_property(const std::string& element, const std::string& type, const std::string& name) {
+  if (element.empty()) throw MeshProblem{"the PLY header has a property of no element"};
+  const bool coordinate = (element == "vertex" || element == "vertices") && (name == "x" || name == "y" || name == "z");
+  if (!coordinate || type == "float" || type == "double" || type == "float32" || type == "float64") return;
+  throw MeshProblem{"the PLY coordinate " + name + " is of type " + type + "; float and double are read"};
+}
+
 void check_ply_header(const std::string& bytes) {
-  std::istringstream lines(bytes.substr(0, bytes.find("end_header")));
-  bool in_element = false;
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
+  std::string element;
+  std::size_t begin = 0;
+  for (int line = 0; begin < bytes.size(); ++line) {
+    const std::size_t end = std::min(bytes.find('\n', begin), bytes.size());
+    std::istringstream words(bytes.substr(begin, end - begin));
+    begin = end + 1;
+    if (line < 2) continue;  // magic word and format
     std::string keyword;
-    std::string name;
+    std::string first;
+    std::string second;
+    words >> keyword >> first >> second;
+    if (keyword == "end_header") return;
+    if (keyword == "property") check_ply_property(element, first, second);
+    if (keyword != "element") continue;
+    element = first;
     std::uint64_t count = 0;
-    const bool counted = static_cast<bool>(words >> keyword >> name >> count);
-    in_element = in_element || keyword == "element";
-    if (keyword == "property" && !in_element) throw MeshProblem{"the PLY header has a property of no element"};
-    if (counted && keyword == "element") check_count(count, name.c_str(), bytes);
+    if (std::istringstream(second) >> count) check_count(count, element.c_str(), bytes);
   }
-  if (bytes.find("end_header") == std::string::npos)
-    throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
+  throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
 }
 
 // The first line that is neither empty, comment nor the magic word holds the counts.
@@ -67,6 +81,8 @@ void check_off_header(const std::string& bytes) {
   for (std::string word; words >> word;) {
     if (word[0] == '#') {
       std::getline(words, word);
+    } else if (word.find("BINARY") != std::string::npos) {  // whose counts CGAL believes
+      throw MeshProblem{"is a binary OFF file; save it as text"};
     } else if (word.find("OFF") == std::string::npos) {
       std::istringstream number(word);
       std::uint64_t vertices = 0;

@@ -181,8 +181,20 @@ std::string write_record(const model::Calibration& calibration, const std::strin
   return path;
 }
 
-double CalibrationRecord::value(const std::string& name) const { return json->at("values").at(name).at("value"); }
-double CalibrationRecord::sigma(const std::string& name) const { return json->at("values").at(name).at("sigma"); }
+namespace {
+
+double number_of(const CalibrationRecord& record, const std::string& name, const char* key) {
+  const Json& values = record.json->at("values");
+  const Json entry = values.contains(name) ? values.at(name) : Json();
+  if (entry.is_object() && entry.contains(key) && entry.at(key).is_number()) return entry.at(key);
+  throw Error{Fault::data,
+              record.path + ": incomplete record of " + record.json->value("scan", "") + "; run vam-calibrate"};
+}
+
+}  // namespace
+
+double CalibrationRecord::value(const std::string& name) const { return number_of(*this, name, "value"); }
+double CalibrationRecord::sigma(const std::string& name) const { return number_of(*this, name, "sigma"); }
 
 CalibrationRecord read_record(const std::string& path) {
   constexpr std::uint64_t limit = 1U << 20U;

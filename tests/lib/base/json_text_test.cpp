@@ -9,9 +9,13 @@
 using namespace vam;
 
 TEST_CASE("a text that is no JSON, or nested beyond 64 levels, is discarded") {
-  const auto nested = [](int levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  const auto nested = [](int levels, const char* value = "") {
+    return std::string(levels, '[') + value + std::string(levels, ']');
+  };
   CHECK(parse_json("{\"a\": [1, {\"b\": 2}]}").dump() == "{\"a\":[1,{\"b\":2}]}");
   CHECK(parse_json(nested(64)).dump() == nested(64));
+  CHECK(parse_json(nested(64, "1")).dump() == nested(64, "1"));
+  CHECK(parse_json(nested(65, "1")).is_discarded());
   for (const std::string& text : {nested(66), nested(100'000), "{\"a\":" + nested(100'000) + ",\"b\":1}", std::string(),
                                   std::string("{\"a\":1"), std::string("{} {}")}) {
     CHECK(parse_json(text).is_discarded());

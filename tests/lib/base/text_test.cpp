@@ -24,4 +24,29 @@ TEST_CASE("nearest finds a misspelt word and no other") {
   CHECK(did_you_mean("wall_m", known) == "; did you mean wall_mm?");
 }
 
-TEST_CASE("wrap breaks at blanks") { CHECK(wrap("aa bb cc", 6, 1) == " aa bb\n cc\n"); }
+TEST_CASE("a guess is at most a third of the word away, one letter of a short one") {
+  const std::vector<std::string> known{"abcdefghi", "xy"};
+  CHECK(nearest("abcdef", known).empty());         // 3 letters missing, of 6
+  CHECK(nearest("ABCdefghi", known) == known[0]);  // 3 of 9 changed
+  CHECK(nearest("ABCDefghi", known).empty());
+  CHECK(nearest("abcdefghiABC", known) == known[0]);  // 3 of 12 too many
+  CHECK(nearest("xz", known) == known[1]);
+  CHECK(nearest("zz", known).empty());
+  CHECK(nearest("ab", {"ac", "ad"}) == "ac");  // the first of equals
+}
+
+TEST_CASE("wrap breaks at blanks, in lines of at most the width") {
+  CHECK(wrap("aa bb cc", 6, 1) == " aa bb\n cc\n");
+  CHECK(wrap("aa bb cc", 5, 1) == " aa\n bb\n cc\n");
+  CHECK(wrap("aaaaaaaa", 5, 1) == " aaaaaaaa\n");
+  CHECK(wrap("aa  bb", 9, 0) == "aa bb\n");
+  CHECK(wrap("", 9, 0).empty());
+}
+
+TEST_CASE("texts are trimmed and joined") {
+  CHECK(trimmed("  a b \r\n") == "a b");
+  CHECK(trimmed("a") == "a");
+  CHECK(trimmed(" \n").empty());
+  CHECK(join({"a", "b"}, ", ") == "a, b");
+  CHECK(join({}, ", ").empty());
+}

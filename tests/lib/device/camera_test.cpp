@@ -87,6 +87,17 @@ TEST_CASE("Frame ids: gaps are counted, GigE ids wrap after 65535, a malformed o
   CHECK(usb.number(0) == 0);
   CHECK(usb.number(1) == 1);
   CHECK(usb.number(70000 - 69000) == 1000);
+  CHECK(usb.number(2000) == 2000);  // the widest gap that is believed
+  CHECK(usb.number(3001) == 2001);
+  FrameCount round;
+  CHECK(round.number(65535) == 0);
+  CHECK(round.number(std::nullopt) == 1);  // 1
+  CHECK(round.number(2) == 2);
+  CHECK(round.number(2) == 3);  // the same again is no frame of its own: 3
+  CHECK(round.number(4) == 4);
+  FrameCount beyond;
+  CHECK(beyond.number(65536) == 0);
+  CHECK(beyond.number(1) == 1);  // no GigE id went before it
 }
 
 TEST_CASE("Time stamps: the shortest delay is used for all, and follows a drifting clock") {
@@ -94,7 +105,10 @@ TEST_CASE("Time stamps: the shortest delay is used for all, and follows a drifti
   CHECK(clock.host_s(5, 105.030) == doctest::Approx(105.030));
   CHECK(clock.host_s(6, 106.002) == doctest::Approx(106.002));
   CHECK(clock.host_s(7, 107.090) == doctest::Approx(107.002));
+  CHECK(clock.host_s(16, 116.050) == doctest::Approx(116.002));
   CHECK(clock.host_s(18, 118.050) == doctest::Approx(118.050));  // all before are older than 10 s
+  CHECK(clock.host_s(3, 203.2) == doctest::Approx(203.2));       // the camera's clock began anew
+  CHECK(clock.host_s(4, 204.3) == doctest::Approx(204.2));
 }
 
 TEST_CASE("A camera's clock: the offset that is consistent with all readings, until the clocks have drifted apart") {
@@ -143,10 +157,26 @@ TEST_CASE("A camera's clock: a stamp after its frame, or long before it, is of a
   CHECK_FALSE(clock.host_s(6, 105.9, 2));
 }
 
+TEST_CASE("A camera's clock: stamps are believed to their last allowance, readings for 10 s") {
+  ReadClock clock;
+  clock.add({5, 105, 105.002});
+  // The offset is 100.001 +- 0.001 s; a time of arrival may be 20 ms early, a frame 10 s and its exposure old.
+  CHECK(clock.host_s(6, 105.9801, 2).has_value());
+  CHECK_FALSE(clock.host_s(6, 105.9799, 2));
+  CHECK(clock.host_s(6, 118.0009, 2).has_value());
+  CHECK_FALSE(clock.host_s(6, 118.0011, 2));
+  clock.add({15, 115, 115.01});  // the first ends 10.008 s before: its 2 ms are forgotten
+  CHECK(clock.doubt_s() == doctest::Approx(0.005).epsilon(1e-9));
+  CHECK(clock.sigma_s() == doctest::Approx(0.005 / std::sqrt(3.0)).epsilon(1e-9));
+}
+
 TEST_CASE("The moment of a time stamp: as requested, as the maker documents it, else the end") {
   CHECK(stamp_moment("auto", "Basler") == StampMoment::start);
   CHECK(stamp_moment("auto", "Teledyne DALSA") == StampMoment::start);
   CHECK(stamp_moment("auto", "FLIR") == StampMoment::end);
+  CHECK(stamp_moment("start", "FLIR") == StampMoment::start);
+  CHECK(std::string(word_of(StampMoment::middle)) == "middle");
+  CHECK(std::string(word_of(StampMoment::end)) == "end");
   CHECK(stamp_moment("auto", "Somebody") == StampMoment::end);
   CHECK(stamp_moment("middle", "Basler") == StampMoment::middle);
   CHECK(to_middle_s(StampMoment::start, 0.02) == 0.01);
@@ -167,6 +197,21 @@ TEST_CASE("V4L2: stamps refer to the moment stated in the printer file, else to 
   }
 }
 
+TEST_CASE("A camera is waited for three periods and an exposure beyond a second, or as long as requested") {
+  CameraSettings settings;
+  CHECK(settings.patience_s(0.5) == doctest::Approx(2.5));
+  settings.exposure_us = 2e6;
+  CHECK(settings.patience_s(0.5) == doctest::Approx(4.5));
+  settings.timeout_s = 0.25;
+  CHECK(settings.patience_s(0.5) == 0.25);
+  CameraMode mode;
+  mode.columns = 4;
+  mode.rows = 3;
+  CHECK_FALSE(another_size(mode, 4, 3));
+  CHECK(another_size(mode, 4, 2) == "4 x 2 pixels instead of 4 x 3");
+  CHECK(another_size(mode, 5, 3) == "5 x 3 pixels instead of 4 x 3");
+}
+
 TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full stays full") {
   GreyImage image;
   const std::vector<std::uint8_t> padded{1, 2, 0, 3, 4, 0};
@@ -178,6 +223,13 @@ TEST_CASE("Pixels: padded rows, luma of YUYV, 10 and 12 bits spread so that full
   CHECK(to_grey(deep, 2, 1, 0, PixelLayout::words, 12, image));
   CHECK(image.values == std::vector<std::uint16_t>{0xffff, 0x8008});
   CHECK_FALSE(to_grey(deep, 3, 1, 0, PixelLayout::words, 12, image));
+  CHECK(to_grey(deep, 2, 1, 0, PixelLayout::words, 10, image));  // more than 10 bits have is full
+  CHECK(image.values == std::vector<std::uint16_t>{0xffff, 0xffff});
+  CHECK(to_grey(deep, 2, 1, 0, PixelLayout::words, 16, image));
+  CHECK(image.values == std::vector<std::uint16_t>{0x0fff, 0x0800});
+  const std::vector<std::uint8_t> quarter{0x00, 0x01};
+  CHECK(to_grey(quarter, 1, 1, 0, PixelLayout::words, 10, image));
+  CHECK(image.values == std::vector<std::uint16_t>{0x4010});
 }
 
 TEST_CASE("V4L2: automatics are switched off, gamma is linear, gain is set and read back") {

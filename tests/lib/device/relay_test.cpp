@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.hpp"
@@ -108,6 +110,19 @@ struct SlowLamp final : Lamp {
   std::string relay_was;
 };
 
+// Says one line.
+class Line final : public Port {
+ public:
+  explicit Line(std::string line) : line_(std::move(line)) {}
+  void write(std::string_view) override {}
+  std::string read(double) override { return std::exchange(line_, ""); }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+
+ private:
+  std::string line_;
+  std::string name_ = "port";
+};
+
 }  // namespace
 
 TEST_CASE("When a print fails the relay opens before the light engine replies, at its end after it") {
@@ -122,6 +137,20 @@ TEST_CASE("When a print fails the relay opens before the light engine replies, a
     CHECK_NOTHROW(lab.relay.beat());  // none follows
     lab.relay.open();
     CHECK(lab.state() == "open: order");
+  }
+}
+
+TEST_CASE("A relay states a time limit of 150 to 1000 ms") {
+  VirtualClock clock;
+  const auto limit_ms = [&](const std::string& line) {
+    return Relay(std::make_unique<Line>(line), clock, nullptr).identify()["limit_ms"].get<double>();
+  };
+  CHECK(limit_ms("vam-relay 1 150\n") == doctest::Approx(150));
+  CHECK(limit_ms("vam-relay 1 1000 made by hand\n") == doctest::Approx(1000));
+  for (const char* line : {"vam-relay 1 149\n", "vam-relay 1 1001\n", "vam-relay 2 300\n", "vam-relay 1 x\n",
+                           "relay 1 300\n", "vam-relay 1\n"}) {
+    CAPTURE(line);
+    CHECK(fault_of([&] { (void)limit_ms(line); }) == Fault::protocol);
   }
 }
 

@@ -110,6 +110,19 @@ TEST_CASE("stale, foreign, future and damaged records are refused with one clear
   CHECK(fault_of([&] { (void)write_record(none, "edges", edges(1, 1), now_s); }) == Fault::usage);
 }
 
+TEST_CASE("a value that a record does not have, or that is no number, is an error of the record") {
+  const scratch::Folder folder;
+  const Json values{{"latency", {{"value", 8}}}, {"lag", 3}, {"axis_column", {{"value", "500"}, {"sigma", 0.5}}}};
+  const CalibrationRecord record =
+      read_record(write_record(here(folder), "latency", {{"status", "pass"}, {"values", values}}, now_s));
+  CHECK(record.value("latency") == 8);
+  CHECK(record.sigma("axis_column") == 0.5);
+  for (const char* name : {"radius", "lag", "axis_column"}) {
+    CHECK(has(error_of([&] { (void)record.value(name); }, Fault::data), "incomplete record of latency"));
+  }
+  CHECK(fault_of([&] { (void)record.sigma("latency"); }) == Fault::data);
+}
+
 TEST_CASE("a record with an impossible value is refused, with the record, the number and its range") {
   const auto refused = [](double column, double radius_mm, const std::string& scan = "edges") {
     const scratch::Folder folder;

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
+#include <vector>
 
 #include "base/error.hpp"
 #include "fault_of.hpp"
@@ -98,6 +100,85 @@ TEST_CASE("truncated, damaged and foreign images are errors") {
   error_of([&] { (void)read_image(folder / "none.png"); }, vam::Fault::no_input);
 }
 
+namespace {
+
+// A TIFF of one strip, by the specification (TIFF 6.0 section 2): little-endian, no compression.
+struct TiffOf {
+  std::uint32_t width, height, bits, photometric, samples;
+  std::uint32_t format = 1;  // whole numbers
+  std::uint32_t planes = 1;  // the samples of a pixel side by side
+  [[nodiscard]] std::string with(const std::string& pixels) const {
+    const auto put = [](std::uint32_t value, int bytes) {
+      std::string text;
+      for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> 8 * i);
+      return text;
+    };
+    const auto size = static_cast<std::uint32_t>(pixels.size());
+    const std::array<std::array<std::uint32_t, 2>, 11> tags{{{256, width},
+                                                             {257, height},
+                                                             {258, bits},
+                                                             {259, 1},
+                                                             {262, photometric},
+                                                             {273, 8},
+                                                             {277, samples},
+                                                             {278, height},
+                                                             {279, size},
+                                                             {284, planes},
+                                                             {339, format}}};
+    std::string bytes = std::string("II*\0", 4) + put(8 + size, 4) + pixels + put(tags.size(), 2);
+    for (const auto& [tag, value] : tags) bytes += put(tag, 2) + put(4, 2) + put(1, 4) + put(value, 4);
+    return bytes + put(0, 4);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("TIFF of other programs: grey from either end, colours as luma, what is not read") {
+  const scratch::Folder folder;
+  const auto levels = [&](const TiffOf& tiff, const std::string& pixels) {
+    return read_image(folder.write("a.tif", tiff.with(pixels))).values;
+  };
+  using Levels = std::vector<std::uint16_t>;
+  CHECK(levels({2, 1, 8, 1, 1}, "\1\xfe") == Levels{1, 254});
+  CHECK(levels({2, 1, 8, 0, 1}, "\1\xfe") == Levels{254, 1});
+  CHECK(levels({3, 1, 1, 1, 1}, "\xa0") == Levels{255, 0, 255});
+  CHECK(levels({1, 2, 8, 2, 3}, "\xff\xff\xff\xff" + std::string(2, '\0')) == Levels{255, 76});
+  CHECK(levels({2, 1, 16, 1, 1}, std::string("\1\0\0\x80", 4)) == Levels{1, 0x8000});
+  CHECK(levels({2, 1, 16, 0, 1}, std::string("\1\0\0\x80", 4)) == Levels{65534, 0x7fff});
+  CHECK(levels({2, 1, 16, 1, 2}, std::string("\1\0\5\5\3\0\5\5", 8)) == Levels{1, 3});  // and transparency
+  // 0.299, 0.587 and 0.114 of full, in 16 bits.
+  const std::string full("\xff\xff"), none(2, '\0');
+  CHECK(levels({3, 1, 16, 2, 3}, full + none + none + none + full + none + none + none + full) ==
+        Levels{19595, 38469, 7471});
+  const auto refused = [&](const TiffOf& tiff, std::size_t bytes) {
+    const std::string path = folder.write("b.tif", tiff.with(std::string(bytes, '\0')));
+    return error_of([&] { (void)read_image(path); }, vam::Fault::data);
+  };
+  CHECK(has(refused({1, 1, 16, 2, 1}, 2), "16-bit TIFF is read as grey or RGB"));
+  CHECK(has(refused({1, 1, 16, 2, 2}, 4), "16-bit TIFF is read as grey or RGB"));
+  CHECK(has(refused({1, 1, 16, 5, 4}, 8), "16-bit TIFF is read as grey or RGB"));
+  CHECK(has(refused({1, 1, 16, 1, 1, 2}, 2), "16-bit TIFF is read as grey or RGB"));
+  CHECK(has(refused({1, 1, 16, 1, 2, 1, 2}, 4), "16-bit TIFF is read as grey or RGB"));
+  CHECK(has(refused({1, 1, 32, 1, 1}, 4), "it has 32 bits a sample"));
+  CHECK(has(refused({1, 1, 8, 1, 9}, 9), "it has 9 samples a pixel"));
+  CHECK(has(refused({16384, 16385, 8, 1, 1}, 1), "16384 x 16385 pixels; images of up to 2^28"));
+  CHECK(has(refused({0, 1, 8, 1, 1}, 1), "truncated or damaged"));
+  CHECK(has(refused({1, 0, 8, 1, 1}, 1), "truncated or damaged"));
+}
+
+TEST_CASE("TIFF of fewer and of 10 bits is spread to full") {
+  const scratch::Folder folder;
+  for (const auto& [bits, full] : {std::pair(2, 255), std::pair(10, 65535)}) {
+    GreyImage image(2, 1, bits);
+    image.values = {1, static_cast<std::uint16_t>(image.full())};
+    write_tiff(folder / "a.tif", image);
+    const GreyImage back = read_image(folder / "a.tif");
+    CHECK(back.full() == full);
+    CHECK(back(0, 0) == (bits == 2 ? 85 : 64));
+    CHECK(back(1, 0) == full);
+  }
+}
+
 TEST_CASE("a folder is read in numerical order; gaps and differing sizes are errors") {
   const scratch::Folder folder;
   for (int i = 1; i <= 12; ++i) {
@@ -119,6 +200,17 @@ TEST_CASE("a folder is read in numerical order; gaps and differing sizes are err
   write_png(folder / "other_05.png", GreyImage(4, 3, 8));
   write_png(folder / "part2_5.png", GreyImage(4, 3, 8));
   CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "same number"));
+  for (int i = 1; i <= 13; ++i) std::filesystem::remove(folder / ("part2_" + std::to_string(i) + ".png"));
+  for (const int number : {0, 10, 20}) write_png(folder / (std::to_string(number) + "mm.PNG"), GreyImage(4, 3, 8));
+  std::filesystem::remove(folder / "other_05.png");
+  CHECK(ImageFolder(folder.path.string()).count() == 3);
+  write_png(folder / "41.png", GreyImage(4, 3, 8));
+  CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "10 apart; one is missing"));
+  std::filesystem::rename(folder / "41.png", folder / "30.png");
+  write_png(folder / "30_99999999999999999999.png", GreyImage(4, 3, 8));
+  CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "is too large"));
+  std::filesystem::rename(folder / "30_99999999999999999999.png", folder / "none.tiff");
+  CHECK(has(error_of([&] { ImageFolder{folder.path.string()}; }, vam::Fault::data), "the name has no number"));
   error_of([&] { ImageFolder{(folder / "none")}; }, vam::Fault::no_input);
   std::filesystem::create_directory(folder / "empty");
   CHECK(has(error_of([&] { ImageFolder{(folder / "empty")}; }, vam::Fault::data), "no PNG or TIFF"));

@@ -223,10 +223,35 @@ TEST_CASE("meshes that crashed or starved a library: one line and status 65, at 
   CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(20));
 }
 
+TEST_CASE("PLY coordinates that are no floats, and OFF that is no text, are refused") {
+  const scratch::Folder folder;
+  const auto ply = [](const std::string& type) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty " + type +
+           " y\nproperty double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  };
+  for (const char* type : {"float", "double", "float32", "float64"}) {
+    CHECK(read_mesh(folder.write("a", ply(type))).triangles.size() == 1);
+  }
+  for (const std::string type : {"uchar", "int", "int32"}) {
+    CHECK(refusal(folder, ply(type)).find("the PLY coordinate y is of type " + type) != std::string::npos);
+  }
+  CHECK(refusal(folder, "OFF BINARY\n" + std::string(40, '\x7f')).find("is a binary OFF file") != std::string::npos);
+}
+
 TEST_CASE("a PLY property without an element is reported") {
   const scratch::Folder folder;
   scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n");
   std::string line;
   CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
   CHECK(line.find("the PLY header has a property of no element") != std::string::npos);
+  for (const char* before_the_end : {"pre_end_header\n", "comment end_header\n", ""}) {  // which ends none
+    scratch::spill(folder / "a.ply", std::string("ply\nformat ascii 1.0\n") + before_the_end +
+                                         "property list uchar int vertex_indices\nend_header\n");
+    CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
+    CHECK(line.find("the PLY header has a property of no element") != std::string::npos);
+  }
+  scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nend_heade");
+  CHECK(scratch::status([&] { (void)read_mesh(folder / "a.ply"); }, &line) == 65);
+  CHECK(line.find("has no end_header") != std::string::npos);
 }

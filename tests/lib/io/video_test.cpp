@@ -92,7 +92,7 @@ TEST_CASE("FFV1 packets are made only like ones that are understood") {
 
 TEST_CASE("FFV1 in colours of noise, and of sizes that are no multiple of anything") {
   const scratch::Folder folder;
-  for (const std::array size : {std::array{5, 4}, {3, 3}, {67, 35}, {130, 5}}) {
+  for (const std::array size : {std::array{5, 4}, {3, 3}, {67, 35}, {130, 5}, {4, 2}, {2, 9}}) {
     const auto [width, height] = size;
     CAPTURE(size[0]);
     GreyImage sent(width, height, 8);
@@ -107,6 +107,28 @@ TEST_CASE("FFV1 in colours of noise, and of sizes that are no multiple of anythi
     int count = 0;
     for (; reader.next(image); ++count) CHECK(image.values == sent.values);
     CHECK(count == 3);
+  }
+}
+
+TEST_CASE("FFV1 of few pixels is lossless down to 2 x 2, and refused below") {
+  const scratch::Folder folder;
+  for (const std::array size : {std::array{2, 2}, {2, 3}, {3, 2}, {8, 2}, {2, 8}, {4, 3}, {4, 4}}) {
+    const auto [width, height] = size;
+    CAPTURE(size[0]);
+    CAPTURE(size[1]);
+    GreyImage sent(width, height, 8);
+    sent.values.assign(sent.values.size(), 51);
+    VideoWriter writer(folder / "n.mkv", {width, height, 8, 16, ""});
+    for (int i = 0; i < 3; ++i) writer.write(sent);
+    writer.commit();
+    VideoReader reader(folder / "n.mkv");
+    GreyImage image;
+    int count = 0;
+    for (; reader.next(image); ++count) CHECK(image.values == sent.values);
+    CHECK(count == 3);
+  }
+  for (const std::array size : {std::array{1, 8}, {8, 1}}) {
+    CHECK(scratch::status([&] { VideoWriter(folder / "one.mkv", {size[0], size[1], 8, 16, ""}); }) == 64);
   }
 }
 

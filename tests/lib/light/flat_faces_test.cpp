@@ -49,6 +49,25 @@ TEST_CASE("level faces are found, as high, as large and as wide as they are") {
   CHECK(faces_of_table(grid, 20.5, 8, 20).back().z_mm == doctest::Approx(grid.z_mm(19.5)));  // the grid ends on it
 }
 
+TEST_CASE("the width of a square is its side, where it is an odd number of voxels from 5 on") {
+  const model::Grid grid = model::centred_grid(14, 12, 2, 0.5);
+  for (const int side : {2, 3, 4, 5, 7, 9}) {
+    CAPTURE(side);
+    std::vector<float> slices(2 * grid.slice_size(), 0.0F);
+    for (int y = 1; y <= side; ++y) {
+      for (int x = 2; x < 2 + side; ++x) slices[y * grid.nx + x] = 1;
+    }
+    FlatFaceFinder finder(grid);
+    finder.add(2, slices.data());
+    const auto faces = finder.faces();
+    REQUIRE(faces.size() == (side < 5 ? 0 : 2));
+    for (const FlatFace& face : faces) {
+      CHECK(face.width_mm == doctest::Approx(0.5 * side));  // twice the distance of the middle from what is beside it
+      CHECK(face.area_mm2 == doctest::Approx(0.25 * side * side));
+    }
+  }
+}
+
 TEST_CASE("a face is smeared by what a ray climbs across it") {
   const model::Printer printer;
   FlatFace face{6.0, true, 10, 50};

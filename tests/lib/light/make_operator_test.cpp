@@ -2,6 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include <numbers>
+#include <variant>
+
 #include "base/error.hpp"
 #include "fault_of.hpp"
 #include "lib/light/vials.hpp"
@@ -41,4 +44,39 @@ TEST_CASE("the disc correction does not apply around an insert, unless nothing i
   CHECK(fault_of([&] { (void)make_operator(disc, {&insert, 1}); }) == Fault::usage);
   const ParallelBeam clear{parts::turn(32, 20), 0, 16, Correction::disc};
   CHECK(is<ShadowedOperator>(make_operator(clear, {&insert, 1})));
+}
+
+TEST_CASE("the light of a virtual sinogram is that of its columns, in voxels of the grid") {
+  model::Printer printer;
+  printer.resin.absorption_per_mm = 0.04;
+  model::StackInfo info;
+  info.kind = model::Kind::sinogram;
+  info.space = model::Space::virtual_;
+  info.width = 20;
+  info.height = 90;
+  info.pixel_mm = 0.5;
+  info.angle_start_deg = 30;
+  info.angle_step_deg = 4;
+  const model::Grid grid = model::centred_grid(16, 14, 3, 0.5);
+  const auto of = [&] { return std::get<ParallelBeam>(beam_of(printer, {}, info, grid)); };
+  const ParallelBeam beam = of();
+  CHECK(beam.turn.nx == 16);
+  CHECK(beam.turn.ny == 14);
+  CHECK(beam.turn.columns == 20);
+  CHECK(beam.turn.angles == 90);
+  CHECK(beam.turn.axis_x == 7.5);
+  CHECK(beam.turn.axis_y == 6.5);
+  CHECK(beam.turn.angle_start_rad == doctest::Approx(std::numbers::pi / 6));
+  CHECK(beam.turn.angle_step_rad == doctest::Approx(std::numbers::pi / 45));
+  CHECK(beam.mu_per_px == doctest::Approx(0.02));
+  CHECK(beam.resin_radius_px == doctest::Approx(2 * model::resin_radius_mm(printer.vial)));
+  info.pixel_mm = 0.5 * 1.0009;
+  CHECK(of().turn.columns == 20);
+  info.pixel_mm = 0.5 * 1.0012;
+  CHECK(fault_of([&] { (void)of(); }) == Fault::data);
+  info.pixel_mm = 0.5;
+  info.height = 89;  // not a turn
+  CHECK(fault_of([&] { (void)of(); }) == Fault::data);
+  info.space = model::Space::camera;
+  CHECK(fault_of([&] { (void)of(); }) == Fault::data);
 }

@@ -21,8 +21,8 @@ inline constexpr std::uint64_t max_pixels = std::uint64_t{1} << 28;  // of an im
 }
 
 /// ITU-R BT.601, in 16 bits.
-[[nodiscard]] constexpr int luma(int red, int green, int blue) {
-  return (19595 * red + 38470 * green + 7471 * blue + 32768) >> 16;
+[[nodiscard]] constexpr int luma(std::uint32_t red, std::uint32_t green, std::uint32_t blue) {
+  return static_cast<int>((19595 * red + 38470 * green + 7471 * blue + 32768) >> 16);
 }
 
 }  // namespace vam::io

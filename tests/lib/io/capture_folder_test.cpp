@@ -1,0 +1,110 @@
+// A folder of camera frames that a later capture goes on with.
+#include "io/image/capture_folder.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "base/json.hpp"
+#include "io/image/image_file.hpp"
+#include "lib/io/scratch.hpp"
+
+using namespace vam;
+using namespace vam::io;
+
+namespace {
+
+const Json head{{"schema", "vam-capture/1"}, {"exposure_us", 10000}};
+
+CaptureRecord record(long place, bool complete) {
+  CaptureRecord made{place, place + 7, 1.5, 0.001, 3.25, std::nullopt, 0.125, complete, "a"};
+  return made;
+}
+
+GreyImage levels(std::uint16_t level) {
+  GreyImage image(3, 2, 8);
+  image.values.assign(6, level);
+  return image;
+}
+
+std::string line_of(const std::string& frame) {
+  return R"({"frame": )" + frame + R"(, "number": 1, "t_monotonic_s": 0, "complete": true, "levels": ""})";
+}
+
+}  // namespace
+
+TEST_CASE("a folder of frames goes on where it ended, and gives back what was recorded") {
+  const scratch::Folder folder;
+  const std::string path = folder / "frames";
+  {
+    CaptureFolder frames(path, head);
+    frames.keep(record(0, true), levels(10));
+    frames.keep(record(1, false), levels(20));
+    frames.dropped(9, 11);
+    CHECK(frames.has(0));
+    CHECK_FALSE(frames.has(1));
+    CHECK_FALSE(frames.has(2));
+  }
+  // What was being written when the capture ended is no line.
+  scratch::spill(path + "/manifest.jsonl", scratch::slurp(path + "/manifest.jsonl") + R"({"frame": 2, "num)");
+  {
+    CaptureFolder frames(path, head);
+    CHECK(frames.has(0));
+    CHECK_FALSE(frames.has(1));
+    frames.keep(record(1, true), levels(30));
+    frames.dropped(20, 20);
+    frames.keep(record(0, false), levels(10));  // worse than what is there
+  }
+  const CaptureManifest manifest = read_manifest(path);
+  CHECK(Json::parse(manifest.head) == head);
+  CHECK(manifest.dropped == 3 + 1);
+  REQUIRE(manifest.frames.size() == 2);
+  const CaptureRecord& first = manifest.frames.at(0);
+  CHECK(first.complete);
+  CHECK(first.number == 7);
+  CHECK(first.t_monotonic_s == 1.5);
+  CHECK(first.time_sigma_s == 0.001);
+  CHECK(first.device_s == 3.25);
+  CHECK_FALSE(first.angle_deg);
+  CHECK(first.sigma_deg == 0.125);
+  CHECK(first.levels == "a");
+  CHECK(manifest.frames.at(1).complete);
+  CHECK(read_image(path + "/000001.png").values == levels(30).values);
+}
+
+TEST_CASE("a folder of another capture or with other files is not gone on with") {
+  const scratch::Folder folder;
+  const std::string path = folder / "frames";
+  { const CaptureFolder frames(path, head); }
+  Json other = head;
+  other["exposure_us"] = 20000;
+  std::string line;
+  CHECK(scratch::status([&] { const CaptureFolder frames(path, other); }, &line) == static_cast<int>(Fault::no_output));
+  CHECK(line.find("exposure_us 10000, not 20000") != std::string::npos);
+  (void)folder.write("notes", "x");
+  CHECK(scratch::status([&] { const CaptureFolder frames(folder.path, head); }, &line) ==
+        static_cast<int>(Fault::no_output));
+  CHECK(line.find("files of another kind") != std::string::npos);
+}
+
+TEST_CASE("a manifest whose numbers are none of frames is damaged") {
+  const scratch::Folder folder;
+  const auto status = [&](const std::string& text, std::string& line) {
+    (void)folder.write("manifest.jsonl", head.dump() + "\n" + text + "\n");
+    return scratch::status([&] { (void)read_manifest(folder.path); }, &line);
+  };
+  std::string line;
+  CHECK(status(line_of("281474976710656"), line) == 0);
+  const std::string last = std::to_string(std::numeric_limits<long>::min());
+  for (const std::string frame : {"281474976710657", "1e+300", "0.5", "\"1\"", last.c_str()}) {
+    CHECK(status(line_of(frame), line) == static_cast<int>(Fault::data));
+    CHECK(line.find(frame + " is not the number of a frame") != std::string::npos);
+    CHECK(status(R"({"dropped": [0, )" + frame + "]}", line) == static_cast<int>(Fault::data));
+  }
+  CHECK(status("{}", line) == static_cast<int>(Fault::data));
+  CHECK(status("{", line) == static_cast<int>(Fault::data));
+  (void)folder.write("manifest.jsonl", "");
+  CHECK_THROWS_WITH_AS((void)read_manifest(folder.path), doctest::Contains("is empty"), Error);
+  (void)folder.write("manifest.jsonl", "{\"schema\": \"vam-resin/1\"}\n");
+  CHECK_THROWS_WITH_AS((void)read_manifest(folder.path), doctest::Contains("not a manifest"), Error);
+}
