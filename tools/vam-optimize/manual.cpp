@@ -105,7 +105,8 @@ std::vector<std::string> description() {
 std::vector<std::pair<std::string, std::string>> examples() {
   return {
       {"Projections of a gyroid for the default printer:",
-       "vam-slice --shape gyroid --voxel 0.25 -o part.vdb && vam-optimize part.vdb -o sinogram.exr"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb && vam-optimize part.vdb -o "
+       "sinogram.exr"},
       {"Computed axial lithography, with the figures of merit of every iteration:",
        "vam-optimize --method cal --iterations 20 --trace trace.csv part.vdb -o cal.exr"},
       {"Continue from that result until part and void are separated:",
@@ -115,9 +116,11 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"Compensated for a beam 0.1 mm wide, and safe to interrupt:",
        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
       {"Tolerant of errors of the axis and of the lamp:",
-       "vam-optimize --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o robust.exr"},
+       "vam-optimize --angles 90 --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o "
+       "robust.exr"},
       {"A bound for any projections, and the regions of the part that determine it:",
-       "vam-optimize --certify proof.vdb --report proved.json part.vdb -o best.exr && vam-view proof.vdb -o proof.png"},
+       "vam-optimize --angles 90 --certify proof.vdb --report proved.json part.vdb -o best.exr && vam-view proof.vdb "
+       "-o proof.png"},
       {"A part three times as tall as the image, in three turns:",
        "printer='--set projector.rows=40 --set projector.axis_row=19.5 --set projector.pixel_mm=0.1 --set "
        "projector.columns=240 --set projector.axis_column=119.5' && vam-slice --shape gyroid:diameter=8,height=11 "
