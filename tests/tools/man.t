@@ -1,13 +1,6 @@
-# Each tool's manual page: the committed one is what the tool prints, it is clean, and its examples run. The pages of
-# section 7 are clean, and what they refer to is there.
+# Each tool's manual page: the committed one is what the tool prints, and it is clean. The pages of section 7 are clean,
+# and what they refer to is there. Examples are run by examples.sh.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
-
-PATH=$VAM_SOURCE/scripts:$PATH  # vam-print
-
-examples() {  # the commands of the EXAMPLES section of a page
-  awk '/^\.Sh /{inside = ($2 == "EXAMPLES")} inside && /^\.Ed/{code = 0} inside && code{print} inside && /^\.Bd/{code = 1}' "$1" |
-    sed -e 's/^\\&//' -e 's/\\e/\\/g'
-}
 
 fails 64 "update-man: unexpected argument 'vam-slice'" "$VAM_SOURCE/scripts/update-man" vam-slice
 for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
@@ -23,13 +16,6 @@ for source in "$VAM_SOURCE"/tools/vam-*.cpp; do
   grep -q "$tool" "$VAM_SOURCE/README.md"; report $? "$tool: in README"
   for shell in bash zsh fish; do "$tool" --completion $shell >"$tool.$shell" || report 1 "$tool: --completion $shell"; done
   ok "$tool: bash accepts its completion" bash -n "$tool.bash"
-  examples "$page" >"$tool.sh"
-  [ -s "$tool.sh" ]; report $? "$tool: the page has examples"
-  mkdir "examples-$tool"
-  (cd "examples-$tool" && sh -e "../$tool.sh") >.log/example 2>&1; status=$?
-  report $status "$tool: the examples run"
-  [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
-  is "$tool: the examples use no former spelling" "$(grep ' is now ' .log/example)" ""
 done
 
 if command -v groff >/dev/null; then  # what man(1) of most Linux systems formats with
@@ -41,10 +27,6 @@ fi
 # "Default: none" is the value none; an option that has no default states none.
 undue=$(awk '/^\./ { body = "" } /^Default: none/ && body !~ /One of (.*, )?none[,.]/ { print FILENAME ": " FNR } { body = body " " $0 }' "$VAM_SOURCE"/man/*.1)
 is 'no page says "Default: none" of an option without a value none' "$undue" ""
-
-# Their other examples name real devices.
-examples "$VAM_SOURCE/man/vam-print.1" | sed '/drm:/,$d' >print.sh
-ok 'vam-print: the dry run of its page' sh -e print.sh
 
 for script in vam-print vam-calibrate-all; do
   page=$VAM_SOURCE/man/$script.1
