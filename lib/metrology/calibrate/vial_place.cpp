@@ -87,7 +87,7 @@ VialEdges find_edges(const SweepScan& scan, const model::Printer& printer) {
   VialEdges out;
   for (int pass = 0; pass < 2; ++pass) {
     fit_bands(scan, edge_shapes(about), lit, out);
-    about.vial.radius_mm = radius_mm(printer, out.edge_px.value);
+    about.vial.radius_mm = vial_radius_mm(printer, out.edge_px.value);
   }
   fit_axis(scan, printer.projector.pixel_mm, lit, out);
   const double edge_px = out.edge_px.value;
