@@ -23,12 +23,14 @@ holds 'a bath of the resin lets more in' "$(json large.json index_bath.scale_tha
 # Without refraction all of the resin is lit, but for the outermost ray: 12.7 mm.
 holds 'nearly all of the vial' "$(json large.json index_bath.writable_radius_mm) > 12.5"
 
-# The bath's scale, too.
+# The bath's scale is rounded down, too: 0.4067 is 0.406.
 bath='--set bath.index=1.53 --set bath.window_mm=19.05'
-scale=$(sed -n 's/^index bath .*--scale //p' large)
-ok 'vam-slice takes the scale of the bath' vam-slice large.off --scale "$scale" --voxel 0.065 $bath -o large.vdb
-fails 65 'large.off' \
-  vam-slice large.off --scale "$(awk "BEGIN { print 1.02 * $scale }")" --voxel 0.065 $bath -o none.vdb
+box 44 44 9 >wider.off
+scale=$(vam-plan wider.off --no-preview | sed -n 's/^index bath .*--scale //p')
+is 'which the plan says' "$scale" 0.406
+ok 'vam-slice takes it' vam-slice wider.off --scale "$scale" --voxel 0.065 $bath -o wider.vdb
+fails 65 'wider.off' \
+  vam-slice wider.off --scale "$(awk "BEGIN { print 1.02 * $scale }")" --voxel 0.065 $bath -o none.vdb
 # A part whose file is in micrometres: three digits of a small number.
 box 10000 10000 4000 >micro.off
 ok 'a file in micrometres' sh -c 'vam-plan micro.off --no-preview --report micro.json >micro'
@@ -60,9 +62,9 @@ fails 65 'text.stl' vam-plan text.stl
 fails 64 'give only one of them' vam-plan box.off --shape cylinder
 fails 65 'box.off: is 1e[+]05 x 1e[+]05 x 4e[+]04 mm, [0-9e+.]* times too large for this printer; check --unit' \
   vam-plan box.off --scale 10000
-fails 65 '^vam-plan: shape cylinder:diameter=20000,height=2: is 2e[+]04 x 2e[+]04 x 2 mm' \
-  vam-plan --shape cylinder:diameter=20000,height=2
-fails 65 'box.off: no part fits the cylinder that can be written, of 8.* mm radius and 0.065 mm height' \
-  vam-plan box.off --set projector.rows=1
+fails 65 '^vam-plan: shape cylinder:diameter=1000,height=2: is 1e[+]06 x 1e[+]06 x 2000 mm' \
+  vam-plan --shape cylinder:diameter=1000,height=2 --scale 1000
+fails 65 'box.off: no part fits the cylinder that can be written, of .* mm radius and 48.* mm height, with pixels' \
+  vam-plan box.off --set projector.columns=1 --set projector.axis_column=0 --set projector.lens_distance_mm=120
 fails 73 'missing/plan.json' vam-plan box.off --no-preview --report missing/plan.json
 done_testing
