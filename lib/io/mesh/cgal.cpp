@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <sstream>
+#include <stdexcept>
 
 #include "io/mesh/private/formats.hpp"
 
@@ -125,7 +126,11 @@ PolygonSoup parse_ply(const std::string& bytes) {
   CgalSoup soup;
   std::vector<CGAL::IO::Color> of_faces;
   std::vector<CGAL::IO::Color> of_points;
-  if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points)) give_up("PLY", soup);
+  try {
+    if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points)) give_up("PLY", soup);
+  } catch (const std::length_error&) {  // a list of fewer than 0 values
+    give_up("PLY", soup);
+  }
   PolygonSoup result = converted(std::move(soup));
   if (of_points.size() != result.points.size()) return result;
   for (const CGAL::IO::Color& colour : of_points)

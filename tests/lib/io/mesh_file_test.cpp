@@ -219,6 +219,7 @@ TEST_CASE("meshes that crashed or starved a library: one line and status 65, at 
   CHECK(volume(read_mesh(folder.write("a", header + "3 0 1 2\n"))) == doctest::Approx(0));
   const auto begun = std::chrono::steady_clock::now();
   CHECK(refusal(folder, header + "2000000000 0 1 2\n") != "no error");
+  CHECK(has(refusal(folder, header + "-2 0 1 2\n"), "not a whole PLY file"));
   CHECK(refusal(folder, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2000000000 0 1 2\n") != "no error");
   CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds(20));
 }
