@@ -1,7 +1,6 @@
 // The text formats and PLY through CGAL. CGAL's readers trust the counts in a header and accept some cut files, so both
 // are examined first.
 #include <CGAL/IO/OBJ.h>
-#include <CGAL/IO/OFF.h>
 #include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
@@ -32,20 +31,6 @@ PolygonSoup converted(CgalSoup&& soup) {
   return result;
 }
 
-// Every vertex and face takes at least two bytes, so a larger count is a lie that must not become an allocation.
-void check_count(std::uint64_t count, const char* what, const std::string& bytes) {
-  if (count > bytes.size() / 2) {
-    throw MeshProblem{"the header promises " + std::to_string(count) + " " + what + " but the file has " +
-                      std::to_string(bytes.size()) + " bytes; it is truncated or damaged"};
-  }
-}
-
-[[noreturn]] void give_up(const char* format, const CgalSoup& soup) {
-  throw MeshProblem{std::string("not a whole ") + format + " file: reading stopped after " +
-                    std::to_string(soup.points.size()) + " vertices and " + std::to_string(soup.faces.size()) +
-                    " faces; it is truncated or damaged"};
-}
-
 // CGAL takes coordinates of other types for floats.
 void check_ply_property(const std::string& element, const std::string& type, const std::string& name) {
   if (element.empty()) throw MeshProblem{"the PLY header has a property of no element"};
@@ -71,29 +56,9 @@ void check_ply_header(const std::string& bytes) {
     if (keyword != "element") continue;
     element = first;
     std::uint64_t count = 0;
-    if (std::istringstream(second) >> count) check_count(count, element.c_str(), bytes);
+    if (std::istringstream(second) >> count) require_count(count, element.c_str(), bytes);
   }
   throw MeshProblem{"the PLY header has no end_header; the file is truncated"};
-}
-
-// The first line that is neither empty, comment nor the magic word holds the counts.
-void check_off_header(const std::string& bytes) {
-  std::istringstream words(bytes.substr(0, 4096));
-  for (std::string word; words >> word;) {
-    if (word[0] == '#') {
-      std::getline(words, word);
-    } else if (word.find("BINARY") != std::string::npos) {  // whose counts CGAL believes
-      throw MeshProblem{"is a binary OFF file; save it as text"};
-    } else if (word.find("OFF") == std::string::npos) {
-      std::istringstream number(word);
-      std::uint64_t vertices = 0;
-      std::uint64_t faces = 0;
-      if (!(number >> vertices) || !(words >> faces)) throw MeshProblem{"the OFF header has no counts"};
-      check_count(vertices, "vertices", bytes);
-      check_count(faces, "faces", bytes);
-      return;
-    }
-  }
 }
 
 }  // namespace
@@ -108,7 +73,7 @@ PolygonSoup parse_ascii_stl(const std::string& bytes) {
   }
   std::istringstream stream(text);
   CgalSoup soup;
-  if (!CGAL::IO::read_STL(stream, soup.points, soup.faces)) give_up("STL", soup);
+  if (!CGAL::IO::read_STL(stream, soup.points, soup.faces)) give_up("STL", converted(std::move(soup)));
   return converted(std::move(soup));
 }
 
@@ -116,7 +81,8 @@ PolygonSoup parse_obj(const std::string& bytes) {
   std::istringstream stream(bytes);
   CgalSoup soup;
   // False also for a file without faces, which the caller names for what it is.
-  if (!CGAL::IO::read_OBJ(stream, soup.points, soup.faces) && !soup.faces.empty()) give_up("OBJ", soup);
+  if (!CGAL::IO::read_OBJ(stream, soup.points, soup.faces) && !soup.faces.empty())
+    give_up("OBJ", converted(std::move(soup)));
   return converted(std::move(soup));
 }
 
@@ -127,23 +93,16 @@ PolygonSoup parse_ply(const std::string& bytes) {
   std::vector<CGAL::IO::Color> of_faces;
   std::vector<CGAL::IO::Color> of_points;
   try {
-    if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points)) give_up("PLY", soup);
+    if (!CGAL::IO::read_PLY(stream, soup.points, soup.faces, of_faces, of_points))
+      give_up("PLY", converted(std::move(soup)));
   } catch (const std::length_error&) {  // a list of fewer than 0 values
-    give_up("PLY", soup);
+    give_up("PLY", converted(std::move(soup)));
   }
   PolygonSoup result = converted(std::move(soup));
   if (of_points.size() != result.points.size()) return result;
   for (const CGAL::IO::Color& colour : of_points)
     result.colours.push_back({colour.red(), colour.green(), colour.blue()});
   return result;
-}
-
-PolygonSoup parse_off(const std::string& bytes) {
-  check_off_header(bytes);
-  std::istringstream stream(bytes);
-  CgalSoup soup;
-  if (!CGAL::IO::read_OFF(stream, soup.points, soup.faces)) give_up("OFF", soup);
-  return converted(std::move(soup));
 }
 
 }  // namespace vam::io

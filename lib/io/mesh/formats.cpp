@@ -64,6 +64,18 @@ void write_plain_stl(const std::string& path, const model::TriangleSoup& mesh, c
 
 }  // namespace
 
+void require_count(std::uint64_t count, const char* what, const std::string& bytes) {
+  if (count <= bytes.size() / 2) return;
+  throw MeshProblem{"the header promises " + std::to_string(count) + " " + what + " but the file has " +
+                    std::to_string(bytes.size()) + " bytes; it is truncated or damaged"};
+}
+
+void give_up(const char* format, const PolygonSoup& soup) {
+  throw MeshProblem{std::string("not a whole ") + format + " file: reading stopped after " +
+                    std::to_string(soup.points.size()) + " vertices and " + std::to_string(soup.faces.size()) +
+                    " faces; it is truncated or damaged"};
+}
+
 const std::vector<MeshFormat>& mesh_formats() {
   static const std::vector<MeshFormat> formats{
       {".3mf", "3MF", is_3mf, parse_3mf, nullptr},         {".ply", "PLY", is_ply, parse_ply, write_plain_ply},

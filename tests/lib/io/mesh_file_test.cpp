@@ -240,6 +240,30 @@ TEST_CASE("PLY coordinates that are no floats, and OFF that is no text, are refu
   CHECK(refusal(folder, "OFF BINARY\n" + std::string(40, '\x7f')).find("is a binary OFF file") != std::string::npos);
 }
 
+TEST_CASE("OFF with counts beside its magic word, comments, normals and colours; indices that are none") {
+  const scratch::Folder folder;
+  const std::string faces = "3 0 2 1\n3 0 1 3 # a face\n\n3 1 2 3 0.5 0.5 0.5 1\n3 0 3 2 255 0 0\n";
+  const auto off = [&](const std::string& head, const std::string& more, const std::string& first = "0 0 0") {
+    return head + "# points\n" + first + more + "\n 1 0 0" + more + "\r\n0 +1 0" + more + "\n0\t0 1e0" + more + "\n";
+  };
+  for (const std::string& text : {off("OFF\n4 4 0\n", ""), off("OFF 4 4 6\n", ""), off("NOFF\n4 4\n", " 0 0 1"),
+                                  off("COFF\n4 4 0\n", " 255 128 0 255"), off("STOFF\n#\n4 4 0\n", " 0.5 0.5")}) {
+    CHECK(volume(read_mesh(folder.write("a", text + faces))) == doctest::Approx(1.0 / 6));
+  }
+  const std::string points = off("OFF\n4 1 0\n", "");
+  CHECK(read_mesh(folder.write("a", points + "4 0 1 2 3\n")).triangles.size() == 2);
+  for (const char* face :
+       {"", "3 0 1\n", "3 0 1 1.5\n", "3 0 1 -1\n", "3 0 1 4e30\n", "3 0 1 x\n", "2.5 0 1 2\n", "-3 0 1 2\n"}) {
+    CAPTURE(face);
+    CHECK(has(refusal(folder, points + face), "not a whole OFF file: reading stopped after 4 vertices and 0 faces"));
+  }
+  CHECK(has(refusal(folder, points + "3 0 1 4\n"), "face 0 uses vertex 4 of 4"));
+  CHECK(has(refusal(folder, "OFF\n4 1\n0 0 0\n1 0\n"), "stopped after 1 vertices and 0 faces"));
+  for (const char* counts : {"", "4\n", "-4 1\n", "4 1.5\n", "x\n"}) {
+    CHECK(has(refusal(folder, std::string("OFF\n") + counts), "the OFF header has no counts"));
+  }
+}
+
 TEST_CASE("a PLY property without an element is reported") {
   const scratch::Folder folder;
   scratch::spill(folder / "a.ply", "ply\nformat ascii 1.0\nproperty float x\nend_header\n");

@@ -24,6 +24,12 @@ struct MeshProblem {
   std::string text;
 };
 
+/// Throws MeshProblem where a header promises more than its file can hold: every vertex and face takes at least two
+/// bytes, so a larger count must not become an allocation.
+void require_count(std::uint64_t count, const char* what, const std::string& bytes);
+/// Throws MeshProblem: the file ends, or is damaged, behind what was read.
+[[noreturn]] void give_up(const char* format, const PolygonSoup& soup);
+
 struct MeshFormat {
   std::string extension;                          // of files that are written: ".stl"
   std::string name;                               // for people: "STL"
