@@ -9,10 +9,10 @@
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"
 #include "optimize/methods/private/safeguard.hpp"
-#include "optimize/methods/private/step_length.hpp"
 #include "optimize/methods/private/surface_points.hpp"
 #include "optimize/methods/private/tolerant.hpp"
 #include "optimize/methods/private/two_metric.hpp"
+#include "optimize/methods/step_length.hpp"
 
 namespace vam::optimize {
 

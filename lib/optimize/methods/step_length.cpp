@@ -1,4 +1,4 @@
-#include "optimize/methods/private/step_length.hpp"
+#include "optimize/methods/step_length.hpp"
 
 #include <algorithm>
 #include <cmath>

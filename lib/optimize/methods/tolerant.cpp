@@ -7,10 +7,10 @@
 
 #include "optimize/methods/private/loss.hpp"
 #include "optimize/methods/private/safeguard.hpp"
-#include "optimize/methods/private/step_length.hpp"
 #include "optimize/methods/private/surface_points.hpp"
 #include "optimize/methods/private/two_metric.hpp"
 #include "optimize/methods/scenarios.hpp"
+#include "optimize/methods/step_length.hpp"
 
 namespace vam::optimize {
 

@@ -18,7 +18,7 @@ struct Certificate {
   std::vector<Slab> weights;  // z in the void, -y in the part; empty when nothing is proved
 };
 
-inline constexpr int certify_iterations = 240;  // of apg; another two forward projections for every five
+inline constexpr int certify_iterations = 240;  // of A and A*, as those of apg
 
 /// Tries to prove that the projections g, brought to the threshold, are nearly the best. All slices of the problem
 /// share the threshold. Not of grey targets.

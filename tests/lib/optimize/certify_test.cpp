@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <random>
 #include <span>
 #include <vector>
@@ -164,9 +165,13 @@ TEST_CASE("rounding on rays that meet no void does not spoil the bound") {
   CHECK(checked(it, proof) == doctest::Approx(proof.least).epsilon(1e-4));
 }
 
+// VAM_TRIALS random parts, 6 by default; ctest --preset long has 1000.
 TEST_CASE("no method's light is better than the bound") {
   std::mt19937 random(13);
-  for (int part = 0; part < 6; ++part) {
+  const char* given = std::getenv("VAM_TRIALS");
+  const int parts = given != nullptr ? std::atoi(given) : 6;
+  for (int part = 0; part < parts; ++part) {
+    CAPTURE(part);
     const Case it{32, 24, random_part(32, random)};
     const Certificate proof = certify(it.problem, *it.light, it.light_of("apg", 20));
     CHECK(proof.least > 0);
@@ -185,6 +190,7 @@ TEST_CASE("no method's light is better than the bound") {
 TEST_CASE("the bound of a resolution target is near the optimised ratio") {
   const Case it{64, 90, oracle::resolution_target(64)};
   const Certificate proof = certify(it.problem, *it.light, it.light_of("apg", 40));
-  CHECK(proof.least > 0.85 * proof.reached);
+  CHECK(proof.least > 0.95 * proof.reached);
   CHECK(proof.least <= proof.reached);
+  CHECK(checked(it, proof) == doctest::Approx(proof.least).epsilon(1e-4));
 }
