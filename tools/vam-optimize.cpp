@@ -19,6 +19,7 @@
 #include "vam-optimize/inputs.hpp"
 #include "vam-optimize/light.hpp"
 #include "vam-optimize/options.hpp"
+#include "vam-optimize/preview.hpp"
 #include "vam-optimize/publish.hpp"
 #include "vam-optimize/sink.hpp"
 #include "vam-optimize/task.hpp"
@@ -54,6 +55,7 @@ void run(const cli::App& app, Options& options) {
   settle_response(app, options);
 
   const optimize_tool::Inputs in = optimize_tool::read(options);
+  if (options.preview) return preview(printer, in, options);
   const Scene scene = make_scene(in.target.front(), printer, options);
   warn_of(scene, in.target.front(), options);
   const model::StackInfo info = stack_info(scene, in.target.front(), app, options);

@@ -49,8 +49,10 @@ void Progress::tick(long steps) {
 void Progress::draw(long done) {
   const double part = total_ > 0 ? static_cast<double>(done) / static_cast<double>(total_) : 0.0;
   const int filled = static_cast<int>(part * bar_width);
-  std::fprintf(stderr, "\r%s: %s [%.*s%*s] %3.0f %%", program.c_str(), what_.c_str(), filled,
-               "##############################", bar_width - filled, "", part * 100);
+  const double spent_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  const double left_s = part > 0 ? spent_s * (1 - part) / part : 0;
+  std::fprintf(stderr, "\r%s: %s [%.*s%*s] %3.0f %%, %.0f s left\033[K", program.c_str(), what_.c_str(), filled,
+               "##############################", bar_width - filled, "", part * 100, left_s);
 }
 
 }  // namespace vam

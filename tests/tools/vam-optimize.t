@@ -231,6 +231,28 @@ ok "its weights are a volume to look at" vam-view proof.vdb -o proof.png
 fails 64 'certify: does not apply to --grey-target' vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
 fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 
+# The verdict before the work.
+vam-optimize --preview $resin --report seen.json boat.vdb >seen.txt
+is "it will print" "$(value seen.json prints) $(head -n 1 seen.txt)" 'yes verdict         will print'
+holds "so long, and no better than the bound" "$(value seen.json duration_s) > 0 && 1 - $(value seen.json pw) >= $(value seen.json least_void_over_part) - 1e-3"
+holds "from coarser voxels" "$(value seen.json voxel_mm) >= 0.2"
+vam-slice --shape hollow-cylinder:outer=12,inner=11.9,height=10 --voxel 0.05 -o foil.vdb
+vam-optimize --preview --report foil.json foil.vdb >foil.txt
+is "walls too thin to be seen are no silent yes" "$(value foil.json prints)" unsure
+holds "their share is reported" "$(value foil.json unresolved_part) > 0.9"
+ok "and the reason is stated" grep -q '^verdict .*may not print: .* walls or gaps too thin' foil.txt
+vam-optimize --preview --set resin.psf_mm=1 --report blurred.json boat.vdb >blurred.txt
+is "what the beam blurs away does not print" "$(value blurred.json prints)" no
+ok "and where" grep -q '^wrong voxels  *z = ' blurred.txt
+fails 64 '--preview: does not apply to --output; omit it' vam-optimize --preview boat.vdb -o out.exr
+fails 64 '--preview: does not apply to --robust; omit it' vam-optimize --preview --robust lamp=3% boat.vdb
+
+# A budget of time.
+quiet "in ten seconds" vam-optimize --budget 10 --until 'pw>=0.9' --iterations 100000 --patience 0 --report budget.json part.vdb -o out.exr
+is "time stops the run" "$(value budget.json stopped_by)" time
+holds "its light is of use" "$(value budget.json iou) > 0.95"
+fails 64 '--budget: does not apply to --checkpoint' vam-optimize --budget 10 --checkpoint b.state part.vdb -o out.exr
+
 # Printers off their settings.
 off='axis=2px,index=0.02,angle=1deg,radius=0.5%,lamp=2%,psf=0.1mm'
 robust() { vam-optimize --angles 60 --iterations 24 --robust "$off" --yield-printers 8 "$@"; }

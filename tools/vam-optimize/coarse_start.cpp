@@ -7,9 +7,10 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "device/os/interrupt.hpp"
-#include "io/vdb/coarser.hpp"
 #include "model/coarser.hpp"
 #include "optimize/run/volume.hpp"
+#include "vam-optimize/coarser.hpp"
+#include "vam-optimize/countdown.hpp"
 #include "vam-optimize/task.hpp"
 
 namespace vam::optimize_tool {
@@ -19,33 +20,11 @@ namespace {
 constexpr int least_voxels = 24;      // a side of the coarser part
 constexpr double most_wrong = 0.02;   // voxel error rate of a print that is of use
 constexpr int first_iterations = 60;  // at the coarsest level
+constexpr double most_time = 0.5;     // of --budget, for all coarser levels
 constexpr int raises = 3;
 constexpr int next_iterations = 10;  // at those above, and for each raise of the limit where the part does not print
 constexpr double least_half_width = 0.05,
                  largest_half_width = 0.08;  // in doses; a wider one costs the surface its place
-
-Inputs coarser(const Inputs& in) {
-  Inputs coarse;
-  const auto add = [](const std::vector<io::SparseVolume>& from, std::vector<io::SparseVolume>& to) {
-    for (const io::SparseVolume& volume : from) to.push_back(io::coarser(volume));
-  };
-  add(in.target, coarse.target);
-  add(in.insert, coarse.insert);
-  add(in.weight, coarse.weight);
-  add(in.tolerance, coarse.tolerance);
-  return coarse;
-}
-
-/// Without whatever is made of the result alone.
-Options coarser(const Options& options) {
-  Options coarse = options;
-  coarse.angles = (options.angles + 1) / 2;
-  if (options.bins) coarse.bins = (*options.bins + 1) / 2;
-  coarse.trace.clear();
-  coarse.certify.clear();
-  if (coarse.shortest) coarse.raising = {};
-  return coarse;
-}
 
 optimize::StackSamples samples(const Scene& scene, const Options& options) {
   const model::Projector& projector = scene.printer.projector;
@@ -106,7 +85,9 @@ std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& fin
 std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, const Options& options) {
   if (!options.coarse_start || !worthwhile(in.grid())) return std::nullopt;
   try {
-    return start_from_coarser(coarser(in), scene, coarser(options), options);
+    Options coarse = coarser(options);
+    if (coarse.limits.deadline) coarse.limits.deadline = share_of(*coarse.limits.deadline, most_time);
+    return start_from_coarser(coarser(in), scene, coarse, options);
   } catch (const Error& error) {
     if (error.fault != Fault::data && error.fault != Fault::usage) throw;
     return std::nullopt;

@@ -56,6 +56,15 @@ std::vector<std::string> dose_and_intensity() {
       "grey."};
 }
 
+/// Numbers are those of preview.cpp.
+std::vector<std::string> verdict() {
+  return {
+      "--preview optimises the part on coarser voxels, of four of the target's or, where walls or gaps of the part are "
+      "too thin for these and the part is small, of two or one, in 4 to 16 iterations. The answer is yes or no, or "
+      "unsure with the reason: the process window is narrower than 0.03, or more than 2 % of the part is too thin "
+      "to be seen. It includes a lower bound like that of --certify, of voxels of twice the size."};
+}
+
 std::vector<std::string> printer_and_poses() {
   return {
       "With --robust the projections tolerate deviations of the printer from its settings: each iteration evaluates "
@@ -97,6 +106,7 @@ std::vector<std::string> description() {
   std::vector<std::string> texts = purpose();
   append(texts, methods());
   append(texts, dose_and_intensity());
+  append(texts, verdict());
   append(texts, printer_and_poses());
   append(texts, part_and_resin());
   return texts;
@@ -107,6 +117,7 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"Projections of a gyroid for the default printer:",
        "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb && vam-optimize part.vdb -o "
        "sinogram.exr"},
+      {"Will it print, for how long?", "vam-optimize --preview part.vdb"},
       {"Computed axial lithography, with the figures of merit of every iteration:",
        "vam-optimize --method cal --iterations 20 --trace trace.csv part.vdb -o cal.exr"},
       {"Continue from that result until part and void are separated:",

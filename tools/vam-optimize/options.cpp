@@ -104,6 +104,14 @@ void declare_stopping(cli::App& app, Options& options) {
              "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
   app.not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
+  app.flag(
+      "--preview", options.preview,
+      "Instead of projections write a verdict to standard output, within seconds: whether the part will print, how "
+      "long that takes, and at which heights it has wrong voxels.");
+  app.option("--budget", "SECONDS", options.budget_s, cli::positive,
+             "Time for the computation as a whole: no iteration begins that would not leave enough of it for the rest. "
+             "The coarser levels of auto take at most half. The result depends on the speed of the machine.");
+  app.not_in_job();
   app.option("--checkpoint", "FILE", options.checkpoint,
              "File for the state of a run that is interrupted (SIGINT, SIGTERM). If FILE exists, the run resumes from "
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "

@@ -43,6 +43,8 @@ struct Options {
   bool shortest = false;
   std::string tradeoff;
   std::string certify;
+  bool preview = false;
+  std::optional<double> budget_s;
   optimize::IntensityLimit limit;
   optimize::Raising raising;
   std::string robust;

@@ -12,6 +12,7 @@
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
+#include "vam-optimize/countdown.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {
@@ -98,6 +99,20 @@ void refuse_dither(const Options& options) {
                                 "vam-project --dither"};
 }
 
+/// What a verdict leaves out, and what needs time of its own.
+void refuse_beside_preview(const cli::App& app, const Options& options) {
+  if (options.budget_s && (app.given("--checkpoint") || app.given("--tradeoff"))) {
+    throw Error{Fault::usage,
+                "--budget: does not apply to --checkpoint and --tradeoff, whose results are the same on "
+                "any machine; omit it"};
+  }
+  if (!options.preview) return;
+  for (const char* flag : {"--output", "--init", "--poses", "--helix", "--wobble-record", "--grey-target", "--robust",
+                           "--checkpoint", "--trace", "--tradeoff", "--certify", "--bits", "--budget"}) {
+    if (app.given(flag)) throw Error{Fault::usage, std::string("--preview: does not apply to ") + flag + "; omit it"};
+  }
+}
+
 void refuse_contradictions(const cli::App& app, const Options& options, const optimize::MethodEntry& method) {
   optimize::check(options.demands);
   if (options.void_rule != "met" && (app.given("--void-band") || app.given("--void-weight")))
@@ -105,6 +120,7 @@ void refuse_contradictions(const cli::App& app, const Options& options, const op
   refuse_unread(app, options, method);
   refuse_poses(options);
   refuse_dither(options);
+  refuse_beside_preview(app, options);
   if (options.in_vial() && options.bins) {
     throw Error{Fault::usage,
                 "--detector-bins: does not apply to --geometry vial, whose sinogram has the projector's columns; use "
@@ -184,6 +200,7 @@ void settle(const cli::App& app, Options& options) {
   settle_limit(options, method);
   if (!optimize::reads(method, "--free-surface")) options.demands.free_surface = true;
   options.limits.iterations = options.iterations.value_or(method.iterations);
+  if (options.budget_s) options.limits.deadline = deadline_of(options);
   options.tradeoff.empty() ? settle_raising(app, options) : settle_tradeoff(app, options);
   if (!options.until.empty()) {
     options.limits.until = model::parse_conditions(options.until, optimize::SliceFigures::names());

@@ -119,7 +119,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
     return (options.printer_tolerances ? method.make_tolerant : method.make)(how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
-  task.certify = !options.certify.empty();
+  task.certify = options.certify.empty() ? 0 : optimize::certify_iterations;
   if (!options.tradeoff.empty()) task.front = make_show(scene.printer, options);
   if (options.printer_tolerances) {
     task.scenarios = [&](std::span<const Slab> inserts) { return make_scenarios(scene, options, inserts); };

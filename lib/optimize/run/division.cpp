@@ -19,7 +19,7 @@ Division division_of(const VolumeTask& task, const light::Operator& light) {
 
 bool takes_whole(const VolumeTask& task, const light::Operator& light) {
   const bool far = task.blur_px > 0 && light::halo_slices(task.blur_px) > lanes;
-  return light.couples_slices() || far || task.scenarios || task.front || task.certify;
+  return light.couples_slices() || far || task.scenarios || task.front || task.certify > 0;
 }
 
 }  // namespace vam::optimize

@@ -1,5 +1,6 @@
 #include "optimize/run/run_method.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -53,6 +54,14 @@ bool enough(const Method& method, const Limits& limits, const Iterate& state, in
   return limits.early > 0 && iteration >= limits.early && is_true(method.surface_miss(state.dose));
 }
 
+/// Whether another iteration as long as the mean of those before it, and the rest, fit in.
+bool in_time(const std::optional<Deadline>& deadline, const Standing& standing) {
+  if (!deadline) return true;
+  const double now_s = deadline->now_s();
+  const double each_s = (now_s - standing.began_s) / std::max(1, standing.iteration);
+  return now_s + (1 + deadline->rest_iterations) * each_s <= deadline->end_s;
+}
+
 /// Whether to stop at this iterate, and why.
 std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
                                const Limits& limits, const Iterate& state, Standing& standing, const Watch& watch) {
@@ -64,6 +73,7 @@ std::optional<StopReason> look(const Method& method, const Problem& problem, con
     if (reached(limits.until, slices) && enough(method, limits, state, standing.iteration)) return StopReason::goal;
     if (!last && lost_patience(standing, limits, mean_merit(slices))) return StopReason::no_progress;
   }
+  if (!last && !in_time(limits.deadline, standing)) return StopReason::time;
   return last ? std::optional(StopReason::iterations) : std::nullopt;
 }
 
@@ -77,6 +87,8 @@ std::string reason_name(StopReason stop) {
       return "no progress";
     case StopReason::interrupted:
       return "interrupted";
+    case StopReason::time:
+      return "time";
     case StopReason::iterations:
       break;
   }
@@ -87,6 +99,7 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
                    Iterate& state, Standing& standing, const Watch& watch, const Pause& pause) {
   bool looked = standing.iteration >= 0;
   if (!looked) {
+    if (limits.deadline) standing.began_s = limits.deadline->now_s();
     if (state.g.empty()) {
       method.start(problem, light, state);
     } else {

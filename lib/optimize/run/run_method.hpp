@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,19 +12,28 @@
 
 namespace vam::optimize {
 
-struct Limits {
-  int iterations = 0;
-  std::vector<model::Condition> until;  // stop when all hold; names as in SliceFigures::names()
-  int at_least = 0;                     // iterations before they count
-  int early = 0;                        // so many do where the print's surface is true by then; 0: none
-  int patience = 10;                    // stop when nothing improved in so many iterations; 0 = never
-  double least_gain = 1e-4;             // an improvement of the mean of IoU + PW smaller than this is none
+/// When a run must have ended, and its clock.
+struct Deadline {
+  std::function<double()> now_s;
+  double end_s = 0;
+  double rest_iterations = 3;  // as long as so many takes what follows the last one
 };
 
-/// Why a run ended: all iterations done, the conditions met, nothing gained by further iterations, or broken off.
-enum class StopReason : int { iterations, goal, no_progress, interrupted };
+struct Limits {
+  int iterations = 0;
+  std::vector<model::Condition> until;    // stop when all hold; names as in SliceFigures::names()
+  int at_least = 0;                       // iterations before they count
+  int early = 0;                          // so many do where the print's surface is true by then; 0: none
+  int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
+  double least_gain = 1e-4;               // an improvement of the mean of IoU + PW smaller than this is none
+  std::optional<Deadline> deadline = {};  // no iteration begins that might end after it
+};
 
-/// As reports have it: "iterations", "goal", "no progress", "interrupted".
+/// Why a run ended: all iterations done, the conditions met, nothing gained by further iterations, broken off, or no
+/// time left.
+enum class StopReason : int { iterations, goal, no_progress, interrupted, time };
+
+/// As reports have it: "iterations", "goal", "no progress", "interrupted", "time".
 [[nodiscard]] std::string reason_name(StopReason stop);
 
 struct Outcome {
@@ -41,6 +51,7 @@ struct Standing {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
   int best_at = 0;
+  double began_s = 0;  // with iteration 0; known where there is a deadline
 };
 
 /// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a run that has begun

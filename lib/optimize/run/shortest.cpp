@@ -23,7 +23,8 @@ Outcome run_shortest(Method& method, const Problem& problem, const light::Operat
     Limits now = limits;
     now.iterations = std::min(limits.iterations, search.until);
     Outcome outcome = run_method(method, problem, light, now, state, search.standing, watch, pause);
-    const bool ended = outcome.stop == StopReason::goal || outcome.stop == StopReason::interrupted;
+    const bool ended =
+        outcome.stop == StopReason::goal || outcome.stop == StopReason::interrupted || outcome.stop == StopReason::time;
     if (at_limit && outcome.stop != StopReason::interrupted) at_limit(search.max_intensity);
     if (ended || outcome.iterations >= limits.iterations) return outcome;
     search.max_intensity *= raising.factor;

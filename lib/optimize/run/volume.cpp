@@ -137,7 +137,7 @@ class VolumeRun {
         front_.push_back(front_point(input.problem, light.blurred(), most, work.state, faced, task_.front));
       };
     }
-    const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), task_.limits, task_.raising,
+    const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), limits_of(pass), task_.raising,
                                          work.state, work.search, watch, task_.interruption.pause, at_limit);
     if (outcome.stop == StopReason::interrupted) {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
@@ -146,9 +146,19 @@ class VolumeRun {
     ledger_.end(outcome);
     eigenvalue_ = work.method->eigenvalue();
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration
-    if (task_.certify) certificate_ = certify(input.problem, light.blurred(), work.state.g);
+    if (task_.certify > 0) certificate_ = certify(input.problem, light.blurred(), work.state.g, task_.certify);
     finish(input.problem, work, pass, light.sharp(), faced);
     return true;
+  }
+
+  /// The pass has its share of the time that is left.
+  [[nodiscard]] Limits limits_of(const Pass& pass) const {
+    Limits limits = task_.limits;
+    if (!limits.deadline) return limits;
+    const double now_s = limits.deadline->now_s();
+    const double share = static_cast<double>(pass.last - pass.first) / (jobs() - pass.first);
+    limits.deadline->end_s = now_s + share * std::max(0.0, limits.deadline->end_s - now_s);
+    return limits;
   }
 
   void begin(Work& work, const Pass& pass, const light::Operator& light) {

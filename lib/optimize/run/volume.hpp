@@ -46,8 +46,8 @@ struct VolumeTask {
   std::function<Image(int k)> initial;  // image to start from (fluence); none = from nothing
   std::function<std::unique_ptr<Method>(double max_intensity)> make;
   std::function<void(int k, const Image& image)> write;  // takes slices 0, 1, 2 ...: columns x angles, fluence
-  bool certify = false;                                  // prove how good any light could be, after the work
-  Show front;  // fills the outcome's front while the limit is raised; empty: none
+  int certify = 0;  // iterations that prove how good any light could be, after the work; 0: no proof
+  Show front;       // fills the outcome's front while the limit is raised; empty: none
   Interruption interruption;
 };
 

@@ -1,0 +1,234 @@
+#include "vam-optimize/preview.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/json.hpp"
+#include "base/text.hpp"
+#include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
+#include "io/stream/stream.hpp"
+#include "model/coarser.hpp"
+#include "model/magnification.hpp"
+#include "optimize/run/printable.hpp"
+#include "optimize/run/volume.hpp"
+#include "optimize/target/unresolved.hpp"
+#include "score/exposure_plan.hpp"
+#include "vam-optimize/coarse_start.hpp"
+#include "vam-optimize/coarser.hpp"
+#include "vam-optimize/exposure.hpp"
+#include "vam-optimize/task.hpp"
+
+namespace vam::optimize_tool {
+
+namespace {
+
+constexpr int least_voxels = 24;                          // a side of the part
+constexpr double most_updates = 2e8;                      // voxels x angles: a projection of those takes 0.1 s
+constexpr double most_unresolved = 0.02, hopeless = 0.5;  // relative to the part
+constexpr int least_iterations = 4, most_iterations = 16;
+constexpr int proof_iterations = 40;
+constexpr double proof_updates = 4e8;  // voxels x angles x iterations
+constexpr double sure_window = 0.03;   // of the largest dose: what the finer voxels may cost
+
+/// The job at some resolution.
+struct Level {
+  int pixels = 1;  // of the target's voxels, for one of these
+  model::Printer printer;
+  Options options;
+  Inputs own;            // none at the target's own resolution
+  const Inputs* finest;  // the target's own
+  Scene scene = {};
+  optimize::Unresolved unresolved = {};
+
+  [[nodiscard]] const Inputs& in() const { return own.target.empty() ? *finest : own; }
+  [[nodiscard]] double updates() const { return static_cast<double>(scene.grid.size()) * options.angles; }
+};
+
+optimize::Unresolved unresolved_of(const io::SparseVolume& target) {
+  model::Volume dense{target.grid(), std::vector<float>(target.grid().size())};
+  target.read_slices(0, dense.grid.nz, dense.values.data());
+  return optimize::unresolved(dense);
+}
+
+Level coarser(const Level& fine) {
+  Level coarse{2 * fine.pixels, model::coarser(fine.printer), coarser(fine.options), coarser(fine.in()), nullptr};
+  coarse.scene = make_scene(coarse.own.target.front(), coarse.printer, coarse.options);
+  coarse.unresolved = unresolved_of(coarse.own.target.front());
+  return coarse;
+}
+
+bool can_be_coarser(const model::Grid& grid) { return std::min(grid.nx, grid.ny) >= 2 * least_voxels && grid.nz > 1; }
+
+/// The coarsest of four, two and one voxels of the target that shows all of the part, or that is quick enough.
+Level level_of(const model::Printer& printer, const Inputs& in, const Options& options) {
+  std::vector<Level> levels;
+  levels.push_back({1, printer, options, {}, &in, make_scene(in.target.front(), printer, options)});
+  while (levels.back().pixels < 4) {
+    if (!can_be_coarser(levels.back().in().grid())) break;
+    levels.push_back(coarser(levels.back()));
+  }
+  while (levels.size() > 1 && levels.back().unresolved.share() > most_unresolved &&
+         levels[levels.size() - 2].updates() <= most_updates) {
+    levels.pop_back();
+  }
+  return std::move(levels.back());
+}
+
+optimize::VolumeOutcome solved(Level& level, int proof) {
+  const Scene& scene = level.scene;
+  optimize::VolumeTask task = make_task(scene, level.in(), level.options);
+  if (level.pixels == 1) {
+    optimize::require_printable(task, {scene.grid.nx, scene.grid.ny}, io::input_name(level.options.input));
+  }
+  task.limits.patience = task.limits.early = 0;
+  task.limits.iterations = std::min(task.limits.iterations, most_iterations);
+  task.limits.at_least = std::min(task.limits.iterations, least_iterations);
+  task.certify = proof;
+  task.write = [](int, const Image&) {};
+  if (auto start = coarse_start(level.in(), scene, level.options)) {
+    continue_from(std::move(*start), task, level.options);
+  }
+  return optimize::optimise(task, *make_light(scene, level.options));
+}
+
+/// In the print.
+struct Place {
+  double low_mm, high_mm, worst_mm;  // slices with wrong voxels, and the one with most of them
+};
+
+std::optional<Place> place_of(const optimize::VolumeOutcome& outcome, const Scene& scene) {
+  const std::vector<std::int64_t>& wrong = outcome.wrong;
+  const auto first = std::find_if(wrong.begin(), wrong.end(), [](auto n) { return n > 0; });
+  if (first == wrong.end()) return std::nullopt;
+  const auto last = std::find_if(wrong.rbegin(), wrong.rend(), [](auto n) { return n > 0; }).base() - 1;
+  const auto worst = std::max_element(wrong.begin(), wrong.end());
+  const auto mm = [&](auto at) {
+    return model::vertical_magnification(scene.printer) * scene.grid.z_mm(static_cast<double>(at - wrong.begin()));
+  };
+  return Place{mm(first), mm(last), mm(worst)};
+}
+
+std::string mm(double value) { return format_number(value, 3) + " mm"; }
+
+std::string unseen(const Level& level) {
+  const model::Grid& grid = level.in().grid();
+  return format_number(100 * level.unresolved.share(), 3) + " % of the part are walls or gaps too thin for voxels of " +
+         mm(grid.voxel_mm) +
+         ", most at z = " + mm(model::vertical_magnification(level.printer) * grid.z_mm(level.unresolved.slice));
+}
+
+/// What is known of the print.
+struct Answer {
+  const char* prints;  // yes, no, unsure
+  std::string words;
+  std::vector<std::string> reasons;
+};
+
+Answer unsure(const std::vector<std::string>& reasons) {
+  return {"unsure", "may not print: " + join(reasons, "; "), reasons};
+}
+
+Answer answer_of(const Level& level, const model::DoseMetrics& doses, double least) {
+  if (least >= 1) return {"no", "will not print, by any projections", {}};
+  if (doses.pw < 0) return {"no", "will not print", {}};
+  std::vector<std::string> doubts;
+  if (level.unresolved.share() > most_unresolved) doubts.push_back(unseen(level));
+  if (doses.pw < sure_window) doubts.emplace_back("the process window is narrow");
+  return doubts.empty() ? Answer{"yes", "will print", {}} : unsure(doubts);
+}
+
+/// All that is told.
+struct Seen {
+  Answer answer;
+  std::optional<model::DoseMetrics> doses = {};
+  double least_void_over_part = 0;  // of any light; 0: not known
+  std::optional<Place> place = {};
+  std::optional<score::ExposurePlan> plan = {};
+  double voxel_mm = 0;
+  int angles = 0, iterations = 0;
+  optimize::Unresolved unresolved = {};
+};
+
+/// Iterations of a proof.
+int proof_on(const Level& level) {
+  return static_cast<int>(std::clamp(proof_updates / level.updates(), 1.0, 1.0 * proof_iterations));
+}
+
+/// The least max_V x / min_G x of any light, on coarser voxels; 0: not known.
+double least_on(Level coarse) {
+  return coarse.unresolved.share() > hopeless ? 0 : solved(coarse, proof_on(coarse)).certificate->least;
+}
+
+Seen see(Level level) {
+  if (level.unresolved.share() > hopeless) return {.answer = unsure({unseen(level)}), .unresolved = level.unresolved};
+  warn_of(level.scene, level.in().target.front(), level.options);
+  const optimize::VolumeOutcome outcome = solved(level, can_be_coarser(level.in().grid()) ? 0 : proof_on(level));
+  optimize::require_light(outcome, io::input_name(level.options.input));
+  const double least = outcome.certificate ? outcome.certificate->least : least_on(coarser(level));
+  Seen seen{answer_of(level, outcome.metrics, least), outcome.metrics, least};
+  seen.place = place_of(outcome, level.scene);
+  seen.plan = exposure_of(outcome.metrics, outcome.peak_intensity, level.printer, {}, level.options);
+  seen.voxel_mm = level.scene.grid.voxel_mm;
+  seen.angles = level.options.angles;
+  seen.iterations = outcome.iterations;
+  seen.unresolved = level.unresolved;
+  return seen;
+}
+
+std::string row(const std::string& name, const std::string& value) {
+  return name + std::string(std::max<std::size_t>(1, 16 - name.size()), ' ') + value + "\n";
+}
+
+std::string table(const Seen& seen) {
+  const double least = seen.least_void_over_part;
+  std::string text = row("verdict", seen.answer.words);
+  if (!seen.doses) return text;
+  text += row("process window",
+              format_number(seen.doses->pw, 2) + " of the largest dose, VER " + format_number(seen.doses->ver, 2) +
+                  (least > 0 ? "; at most " + format_number(1 - least, 2) + " by any projections" : ""));
+  text += row("duration",
+              seen.plan ? format_number(seen.plan->seconds, 3) + " s in " + std::to_string(seen.plan->turns) + " turns"
+                        : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+  if (seen.place) {
+    text += row("wrong voxels", "z = " + mm(seen.place->low_mm) + " to " + mm(seen.place->high_mm) + ", most at " +
+                                    mm(seen.place->worst_mm));
+  }
+  return text + row("estimate", "voxels of " + mm(seen.voxel_mm) + ", " + std::to_string(seen.angles) + " angles, " +
+                                    std::to_string(seen.iterations) + " iterations");
+}
+
+Json report_of(const Seen& seen) {
+  const optimize::Unresolved& fine = seen.unresolved;
+  Json report{{"prints", seen.answer.prints}, {"reasons", seen.answer.reasons}};
+  report["unresolved_part"] = fine.whole > 0 ? fine.part / fine.whole : 0;
+  report["unresolved_gaps"] = fine.whole > 0 ? fine.gaps / fine.whole : 0;
+  if (!seen.doses) return report;
+  report["ver"] = seen.doses->ver;
+  report["pw"] = seen.doses->pw;
+  report["iou"] = seen.doses->iou;
+  report["least_void_over_part"] = seen.least_void_over_part;
+  report["voxel_mm"] = seen.voxel_mm;
+  report["angles"] = seen.angles;
+  report["iterations"] = seen.iterations;
+  if (seen.place) {
+    report["wrong"] = {
+        {"low_mm", seen.place->low_mm}, {"high_mm", seen.place->high_mm}, {"worst_mm", seen.place->worst_mm}};
+  }
+  if (seen.plan) add_to(report, *seen.plan);
+  return report;
+}
+
+}  // namespace
+
+void preview(const model::Printer& printer, const Inputs& in, const Options& options) {
+  const Seen seen = see(level_of(printer, in, options));
+  if (options.report != "-") io::write_text("-", table(seen));
+  io::write_report(options.report, "vam-optimize-preview/1", report_of(seen));
+}
+
+}  // namespace vam::optimize_tool

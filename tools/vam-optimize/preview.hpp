@@ -1,0 +1,13 @@
+// --preview: whether the part will print, for how long and where not, by few iterations on coarse voxels.
+#pragma once
+
+#include "model/printer.hpp"
+#include "vam-optimize/inputs.hpp"
+#include "vam-optimize/options.hpp"
+
+namespace vam::optimize_tool {
+
+/// Text on standard output, figures to --report. Throws as optimise() does.
+void preview(const model::Printer& printer, const Inputs& in, const Options& options);
+
+}  // namespace vam::optimize_tool
