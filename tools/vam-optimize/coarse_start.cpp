@@ -21,7 +21,7 @@ constexpr int least_voxels = 24;      // a side of the coarser part
 constexpr double most_wrong = 0.02;   // voxel error rate of a print that is of use
 constexpr int first_iterations = 60;  // at the coarsest level
 constexpr double most_time = 0.5;     // of --budget, for all coarser levels
-constexpr int raises = 3;
+constexpr int raises = 3, shortest_raises = 20;
 constexpr int next_iterations = 10;  // at those above, and for each raise of the limit where the part does not print
 constexpr double least_half_width = 0.05,
                  largest_half_width = 0.08;  // in doses; a wider one costs the surface its place
@@ -54,7 +54,7 @@ Level solve_level(const Inputs& in, const Scene& scene, Options options, std::op
     task.raising.first =
         task.limits.at_least + 1;  // one more: the conditions are not evaluated after the last iteration
     task.raising.next = next_iterations;
-    task.limits.iterations = task.raising.first + raises * next_iterations;
+    task.limits.iterations = task.raising.first + (options.shortest ? shortest_raises : raises) * next_iterations;
   }
   Level level;
   task.write = [&](int, const Image& image) { level.images.push_back(image); };
@@ -77,7 +77,8 @@ std::optional<CoarseStart> start_from_coarser(const Inputs& in, const Scene& fin
   return CoarseStart{{std::move(images), samples(scene, options), samples(finer, finer_options)},
                      m.pw > 0 ? std::clamp(0.5 * m.pw, least_half_width, largest_half_width) : 0,
                      outcome.even,
-                     outcome.eigenvalue};
+                     outcome.eigenvalue,
+                     outcome.max_intensity};
 }
 
 }  // namespace
@@ -97,6 +98,10 @@ std::optional<CoarseStart> coarse_start(const Inputs& in, const Scene& scene, co
 void continue_from(CoarseStart start, optimize::VolumeTask& task, Options& options) {
   task.initial = std::move(start.images);
   task.even = start.even;
+  if (options.shortest && start.max_intensity > 0) {  // found where it costs little
+    task.limit = {.most = start.max_intensity, .of_even = 0};
+    task.raising.first = optimize::shortest_refinements;
+  }
   options.how.half_width = start.half_width;
   options.how.eigenvalue = start.eigenvalue;
 }

@@ -17,6 +17,7 @@ struct CoarseStart {
   double half_width = 0;          // of the window that it reached about the threshold, in doses; 0: it did not print
   optimize::EvenDose even;        // these two do not depend on the voxels
   double eigenvalue = 0;
+  double max_intensity = 0;  // the limit, as raised; 0: none
 };
 
 /// For the projections of `scene`, from `in`; a line for each level on a terminal. None where the coarser part is too

@@ -24,7 +24,6 @@ Options coarser(const Options& options) {
   if (options.bins) coarse.bins = (*options.bins + 1) / 2;
   coarse.trace.clear();
   coarse.certify.clear();
-  if (coarse.shortest) coarse.raising = {};
   return coarse;
 }
 

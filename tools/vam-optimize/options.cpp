@@ -148,13 +148,15 @@ void declare_duration(cli::App& app, Options& options) {
              "--max-intensity from resin.critical_dose_mj_cm3, resin.absorption_per_mm and "
              "projector.max_intensity_mw_cm2, and --diffusion-time. (vam-project --turns sets the number of turns "
              "shown.)");
-  app.flag("--shortest", options.shortest,
-           readers("--max-intensity") +
-               "find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
-               format_number(optimize::shortest_of_even) + " times the even intensity and is raised by " +
-               format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
-               std::to_string(optimize::shortest_raising.next) +
-               " iterations without success. The optimisation takes several times as long.");
+  app.flag(
+      "--shortest", options.shortest,
+      readers("--max-intensity") +
+          "find the shortest print that meets the conditions of --until: the maximum intensity begins at " +
+          format_number(optimize::shortest_of_even) + " times the even intensity and is raised by " +
+          format_number(100 * (optimize::shortest_raising.factor - 1)) + " % after every " +
+          std::to_string(optimize::shortest_raising.next) +
+          " iterations without success. auto searches on its coarsest voxels, which takes up to twice as long as a "
+          "run; other methods take several times as long.");
   app.option("--tradeoff", "FILE", options.tradeoff,
              readers("--max-intensity") +
                  "write the Pareto front of print duration and process window, as CSV or as a figure (.png, .pdf or "

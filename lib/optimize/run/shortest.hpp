@@ -20,6 +20,8 @@ inline constexpr Raising usual_raising{.factor = 1.5, .first = 16, .next = 8};
 /// The same parts print with 1.2 to 1.45 times, in 8 to 31 iterations.
 inline constexpr double shortest_of_even = 1.2;
 inline constexpr Raising shortest_raising{.factor = 1.1, .first = 24, .next = 6};
+/// With the first limit where it was found on coarser voxels.
+inline constexpr int shortest_refinements = 12;
 
 /// The front of duration against window: 8 limits from 1.2 to 7.5 times the even intensity.
 inline constexpr Raising front_raising{.factor = 1.3, .first = 24, .next = 10};
