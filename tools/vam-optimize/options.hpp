@@ -50,7 +50,7 @@ struct Options {
   std::string robust;
   std::optional<model::Tolerances> printer_tolerances;  // as read from it
   bool recorded_tolerances = false;                     // and from the calibration records
-  int yield_printers = 50;
+  int yield_printers = 200;
   std::string negative = "clip";
   std::string absorption_model = "exact";
   bool no_blur = false;
