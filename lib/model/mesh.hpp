@@ -18,6 +18,7 @@ struct TriangleSoup {
 struct VertexData {
   std::vector<float> quality;                        // signed distance in mm, or any scalar worth colouring
   std::vector<std::array<std::uint8_t, 3>> colours;  // red, green, blue
+  std::vector<float> uncertainty = {};               // standard, of the position along the normal, in mm
 };
 
 }  // namespace vam::model

@@ -99,6 +99,7 @@ PolygonSoup parse_ply(const std::string& bytes) {
     give_up("PLY", converted(std::move(soup)));
   }
   PolygonSoup result = converted(std::move(soup));
+  result.uncertainty = ply_numbers(bytes, "scalar_uncertainty", result.points.size());
   if (of_points.size() != result.points.size()) return result;
   for (const CGAL::IO::Color& colour : of_points)
     result.colours.push_back({colour.red(), colour.green(), colour.blue()});

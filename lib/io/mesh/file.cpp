@@ -56,6 +56,9 @@ void check_points(const PolygonSoup& soup) {
   constexpr auto limit = static_cast<std::size_t>(std::numeric_limits<int>::max());
   if (soup.points.size() > limit)
     throw MeshProblem{"has " + std::to_string(soup.points.size()) + " vertices, more than 2^31 - 1"};
+  for (const float u : soup.uncertainty) {
+    if (!std::isfinite(u) || u < 0) throw MeshProblem{"has an uncertainty that is negative or not finite"};
+  }
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
     for (const double x : soup.points[i]) {
       if (!std::isfinite(x))
@@ -86,6 +89,7 @@ ColouredMesh triangulated(PolygonSoup&& soup) {
   if (mesh.triangles.empty()) throw MeshProblem{"the mesh is empty: " + std::to_string(points) + " vertices, no face"};
   mesh.points = std::move(soup.points);
   made.colours = std::move(soup.colours);
+  made.uncertainty = std::move(soup.uncertainty);
   return made;
 }
 
@@ -115,6 +119,7 @@ void send_mesh(const ColouredMesh& made, Sender& out) {
   send(made.mesh.points, out);
   send(made.mesh.triangles, out);
   send(made.colours, out);
+  send(made.uncertainty, out);
 }
 
 ColouredMesh received(Receiver& in) {
@@ -122,6 +127,7 @@ ColouredMesh received(Receiver& in) {
   receive(in, made.mesh.points);
   receive(in, made.mesh.triangles);
   receive(in, made.colours);
+  receive(in, made.uncertainty);
   return made;
 }
 
@@ -129,7 +135,8 @@ ColouredMesh received(Receiver& in) {
 void check_indices(const ColouredMesh& made, const std::string& name) {
   const model::TriangleSoup& mesh = made.mesh;
   const int points = count_of(mesh.points);
-  if (!made.colours.empty() && made.colours.size() != mesh.points.size())
+  const auto whole = [&](const auto& values) { return values.empty() || values.size() == mesh.points.size(); };
+  if (!whole(made.colours) || !whole(made.uncertainty))
     throw Error{Fault::data, name + ": is damaged: its reader failed"};
   for (const auto& triangle : mesh.triangles) {
     for (const int corner : triangle) {

@@ -16,10 +16,12 @@ namespace vam::io {
 /// does not exist or with fewer than three corners).
 [[nodiscard]] model::TriangleSoup read_mesh(const std::string& path);
 
-/// The same, with the colours of the vertices where the format has some (PLY).
+/// The same, with what PLY has of its vertices: colours, and standard uncertainties (scalar_uncertainty, mm). Throws
+/// also for an uncertainty that is negative or not finite.
 struct ColouredMesh {
   model::TriangleSoup mesh;
   std::vector<std::array<std::uint8_t, 3>> colours;  // one a point, or none
+  std::vector<float> uncertainty;                    // the same
 };
 [[nodiscard]] ColouredMesh read_coloured_mesh(const std::string& path);
 
@@ -37,7 +39,8 @@ void write_mesh(const std::string& path, const model::TriangleSoup& mesh, const 
 void write_stl(const std::string& path, const model::TriangleSoup& mesh);
 
 /// Writes binary little-endian PLY with 32-bit floats; a soup without triangles is a point cloud. Quality goes into
-/// both `quality`, which MeshLab reads, and `scalar_distance`, which CloudCompare reads; colours into `red green blue`.
+/// both `quality`, which MeshLab reads, and `scalar_distance`, which CloudCompare reads, uncertainties into
+/// `scalar_uncertainty`, colours into `red green blue`.
 /// Each of `comments` becomes a comment line. "-" is stdout. Throws Error: no_output, io.
 void write_ply(const std::string& path, const model::TriangleSoup& mesh, const model::VertexData& vertices = {},
                const std::vector<std::string>& comments = {});

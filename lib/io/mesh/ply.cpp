@@ -19,6 +19,7 @@ std::string ply_header(const model::TriangleSoup& mesh, const model::VertexData&
   header += "element vertex " + std::to_string(mesh.points.size()) + "\n";
   header += "property float x\nproperty float y\nproperty float z\n";
   if (!vertices.quality.empty()) header += "property float quality\nproperty float scalar_distance\n";
+  if (!vertices.uncertainty.empty()) header += "property float scalar_uncertainty\n";
   if (!vertices.colours.empty()) header += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   header += "element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\n";
   return header + "end_header\n";
@@ -31,13 +32,14 @@ void write_ply(const std::string& path, const model::TriangleSoup& mesh, const m
   OutputFile file(path);
   file.write(ply_header(mesh, vertices, comments));
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    float record[5];
+    float record[6];
     std::size_t floats = 0;
     for (const double x : mesh.points[i]) record[floats++] = static_cast<float>(x);
     if (!vertices.quality.empty()) {
       record[floats++] = vertices.quality[i];
       record[floats++] = vertices.quality[i];
     }
+    if (!vertices.uncertainty.empty()) record[floats++] = vertices.uncertainty[i];
     file.write(record, floats * sizeof record[0]);
     if (!vertices.colours.empty()) file.write(vertices.colours[i].data(), 3);
   }

@@ -145,6 +145,26 @@ TEST_CASE("PLY carries quality twice, colours and comments, and reads back") {
   CHECK(has(slurp(folder / "cloud.ply"), "element face 0\n"));
 }
 
+TEST_CASE("PLY carries uncertainties, which are read back") {
+  const scratch::Folder folder;
+  vam::model::VertexData data;
+  for (int i = 0; i < 8; ++i) {
+    data.quality.push_back(1);
+    data.colours.push_back({9, 2, 3});
+    data.uncertainty.push_back(static_cast<float>(i) / 8);
+  }
+  vam::io::write_ply(folder / "box.ply", box(), data);
+  const auto read = vam::io::read_coloured_mesh(folder / "box.ply");
+  CHECK(read.uncertainty == data.uncertainty);
+  CHECK(read.colours == data.colours);
+  data.uncertainty[3] = -1;
+  vam::io::write_ply(folder / "box.ply", box(), data);
+  CHECK_THROWS_WITH_AS((void)read_mesh(folder / "box.ply"), doctest::Contains("negative"), vam::Error);
+  data.uncertainty.clear();
+  vam::io::write_ply(folder / "box.ply", box(), data);
+  CHECK(vam::io::read_coloured_mesh(folder / "box.ply").uncertainty.empty());
+}
+
 TEST_CASE("a file truncated anywhere is an error") {
   const scratch::Folder folder;
   vam::io::write_stl(folder / "box.stl", box());

@@ -17,6 +17,7 @@ struct PolygonSoup {
   std::vector<std::array<double, 3>> points;
   std::vector<std::vector<int>> faces;
   std::vector<std::array<std::uint8_t, 3>> colours = {};  // one a point, or none
+  std::vector<float> uncertainty = {};                    // the same
 };
 
 /// What a parser has to say about bytes it cannot read: the rest of the sentence that begins with the file's name.
@@ -51,6 +52,9 @@ struct MeshFormat {
 
 /// Capitals of ASCII as small letters.
 [[nodiscard]] std::string lower_case(std::string text);
+
+/// The property `name`, a float of every vertex, of a little-endian PLY; nothing where it has none.
+[[nodiscard]] std::vector<float> ply_numbers(const std::string& bytes, const std::string& name, std::size_t vertices);
 
 /// By CGAL; each throws MeshProblem when CGAL gives up.
 [[nodiscard]] PolygonSoup parse_ascii_stl(const std::string& bytes);
