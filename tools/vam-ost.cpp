@@ -1,5 +1,6 @@
 // vam-ost: optical scattering tomography, from camera views to the scattering volume of the print.
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,11 @@ std::vector<std::string> notes() {
       "Memory. About four times the views of one turn, plus the volume. Time: about a second for 180 views of 480 x "
       "300 "
       "pixels on two cores.",
+      "Uncertainty. The noise of the views is measured in them (variance a + b times the value, from second "
+      "differences between neighbouring pixels) and taken through the same reconstruction twice; --uncertainty holds "
+      "the RMS over 9 x 9 x 9 voxels. Noise that neighbouring pixels share, as in compressed video, is "
+      "underestimated; systematic errors (isovalue, pixel pitch, indices, absorption) are not contained. It triples "
+      "the time and doubles the memory.",
       "Resolution. Struts three voxels apart keep a contrast of 29 % with the default filter, 14 % with hann, which "
       "smooths noise more. The axis is the centre of symmetry of the mean view, row by row, by least squares; column, "
       "tilt and their standard deviations are reported.",
@@ -119,6 +125,10 @@ void declare_reconstruction(cli::App& app, Options& o) {
   app.option("--mlem-iterations", "N", o.how.mlem_iterations, {0, 1000},
              "Number of MLEM iterations after the back-projection, for noisy views.")
       .was("--statistical");
+  app.option("--uncertainty", "FILE.vdb", o.uncertainty,
+             "Write the standard deviations of the volume's values due to the noise of the views, as a volume "
+             "'uncertainty' for vam-sdf; a mesh (.ply) has those of its vertices in mm (scalar_uncertainty).")
+      .writes({".vdb"});
   app.choice("--negative", o.negative, {"clip", "keep"}, "Negative densities: clip them to 0, or keep them.");
   app.was("--keep-negative", "keep");
   app.flag("--no-refraction", o.no_refraction,
@@ -191,9 +201,14 @@ void once(const cli::App& app, const Options& options) {
   metrology::require_alike(views);
   model::Volume volume = session.reconstruct(views, source.pixel_mm());
   print.require_in(volume);
-  session.write(volume, options.output, source.history());
+  session.write("scatter", volume, options.output, source.history());
   print.keep(volume);
-  print.write(volume);
+  std::optional<model::Volume> sigma;
+  if (!options.uncertainty.empty()) {
+    sigma = session.uncertainty(views);
+    session.write("uncertainty", *sigma, options.uncertainty, source.history());
+  }
+  print.write(volume, sigma ? &*sigma : nullptr);
   Json report = session.figures(volume);
   report.update(print.figures(volume));
   io::write_report(options.report, "vam-ost/1", report);
@@ -208,6 +223,12 @@ void run(const cli::App& app, const Options& options) {
     throw Error{Fault::usage, "--report: describes one volume; with --live the figures of each are written to --log"};
   }
   if (!options.projections.empty()) plot::require_figures();
+  if (!options.uncertainty.empty() && options.live) {
+    throw Error{Fault::usage, "--uncertainty: describes one volume; not with --live"};
+  }
+  if (!options.uncertainty.empty() && options.how.mlem_iterations > 0) {
+    throw Error{Fault::usage, "--uncertainty: is that of filtered back-projection; not with --mlem-iterations"};
+  }
   options.live ? ost_tool::live(app, options) : once(app, options);
 }
 

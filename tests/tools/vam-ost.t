@@ -48,6 +48,17 @@ holds 'and leans by 0.5 deg' "$(json boat.json axis_tilt_deg) > 0.45 && $(json b
 "$render" cylinder:diameter=6,height=4 standard.exr noise=0.2
 quiet 'a standard cylinder' vam-ost standard.exr $glass -o standard.vdb
 quiet 'I_p by its known diameter' vam-calibrate resin standard.vdb --diameter 6 -o glass.json
+quiet 'its uncertainty' vam-ost standard.exr $glass -o known.vdb --uncertainty sigma.vdb --resin glass.json --mesh known.ply
+head -c 600 known.ply | grep -aq 'property float scalar_uncertainty'; report $? 'is in the mesh'
+vam-slice --shape cylinder:diameter=6,height=4 --voxel 0.1 --stretch-z 1 -o standard-design.vdb
+quiet 'and is used by vam-sdf' vam-sdf known.vdb standard-design.vdb --resin glass.json --uncertainty sigma.vdb --report known.json
+is 'which says so' "$(json known.json uncertainty_budget.source)" volume
+holds 'a tenth of a pixel or so' "$(json known.json uncertainty_budget.surface_mm) > 0.001 && $(json known.json uncertainty_budget.surface_mm) < 0.1"
+quiet 'or of the mesh' vam-sdf known.ply standard-design.vdb --report mesh.json
+is 'which says so, too' "$(json mesh.json uncertainty_budget.source)" mesh
+holds 'and knows as much' "$(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) > 0.99 && $(json mesh.json uncertainty_budget.surface_mm) / $(json known.json uncertainty_budget.surface_mm) < 1.01"
+fails 64 'not with --live' vam-ost standard.exr $glass --live -o x --uncertainty x.vdb
+fails 64 'not with --mlem-iterations' vam-ost standard.exr $glass -o x.vdb --mlem-iterations 3 --uncertainty y.vdb
 holds 'the standard is as high as it was drawn' "$(json glass.json height_mm) > 3.8 && $(json glass.json height_mm) < 4.2"
 python3 - <<'PY'
 import struct, zlib

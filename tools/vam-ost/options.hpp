@@ -23,7 +23,7 @@ struct Options {
   std::optional<double> isovalue;
   std::optional<double> pieces_mm3;
   std::string resin_record;
-  std::string mesh, projections;
+  std::string mesh, projections, uncertainty;
   bool live = false;
   double every_deg = 360;
   std::string target, until, log, page;

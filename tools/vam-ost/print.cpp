@@ -10,6 +10,7 @@
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/projection_sheet.hpp"
+#include "metrology/ost/surface_uncertainty.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/save.hpp"
 #include "solid/voxel/isosurface.hpp"
@@ -68,10 +69,17 @@ void Print::require_in(const model::Volume& volume) const {
                                " everywhere; check --isovalue"};
 }
 
-void Print::write(const model::Volume& volume) const {
+void Print::write(const model::Volume& volume, const model::Volume* sigma) const {
   if (!options_.mesh.empty()) {
     const auto mesh = solid::isosurface(volume, *isovalue_);
-    if (!mesh.triangles.empty()) io::write_mesh(options_.mesh, mesh, {app_.history()});
+    if (sigma != nullptr && options_.mesh.ends_with(".ply")) {
+      model::VertexData vertices;
+      vertices.uncertainty = metrology::surface_uncertainty_mm(volume, *sigma, mesh.points);
+      io::write_ply(options_.mesh, mesh, vertices,
+                    {app_.history(), "scalar_uncertainty: standard, along the normal, in mm"});
+    } else if (!mesh.triangles.empty()) {
+      io::write_mesh(options_.mesh, mesh, {app_.history()});
+    }
   }
   if (options_.projections.empty()) return;
   const auto sheet = metrology::projection_sheet(volume, isovalue_, target_ ? &*target_ : nullptr);

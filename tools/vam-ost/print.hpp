@@ -22,8 +22,8 @@ class Print {
   void require_in(const model::Volume& volume) const;
   /// With an isovalue: drops the bodies that are not the print, for all that follows. Says what was dropped.
   void keep(model::Volume& volume);
-  /// --mesh and --projections.
-  void write(const model::Volume& volume) const;
+  /// --mesh, with the uncertainty of its vertices where that of the voxels is known, and --projections.
+  void write(const model::Volume& volume, const model::Volume* sigma = nullptr) const;
   /// What the last call of keep() kept and dropped; nothing without an isovalue.
   [[nodiscard]] std::optional<metrology::BodyCount> bodies() const;
   /// Nothing without isovalue and target.

@@ -78,9 +78,13 @@ model::Volume Session::reconstruct(std::span<const metrology::CameraView> views,
   return volume;
 }
 
-void Session::write(const model::Volume& volume, const std::string& path,
+model::Volume Session::uncertainty(std::span<const metrology::CameraView> views) const {
+  return rig_->uncertainty(views);
+}
+
+void Session::write(const std::string& name, const model::Volume& volume, const std::string& path,
                     const std::vector<std::string>& history) const {
-  io::SparseVolume sparse("scatter", volume.grid);
+  io::SparseVolume sparse(name, volume.grid);
   sparse.history = history;
   sparse.history.push_back(app_.history());
   sparse.metadata["vam:printer"] = io::printer_settings(printer_);

@@ -33,7 +33,11 @@ class Session {
   Attempt attempt(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
-  void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
+  /// Standard deviations of its voxels.
+  [[nodiscard]] model::Volume uncertainty(std::span<const metrology::CameraView> views) const;
+  /// `name`: scatter or uncertainty.
+  void write(const std::string& name, const model::Volume& volume, const std::string& path,
+             const std::vector<std::string>& history) const;
   /// What was taken out of the views of the last volume.
   [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
   [[nodiscard]] Json run_out() const { return metrology::to_json(run_out_); }

@@ -95,6 +95,8 @@ int OstReconstructor::State::half_width(double voxel_mm) const {
                                std::to_string(columns) + "); check camera.pixel_mm and the axis"};
 }
 
+OstReconstructor::OstReconstructor(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
 OstReconstructor::~OstReconstructor() = default;
 
 const model::Grid& OstReconstructor::grid() const { return state_->grid; }

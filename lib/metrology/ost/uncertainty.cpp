@@ -1,0 +1,73 @@
+// The uncertainty of a reconstruction: noise through the same reconstruction [physics §8].
+#include <algorithm>
+#include <cmath>
+
+#include "base/index.hpp"
+#include "base/parallel.hpp"
+#include "metrology/ost/private/ost_state.hpp"
+#include "metrology/ost/view_noise.hpp"
+
+namespace vam::metrology {
+
+namespace {
+
+constexpr int reach = 4;  // voxels either side
+
+// Sums over 2 reach + 1 neighbours of a line of values, `stride` apart.
+void sum_line(float* values, int count, std::ptrdiff_t stride, std::vector<double>& running) {
+  running.assign(static_cast<std::size_t>(count) + 1, 0.0);
+  for (int i = 0; i < count; ++i) running[i + 1] = running[i] + static_cast<double>(values[i * stride]);
+  for (int i = 0; i < count; ++i) {
+    values[i * stride] = static_cast<float>(running[std::min(count, i + reach + 1)] - running[std::max(0, i - reach)]);
+  }
+}
+
+void sum_neighbours(model::Volume& volume) {
+  const model::Grid& g = volume.grid;
+  const auto row = static_cast<std::ptrdiff_t>(g.nx);
+  parallel_for(g.nz, [&](int k) {
+    std::vector<double> running;
+    for (int j = 0; j < g.ny; ++j) sum_line(volume.slice(k) + j * row, g.nx, 1, running);
+    for (int i = 0; i < g.nx; ++i) sum_line(volume.slice(k) + i, g.ny, row, running);
+  });
+  const auto slice = static_cast<std::ptrdiff_t>(g.slice_size());
+  parallel_for(g.ny, [&](int j) {
+    std::vector<double> running;
+    for (int i = 0; i < g.nx; ++i) sum_line(volume.slice(0) + j * row + i, g.nz, slice, running);
+  });
+}
+
+}  // namespace
+
+model::Volume OstReconstructor::uncertainty(std::span<const CameraView> views) const {
+  auto state = std::make_unique<State>(*state_);
+  state->options.clean = false;
+  state->options.non_negative = false;
+  state->options.mlem_iterations = 0;
+  const OstReconstructor plain(std::move(state));
+  const ViewNoise noise = view_noise(views);
+  constexpr int draws = 2;
+  model::Volume squares;
+  model::Volume seen;
+  for (int draw = 0; draw < draws; ++draw) {
+    model::Volume one = plain.reconstruct(noise_views(views, noise, static_cast<std::uint64_t>(draw) + 1));
+    for (float& value : one.values) value *= value;
+    if (draw == 0) {
+      seen = one;
+      for (float& value : seen.values) value = value > 0 ? 1.0F : 0.0F;
+      squares = std::move(one);
+    } else {
+      for (std::size_t i = 0; i < one.values.size(); ++i) squares.values[i] += one.values[i];
+    }
+  }
+  const model::Volume inside = seen;
+  sum_neighbours(squares);
+  sum_neighbours(seen);
+  for (std::size_t i = 0; i < squares.values.size(); ++i) {
+    float& value = squares.values[i];
+    value = inside.values[i] > 0 ? std::sqrt(std::max(0.0F, value) / (draws * seen.values[i])) : 0.0F;
+  }
+  return squares;
+}
+
+}  // namespace vam::metrology

@@ -1,0 +1,186 @@
+// The stated uncertainty of a reconstruction against repeated noisy views of an independent renderer.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+
+#include "lib/metrology/bench_printer.hpp"
+#include "metrology/ost/ost.hpp"
+#include "metrology/ost/surface_uncertainty.hpp"
+#include "metrology/ost/view_noise.hpp"
+#include "oracle/bench_views.hpp"
+#include "solid/voxel/isosurface.hpp"
+
+using namespace vam;
+using namespace vam::metrology;
+
+namespace {
+
+using Kind = oracle::Body::Kind;
+
+std::vector<CameraView> views_of(const oracle::ViewBench& bench, const std::vector<std::vector<float>>& pixels) {
+  std::vector<CameraView> views;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    Image image(bench.columns, bench.rows);
+    image.values = pixels[i];
+    views.push_back({std::move(image), 360.0 * static_cast<double>(i) / static_cast<double>(pixels.size())});
+  }
+  return views;
+}
+
+oracle::ViewBench small_bench() {
+  oracle::ViewBench bench;
+  bench.columns = 120;
+  bench.rows = 64;
+  bench.pixel_mm = 0.15;
+  bench.axis_column = 59.5;
+  bench.axis_row = 31.5;
+  return bench;
+}
+
+std::vector<oracle::Body> part() {
+  return {{Kind::cylinder, {0.5, 0, 0}, {3, 0, 3}, 1}, {Kind::block, {4.5, 0.5, 0}, {0.8, 1, 2}, 1}};
+}
+
+// Read-out noise, and more where it is bright.
+void add_noise(std::vector<CameraView>& views, double floor, double per_value, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  for (CameraView& view : views) {
+    for (float& value : view.image.values) {
+      value += static_cast<float>(normal(random) * std::sqrt(floor + per_value * static_cast<double>(value)));
+    }
+  }
+}
+
+// Squared sums over the voxels of a shell between two radii, in the middle half of the heights.
+double rms_between(const model::Volume& volume, double inner_mm, double outer_mm) {
+  const model::Grid& g = volume.grid;
+  double sum = 0;
+  double count = 0;
+  for (int k = g.nz / 4; k < 3 * g.nz / 4; ++k) {
+    for (int j = 0; j < g.ny; ++j) {
+      for (int i = 0; i < g.nx; ++i) {
+        const double r = std::hypot(g.x_mm(i), g.y_mm(j));
+        if (r < inner_mm || r >= outer_mm) continue;
+        sum += std::pow(static_cast<double>(volume.slice(k)[std::ptrdiff_t{j} * g.nx + i]), 2);
+        count += 1;
+      }
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+}  // namespace
+
+TEST_CASE("the noise of views is measured in them") {
+  const oracle::ViewBench bench = small_bench();
+  std::mt19937 random(5);
+  for (const auto& [floor, per_value] : {std::pair{0.04, 0.0}, std::pair{0.01, 0.02}}) {
+    auto views = views_of(bench, oracle::bench_views(bench, part(), {}, 24));
+    add_noise(views, floor, per_value, random);
+    const ViewNoise noise = view_noise(views);
+    for (const double value : {0.0, 3.0, 5.0}) {
+      const double sigma = std::sqrt(floor + per_value * value);
+      MESSAGE("sigma ", sigma, " at ", value, ", measured ", noise.sigma(value));
+      CHECK(noise.sigma(value) == doctest::Approx(sigma).epsilon(0.1));
+    }
+  }
+}
+
+TEST_CASE("the stated uncertainty is the scatter of repeated views") {
+  // 16 turns of the same part, each with noise of its own; their standard deviation, voxel by voxel, over regions.
+  // Its error is 1 / sqrt(2 * 15) = 18 % a voxel, which 10,000 voxels average out. Half of a turn has every other view
+  // only, so that coverage counts.
+  const oracle::ViewBench bench = small_bench();
+  for (const bool sparse : {false, true}) {
+    auto clean = views_of(bench, oracle::bench_views(bench, part(), {}, 90));
+    if (sparse) {
+      std::vector<CameraView> fewer;
+      for (std::size_t i = 0; i < clean.size(); ++i) {
+        if (i < 45 || i % 2 == 0) fewer.push_back(clean[i]);
+      }
+      clean = std::move(fewer);
+    }
+    const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
+                               {.non_negative = false, .axis_row = bench.axis_row});
+    std::mt19937 random(9);
+    constexpr int turns = 16;
+    model::Volume sum;
+    model::Volume squares;
+    model::Volume stated;
+    for (int turn = 0; turn < turns; ++turn) {
+      auto views = clean;
+      add_noise(views, 0.02, 0.01, random);
+      const model::Volume volume = rig.reconstruct(views);
+      if (turn == 0) {
+        stated = rig.uncertainty(views);
+        sum = {volume.grid, std::vector<float>(volume.values.size())};
+        squares = sum;
+      }
+      for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        sum.values[i] += volume.values[i];
+        squares.values[i] += volume.values[i] * volume.values[i];
+      }
+    }
+    for (std::size_t i = 0; i < sum.values.size(); ++i) {
+      const float mean = sum.values[i] / turns;
+      squares.values[i] = std::sqrt(std::max(0.0F, squares.values[i] / turns - mean * mean) * turns / (turns - 1));
+    }
+    for (const auto& [inner, outer] :
+         {std::pair{0.0, 1.5}, std::pair{1.5, 3.0}, std::pair{3.0, 4.5}, std::pair{4.5, 6.5}}) {
+      const double seen = rms_between(squares, inner, outer);
+      const double ratio = rms_between(stated, inner, outer) / seen;
+      MESSAGE(std::string(sparse ? "half sparse, " : "even, "), inner, " to ", outer, " mm: scatter ", seen,
+              ", stated ratio ", ratio);
+      CHECK(ratio > 0.8);
+      CHECK(ratio < 1.25);
+    }
+  }
+}
+
+TEST_CASE("the surface is as uncertain as repeated surfaces") {
+  // Distances of repeated isosurfaces along rays from the axis of the cylinder, against sigma over the gradient.
+  const oracle::ViewBench bench = small_bench();
+  const auto clean = views_of(bench, oracle::bench_views(bench, part(), {}, 90));
+  const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
+                             {.axis_row = bench.axis_row});
+  std::mt19937 random(11);
+  constexpr int turns = 12;
+  constexpr int places = 40;  // on the side away from the block
+  std::vector<double> sums(places);
+  std::vector<double> squares(places);
+  double stated = 0;
+  for (int turn = 0; turn < turns; ++turn) {
+    auto views = clean;
+    add_noise(views, 0.02, 0.01, random);
+    const model::Volume volume = rig.reconstruct(views);
+    const model::Grid& g = volume.grid;
+    std::vector<Vector3> crossings;
+    for (int n = 0; n < places; ++n) {
+      // Where the middle slice falls through 0.5, going outwards to -x: linear between voxels.
+      const int j = g.ny / 2 - places / 4 + n / 2;
+      const float* row = volume.slice(g.nz / 2 + n % 2 * 6) + std::ptrdiff_t{j} * g.nx;
+      int i = g.nx / 2;
+      while (row[i] >= 0.5F) --i;
+      const double part_way = (0.5 - static_cast<double>(row[i])) / static_cast<double>(row[i + 1] - row[i]);
+      const double x = g.x_mm(i) + part_way * g.voxel_mm;
+      sums[n] += x;
+      squares[n] += x * x;
+      crossings.push_back({x, g.y_mm(j), g.z_mm(g.nz / 2 + n % 2 * 6)});
+    }
+    if (turn > 0) continue;
+    for (const float u : surface_uncertainty_mm(volume, rig.uncertainty(views), crossings)) {
+      stated += static_cast<double>(u) * static_cast<double>(u) / places;
+    }
+  }
+  double variance = 0;
+  for (int n = 0; n < places; ++n) {
+    variance += (squares[n] - sums[n] * sums[n] / turns) / (turns - 1) / places;
+  }
+  const double ratio = std::sqrt(stated / variance);
+  MESSAGE("surface: scatter ", std::sqrt(variance), " mm, stated ratio ", ratio);
+  // 40 places of 12 draws, 5 %; the way along x is up to 1 / cos 30 degrees longer than that along the normal, 5 %;
+  // the gradient of one noisy volume.
+  CHECK(ratio > 0.75);
+  CHECK(ratio < 1.25);
+}
