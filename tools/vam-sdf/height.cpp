@@ -71,6 +71,11 @@ void draw_map(const HeightOptions& options, const metrology::Relief& print, cons
   figure.x = {"mm", 0, um.width * print.pixel_mm};
   figure.y = {"mm", 0, um.height * print.pixel_mm};
   plot::Panel panel{um, "", plot::contour(found.design, static_cast<float>(0.5 * found.design_height_mm))};
+  if (std::find(print.measured.values.begin(), print.measured.values.end(), 0.0F) != print.measured.values.end()) {
+    panel.hatched = print.measured;
+    for (float& lost : panel.hatched.values) lost = 1 - lost;
+    figure.hatched_name = "no reading";
+  }
   if (!options.plot.empty()) panel.outline.push_back({{line[0], line[1]}, {line[2], line[3]}});
   figure.panels.push_back(std::move(panel));
   plot::save(options.output, plot::draw(figure));

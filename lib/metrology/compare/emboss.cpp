@@ -179,7 +179,8 @@ Section section(const Relief& print, const Emboss& emboss, double x0, double y0,
     const double x = x0 + part * (x1 - x0);
     const double y = y0 + part * (y1 - y0);
     line.along_mm.push_back(part * length_px * print.pixel_mm);
-    line.print_mm.push_back(static_cast<double>(bilinear(print.heights_mm, x, y)));
+    const bool measured = bilinear(print.measured, x, y) > 0.999F;
+    line.print_mm.push_back(measured ? static_cast<double>(bilinear(print.heights_mm, x, y)) : std::nan(""));
     line.design_mm.push_back(static_cast<double>(bilinear(emboss.design, x, y)));
   }
   return line;

@@ -27,7 +27,8 @@ struct Plateaus {
 };
 [[nodiscard]] std::optional<Plateaus> plateaus(const std::vector<float>& heights_mm);
 
-/// Takes off the plane through the base: what lies below Otsu's threshold, found and fitted in turns. Heights that are
+/// Takes off the plane through the base: what lies below Otsu's threshold, found and fitted in turns, at last without
+/// what departs by more than 2.5 robust standard deviations: sides, dents and crumbs. Heights that are
 /// not a number are gaps. Throws Fault::data when fewer than a tenth of the pixels are readings or nothing stands out.
 [[nodiscard]] Relief levelled(const Image& heights_mm, double pixel_mm);
 
@@ -62,7 +63,8 @@ struct Emboss {
 /// outline. Throws Fault::data when the design is flat or does not meet the image.
 [[nodiscard]] Emboss compare_emboss(const Relief& print, const solid::HeightMap& design, EmbossAlign align);
 
-/// Heights along a straight line in the image, ends in pixels; one value each half pixel.
+/// Heights along a straight line in the image, ends in pixels; one value each half pixel, of the print not a number
+/// beside lost readings.
 struct Section {
   std::vector<double> along_mm;
   std::vector<double> print_mm;

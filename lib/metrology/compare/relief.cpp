@@ -130,6 +130,23 @@ void fill_gaps(Image& heights) {
   for (float& height : heights.values) height = std::isfinite(height) ? height : 0.0F;
 }
 
+// The base without what is not of it: sides of the embossing below the threshold, dents, crumbs. Residuals beyond 2.5
+// robust standard deviations of those below the limit do not count.
+BasePlane trimmed_base(const Image& heights, BasePlane base, double limit) {
+  constexpr int rounds = 8;
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<float> residuals = readings(without(base, heights));
+    std::erase_if(residuals, [&](float h) { return !(static_cast<double>(h) < limit); });
+    if (residuals.empty()) return base;
+    const double middle = stats::median(residuals);
+    for (float& h : residuals) h = std::fabs(h - static_cast<float>(middle));
+    const double most = 2.5 * 1.4826 * stats::median(residuals) + 1e-7;
+    base = fit_plane(
+        heights, [&](int i, int j, double h) { return std::abs(h - plane_at(base, heights, i, j) - middle) <= most; });
+  }
+  return base;
+}
+
 }  // namespace
 
 std::optional<Plateaus> plateaus(const std::vector<float>& heights) {
@@ -153,10 +170,12 @@ Relief levelled(const Image& heights_mm, double pixel_mm) {
                                  std::to_string(heights_mm.size()) + " pixels are readings"};
   }
   BasePlane base = fit_plane(heights_mm, [](int, int, double) { return true; });
+  double limit = 0;
   for (int round = 0; round < 12; ++round) {
-    const double limit = otsu(readings(without(base, heights_mm)));
+    limit = otsu(readings(without(base, heights_mm)));
     base = fit_plane(heights_mm, [&](int i, int j, double h) { return h - plane_at(base, heights_mm, i, j) < limit; });
   }
+  base = trimmed_base(heights_mm, base, limit);
   Relief relief;
   relief.heights_mm = without(base, heights_mm);
   relief.pixel_mm = pixel_mm;

@@ -88,6 +88,34 @@ TEST_CASE("shrinkage, turn, shift and height of an embossed print are found in i
   CHECK(found.iou > 0.95);
 }
 
+TEST_CASE("soft edges and dents of the base do not change the height") {
+  const double pixel_mm = 0.05;
+  Image sharp = image({1, 0, 0, 0, 0.004}, pixel_mm);
+  for (std::size_t i = 1; i < sharp.size(); ++i) {
+    if (!std::isfinite(sharp.values[i])) sharp.values[i] = sharp.values[i - 1];
+  }
+  Image seen = sharp;  // the mean of 7 x 7 pixels, as of a wide probe
+  constexpr int reach = 3;
+  for (int j = reach; j + reach < seen.height; ++j) {
+    for (int i = reach; i + reach < seen.width; ++i) {
+      float sum = 0;
+      for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) sum += sharp(i + x, j + y) / 49;
+      }
+      seen(i, j) = sum;
+    }
+  }
+  for (int dent = 0; dent < 12; ++dent) {  // 5 % of the base, 0.1 mm deep, at its right edge
+    for (int y = 0; y < 16; ++y) {
+      for (int x = 0; x < 16; ++x) seen(222 + x, 8 + 20 * dent + y) -= 0.1F;
+    }
+  }
+  const Relief relief = levelled(seen, pixel_mm);
+  const Emboss found = compare_emboss(relief, design(0.037), EmbossAlign::near);
+  MESSAGE("height ", found.height_mm);
+  CHECK(found.height_mm == doctest::Approx(0.35).epsilon(0.003));  // noise of 0.0006 mm a pixel, averaged
+}
+
 TEST_CASE("without alignment the pose shows in the outline") {
   const double pixel_mm = 0.05;
   const Relief relief = levelled(image({1, 0, 0.3, 0, 0}, pixel_mm), pixel_mm);
