@@ -10,6 +10,7 @@ namespace {
 using namespace vam;
 using sdf_tool::HeightOptions;
 using sdf_tool::Options;
+using sdf_tool::TrendOptions;
 
 cli::Manual manual() {
   return {
@@ -30,15 +31,40 @@ cli::Manual manual() {
        "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
        "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
        "hold.",
+       "Every figure has an expanded uncertainty (coverage factor 2), determined by 20 Monte Carlo trials (JCGM 101) "
+       "in "
+       "which the surface is disturbed, the pose follows, and a quarter of the points is measured. It contains the "
+       "noise of the surface, from --uncertainty or a mesh of vam-ost --uncertainty, otherwise from the differences "
+       "between neighbouring vertices; the pose, which depends on it; the choice of points; --isovalue-uncertainty; "
+       "and "
+       "--scale-uncertainty. It does not contain what is common to the whole print and not stated by these options: "
+       "refractive indices, absorption, run-out that remains, errors of the design.",
+       "--region measures faces, bores and walls. Planes and cylinders are fitted by least squares; flatness and "
+       "cylindricity are the ranges of the departures from them, which noise and rounded edges in the box increase. "
+       "The thickness of a wall is "
+       "that "
+       "of the largest ball inside the design plus the distances of the print on both sides.",
        "vam-sdf height compares a profilometer's height image of an embossed print with its design: the image is "
        "levelled by the plane through its base, the outline of the design at half height is aligned with that of "
-       "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared."},
+       "the print, with a uniform scale reported as shrinkage, and outline, overlap and height are compared.",
+       "vam-sdf trend prints, as CSV, the mean, the spread (standard deviation) and the drift per print of every "
+       "figure "
+       "that all reports have, with the probability of such a drift by chance (Student's t): a process drifts where "
+       "drift_p is below 0.05, and varies where spread exceeds half the uncertainty."},
       {{"Compare two boxes of slightly different size:",
         "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\nvam-slice --shape box:x=6.2,y=6.2,z=6.2 "
         "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
         "deviation.json"},
        {"Check a tolerance in a script:",
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
+       {"Measure the flatness of the upper face (the box is larger than the face) and the thickness of the part, with "
+        "uncertainties:",
+        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,5.9,2,2,6.1 --region "
+        "body=wall:-2,-2,-1,2,2,7 --require 'top.flatness<=0.1,body.thickness>=6' --report regions.json"},
+       {"Compare repeated prints:",
+        "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --stretch-z 1 -o print.vdb; vam-sdf print.vdb "
+        "design.vdb --isovalue 0.5 --report run$n.json; done\nvam-sdf trend run1.json run2.json run3.json run4.json "
+        "--plot trend.png"},
        {"Compare an embossed badge that is 1 % too small with its design:",
         "vam-slice --shape resolution:height=1 --voxel 0.1 --stretch-z 1 -o badge.vdb\nvam-slice --shape "
         "resolution:height=1 --voxel 0.1 --scale 0.99 --stretch-z 1 -o seen.vdb\nvam-sdf height seen.vdb badge.vdb "
@@ -48,6 +74,25 @@ cli::Manual manual() {
        "Sources: Orth et al., On-the-fly 3D metrology of volumetric additive manufacturing, 2022, section 3 and "
        "table S1; Chen & Medioni, point-to-plane registration, 1992; Barill et al., Fast winding numbers, 2018."},
       {"vam-ost", "vam-dose", "vam-score", "vam-slice"}};
+}
+
+void declare_inspection(cli::App& app, Options& options) {
+  app.group("Regions and uncertainty");
+  app.option(
+      "--region", "NAME=KIND:X0,Y0,Z0,X1,Y1,Z1", options.regions,
+      "Also measure the part of the design's surface within this box, in mm of the design. KIND is surface (rms, "
+      "mean, max, within), or, beside these, plane (flatness, tilt, offset), cylinder (diameter, cylindricity, "
+      "tilt, offset) or wall (thickness, min_thickness).");
+  app.option("--datum", "NAME", options.datum,
+             "Align by three regions that are planes: the first fixes its plane, the second its direction about the "
+             "first one's normal, the third the remaining shift. Given three times, primary first.");
+  app.option("--uncertainty", "FILE.vdb", options.uncertainty,
+             "Standard deviations of the print volume's values, from vam-ost --uncertainty.")
+      .reads();
+  app.option("--isovalue-uncertainty", "VALUE", options.isovalue_uncertainty, cli::non_negative,
+             "Standard uncertainty of the isovalue, in its units.");
+  app.option("--scale-uncertainty", "PERCENT", options.scale_uncertainty_percent, cli::non_negative,
+             "Standard uncertainty of the print's scale, that of the camera's pixel pitch.");
 }
 
 void declare(cli::App& app, Options& options) {
@@ -88,11 +133,14 @@ void declare(cli::App& app, Options& options) {
   app.option(
       "--require", "CONDITIONS", options.require,
       "Exit with status 1 unless all conditions hold, on rms, trimmed (RMS of the 95 % nearest to the design), "
-      "mean, sigma, mad, max, hausdorff (mm), rms_percent and within (% of the surface within --tolerance), e.g. "
-      "'rms<=0.2,hausdorff<1'.");
+      "mean, sigma, mad, max, hausdorff (mm), rms_percent and within (% of the surface within --tolerance), and on "
+      "those of regions, e.g. 'rms<=0.2,top.flatness<0.05'.");
+  app.flag("--guard-band", options.guard_band,
+           "Conditions of --require must hold for all values within the expanded uncertainty (ISO 14253-1).");
   app.option("--tolerance", "MM", options.tolerance_mm, cli::positive,
              "Report the fraction of the print's surface within this distance of the design.");
   cli::add_report(app, options.report);
+  declare_inspection(app, options);
   cli::add_threads(app);
 }
 
@@ -125,6 +173,17 @@ void declare_height(cli::App& app, HeightOptions& options) {
   cli::add_report(app, options.report);
 }
 
+void declare_trend(cli::App& app, TrendOptions& options) {
+  app.positional("RUN ...", options.runs,
+                 "Reports of vam-sdf (--report), or folders that hold one, in the order of the prints.")
+      .reads();
+  app.option("--figure", "NAME", options.figure, "Figure of --plot.");
+  app.option("--plot", "FILE", options.plot,
+             "Plot the figure and its uncertainties over the prints (.png, .pdf or .svg).")
+      .writes(plot::figure_endings());
+  cli::add_report(app, options.report);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -135,6 +194,13 @@ int main(int argc, char** argv) {
   declare_height(app.subcommand("height", "compare a profilometer's height image of an embossed print with its design",
                                 options.command),
                  height);
-  return app.run(argc, argv,
-                 [&] { options.command == "height" ? sdf_tool::height(height) : sdf_tool::deviation(app, options); });
+  TrendOptions trend;
+  declare_trend(
+      app.subcommand("trend", "compare repeated prints: mean, spread and drift of every figure", options.command),
+      trend);
+  return app.run(argc, argv, [&] {
+    if (options.command == "height") return sdf_tool::height(height);
+    if (options.command == "trend") return sdf_tool::trend(trend);
+    sdf_tool::deviation(app, options);
+  });
 }

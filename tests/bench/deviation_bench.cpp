@@ -38,7 +38,7 @@ void whole(benchmark::State& state) {
     const auto alignment = vam::solid::align(print(), reference(), surface, {});
     TriangleSoup aligned = print();
     for (auto& point : aligned.points) point = alignment.transform(point);
-    const auto found = vam::metrology::compare(aligned, reference(), surface, 200000);
+    const auto found = vam::metrology::compare(vam::metrology::measure(aligned, reference(), surface, 200000));
     benchmark::DoNotOptimize(surface.signed_distances(aligned.points).data());
     rms = found.print_to_design.rms_mm;
   }

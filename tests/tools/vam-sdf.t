@@ -49,6 +49,49 @@ awk 'NR == 2 { print $1, $2 - 1, $3; next } { line[NR] = $0 } END { for (n = 3; 
 fails 65 'open.off: has 3 boundary edges' vam-sdf design.off open.off --align none --volume x.vdb
 fails 66 'missing' vam-slice design.off --compensate missing.vdb --voxel 0.2 -o x.vdb
 
+# Faces and walls: the print that stands out by 0.2 mm on all sides.
+faces='--region top=plane:-9,-9,3.5,9,9,4.5 --region body=wall:-3,-2,-1,3,2,5 --region front=-9,-9,-9,9,-2.5,9'
+quiet 'regions' vam-sdf grown.off design.off --align none $faces --tolerance 0.25 --report regions.json \
+  --require 'top.flatness<=0.001,top.offset>=0.199,body.thickness>=4.39,front.within>=90'
+holds 'the top stands out by as much' "$(json regions.json regions.top.offset_mm) > 0.1999 && $(json regions.json regions.top.offset_mm) < 0.2001"
+holds 'and is turned by nothing' "$(json regions.json regions.top.tilt_deg) < 0.01"
+holds 'the wall is 4.4 mm thick' "$(json regions.json regions.body.thickness_mm) > 4.399 && $(json regions.json regions.body.thickness_mm) < 4.401"
+holds 'of 4' "$(json regions.json regions.body.design_thickness_mm) > 3.999 && $(json regions.json regions.body.design_thickness_mm) < 4.001"
+fails 1 'top.offset = .* top.offset<=0.1' vam-sdf grown.off design.off --align none $faces --require 'top.offset<=0.1'
+is 'a print without noise is certain' "$(awk "BEGIN { print $(json regions.json expanded_uncertainty.regions.top.offset_mm) < 1e-4 }")" 1
+# A scale that may be off by 1 %: the top at 4.2 mm by 0.042 mm, twice that with k = 2, drawn 20 times (+-16 %).
+quiet 'an uncertain scale' vam-sdf grown.off design.off --align none $faces --scale-uncertainty 1 --report scale.json
+holds 'is stated' "$(json scale.json expanded_uncertainty.regions.top.offset_mm) > 0.05 && $(json scale.json expanded_uncertainty.regions.top.offset_mm) < 0.13"
+quiet 'a condition holds by the figure' vam-sdf grown.off design.off --align none $faces --scale-uncertainty 1 --require 'top.offset<=0.21'
+fails 1 'with its uncertainty of' vam-sdf grown.off design.off --align none $faces --scale-uncertainty 1 --guard-band --require 'top.offset<=0.21'
+# Three faces of the print, moved by 0.3 mm, are laid onto those of the design; the opposite ones stand out by 0.4.
+datum='--region a=plane:-9,-9,-0.5,9,9,0.5 --region b=plane:-4.5,-9,-9,-3.5,9,9 --region c=plane:-9,-3.5,-9,9,-2.5,9'
+awk 'NR < 3 { print; next } NF == 3 { print $1 + 0.3, $2 - 0.1, $3 + 0.2; next } { print }' grown.off >off.off
+quiet 'datum faces' vam-sdf off.off design.off --align icp $datum --datum a --datum b --datum c --region top=plane:-9,-9,3.5,9,9,4.5 --report datum.json
+holds 'lie on those of the design' "($(json datum.json regions.a.offset_mm)) ^ 2 < 1e-12 && ($(json datum.json regions.c.offset_mm)) ^ 2 < 1e-12"
+holds 'and the others stand out' "$(json datum.json regions.top.offset_mm) > 0.399 && $(json datum.json regions.top.offset_mm) < 0.401"
+fails 64 'not a plane that --region names' vam-sdf off.off design.off $datum --datum a --datum b --datum d
+fails 64 'name three regions' vam-sdf off.off design.off $datum --datum a
+fails 64 'is given already' vam-sdf off.off design.off $datum --region a=0,0,0,1,1,1
+fails 64 'must begin with a name' vam-sdf off.off design.off --region 0,0,0,1,1,1
+fails 65 'enlarge its box' vam-sdf off.off design.off --region far=plane:20,20,20,30,30,30
+fails 64 'top.bend' vam-sdf grown.off design.off $faces --require 'top.bend<1'
+fails 64 'is a mesh' vam-sdf grown.off design.off --isovalue-uncertainty 0.1
+
+# Prints that grow by 0.05 mm from one to the next.
+for n in 1 2 3 4; do
+  awk -v n=$n '{ by = 0.05 * n } NR < 3 { print; next } NF == 3 { print $1 + ($1 > 0 ? by : -by), $2, $3; next } { print }' design.off >print$n.off
+  vam-sdf print$n.off design.off --align none --region side=plane:3.5,-9,-9,4.5,9,9 --report run$n.json
+done
+mkdir run5 && cp run4.json run5 && ok 'a trend' vam-sdf trend run1.json run2.json run3.json run4.json --report trend.json --figure regions.side.offset_mm --plot trend.png
+is 'prints a line a figure' "$(grep -c '^regions.side.offset_mm,' .log/out)" 1
+drift=$(python3 -c 'import json; print(json.load(open("trend.json"))["figures"]["regions.side.offset_mm"]["drift"])')
+holds 'with the drift' "$drift > 0.0499 && $drift < 0.0501"
+quiet 'of a folder' vam-sdf trend run1.json run2.json run5
+fails 64 'at least 3 prints' vam-sdf trend run1.json run2.json
+fails 65 'not a report of vam-sdf' vam-sdf trend run1.json run2.json next.json
+fails 64 'is not in all reports' vam-sdf trend run1.json run2.json run3.json --figure nothing
+
 vam-slice --shape sphere:diameter=6 --voxel 0.2 -o sphere.vdb
 vam-slice --shape sphere:diameter=6.4 --voxel 0.2 -o bigger.vdb
 quiet 'volume against volume' vam-sdf bigger.vdb sphere.vdb --isovalue 0.5 --align none --report volume.json

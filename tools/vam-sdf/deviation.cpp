@@ -1,7 +1,6 @@
 // The plain form of vam-sdf: print against design.
-#include "metrology/compare/deviation.hpp"
-
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,63 +13,42 @@
 #include "io/settings/report.hpp"
 #include "io/settings/resin_record.hpp"
 #include "io/stream/stream.hpp"
+#include "metrology/compare/inspection.hpp"
 #include "model/conditions.hpp"
-#include "plot/plot.hpp"
+#include "plot/deviation_histogram.hpp"
 #include "plot/save.hpp"
 #include "solid/mesh/align.hpp"
+#include "vam-sdf/figure_names.hpp"
 #include "vam-sdf/options.hpp"
+#include "vam-sdf/pose.hpp"
 
 namespace vam::sdf_tool {
 
 namespace {
 
-// A part of a print must not be measured at a place where it only might be.
-void require_unique(const Options& options, const solid::Alignment& found) {
-  if (found.rival) {
-    throw Error{Fault::data, options.print + ": is a part of the design and fits in two places, " +
-                                 format_number(found.rival->apart_mm, 3) + " mm apart, with " +
-                                 format_number(100 * found.rival->best_match, 3) + " and " +
-                                 format_number(100 * found.rival->match, 3) +
-                                 " % of its surface; move it near the right one and give --align icp"};
-  }
-  if (found.as_part) {
-    note("the print covers only " + format_number(100 * found.overlap, 3) +
-         " % of the design; aligned as a part of it");
-  }
+double number_at(const Json& json, const std::string& name) {
+  return json.at(Json::json_pointer(place_of(name))).get<double>();
 }
 
-solid::Alignment align(const Options& options, const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
-                       const solid::Surface& design) {
-  solid::AlignOptions how;
-  how.with_scale = options.scale;
-  if (options.align == "full") {
-    const solid::Alignment found = solid::align(print, design_mesh, design, how);
-    require_unique(options, found);
-    return found;
+// A condition with a guard band holds for all values that the uncertainty leaves (ISO 14253-1).
+std::vector<std::string> failures(const Options& options, const std::vector<model::Condition>& conditions,
+                                  const Json& figures, const Json& uncertainty) {
+  std::vector<std::string> failed;
+  for (const model::Condition& condition : conditions) {
+    const double band = options.guard_band ? number_at(uncertainty, condition.name) : 0.0;
+    const double value = number_at(figures, condition.name) + (condition.relation.starts_with('>') ? -band : band);
+    for (std::string line : model::unmet({condition}, [&](const std::string&) { return value; })) {
+      failed.push_back(line + (options.guard_band ? " (with its uncertainty of " + format_number(band, 3) + ")" : ""));
+    }
   }
-  if (options.align == "icp") return solid::refine(print, design, how);
-  solid::Alignment as_it_is;
-  as_it_is.converged = true;
-  return as_it_is;
-}
-
-double figure(const metrology::Comparison& found, const std::string& name, double tolerance_mm = 0) {
-  const auto& d = found.print_to_design;
-  if (name == "rms") return d.rms_mm;
-  if (name == "mean") return d.mean_mm;
-  if (name == "sigma") return d.sigma_mm;
-  if (name == "mad") return d.mad_mm;
-  if (name == "max") return d.max_abs_mm;
-  if (name == "trimmed") return d.trimmed_mm;
-  if (name == "within") return metrology::within_percent(found.samples_mm, tolerance_mm);
-  if (name == "hausdorff") return found.hausdorff_mm;
-  return 100 * d.rms_mm / found.largest_dimension_mm;  // rms_percent
+  return failed;
 }
 
 void write_coloured(const std::string& path, const model::TriangleSoup& print, const solid::Surface& design,
-                    double limit_mm, const std::string& history) {
+                    double limit_mm, const metrology::SurfaceErrors& errors, const std::string& history) {
   model::VertexData vertices;
   vertices.quality = design.signed_distances(print.points);
+  if (errors.source != "roughness") vertices.uncertainty = errors.vertex_mm;
   for (const float distance : vertices.quality) {
     vertices.colours.push_back(metrology::blue_white_red(static_cast<double>(distance), limit_mm));
   }
@@ -79,20 +57,14 @@ void write_coloured(const std::string& path, const model::TriangleSoup& print, c
                               " (blue) to +" + format_number(limit_mm, 4) + " mm (red)"});
 }
 
-void write_histogram(const Options& options, const metrology::Comparison& found, double limit_mm) {
+plot::Histogram histogram_of(const Options& options, const metrology::Distances& found, double limit_mm) {
   plot::HistogramBuilder builder(-limit_mm, limit_mm, options.bins);
-  for (const float distance : found.samples_mm) builder.add(static_cast<double>(distance));
-  const plot::Histogram histogram = builder.done();
-  const std::string& path = options.histogram;
-  if (plot::is_figure(path)) {
-    plot::Plot plot;
-    plot.title = "Deviation of the print, RMS " + format_number(found.print_to_design.rms_mm, 3) + " mm";
-    plot.x = {"distance to the design (mm), positive outside", -limit_mm, limit_mm};
-    plot.y.label = "share of the area (%)";
-    plot.series.push_back({"", histogram.edges, histogram.percent, plot::paint::blue, plot::SeriesStyle::bars});
-    plot.markers.push_back({0, "design", plot::paint::grey});
-    return plot::save(path, plot::draw(plot));
-  }
+  for (const float distance : found.print_mm) builder.add(static_cast<double>(distance));
+  return builder.done();
+}
+
+void write_histogram(const std::string& path, const plot::Histogram& histogram, double rms_mm) {
+  if (plot::is_figure(path)) return plot::save(path, plot::draw(plot::deviation_histogram(histogram, rms_mm)));
   std::string text = "from_mm,to_mm,area_percent\n";
   for (std::size_t i = 0; i < histogram.percent.size(); ++i) {
     text += format_number(histogram.edges[i]) + "," + format_number(histogram.edges[i + 1]) + "," +
@@ -101,10 +73,13 @@ void write_histogram(const Options& options, const metrology::Comparison& found,
   io::write_text(path, text);
 }
 
-void note_figures(const metrology::Comparison& found) {
-  for (const char* name : {"rms", "trimmed", "mean", "sigma", "mad", "max", "hausdorff"}) {
-    note(std::string(name) + " " + format_number(figure(found, name), 4) + " mm, " +
-         format_number(100 * figure(found, name) / found.largest_dimension_mm, 3) + " % of the size");
+void note_figures(const Json& figures, const Json& uncertainty, const std::vector<metrology::Region>& regions) {
+  for (const std::string& name : figure_names(regions)) {
+    if (!figures.contains(Json::json_pointer(place_of(name)))) continue;
+    const std::string place = place_of(name);
+    const std::string unit = place.ends_with("_mm") ? " mm" : place.ends_with("_deg") ? " deg" : " %";
+    note(name + " " + format_number(number_at(figures, name), 4) + " +- " +
+         format_number(number_at(uncertainty, name), 2) + unit);
   }
 }
 
@@ -112,22 +87,56 @@ Json facts(const Options& options, const solid::Alignment& alignment) {
   return {{"method", options.align},
           {"scale", alignment.transform.scale},
           {"shrinkage_percent", 100 * (1 - 1 / alignment.transform.scale)},
+          {"datum", options.datum},
           {"overlap", options.align == "full" ? Json(alignment.overlap) : Json()},
           {"matrix", alignment.transform.matrix()}};
+}
+
+std::vector<metrology::Region> regions_of(const Options& options) {
+  std::vector<metrology::Region> regions;
+  for (const std::string& text : options.regions) {
+    regions.push_back(metrology::parse_region(text));
+    const auto same = [&](const auto& region) { return region.name == regions.back().name; };
+    if (std::count_if(regions.begin(), regions.end(), same) > 1) {
+      throw Error{Fault::usage, "--region " + text + ": a region of this name is given already"};
+    }
+  }
+  constexpr std::size_t faces = 3;
+  if (!options.datum.empty() && options.datum.size() != faces) {
+    throw Error{Fault::usage, "--datum: name three regions, primary first"};
+  }
+  return regions;
+}
+
+std::vector<model::Condition> conditions_of(const Options& options, const std::vector<metrology::Region>& regions) {
+  if (options.require.empty()) return {};
+  const auto conditions = model::parse_conditions(options.require, figure_names(regions));
+  const bool asks_within =
+      std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name.ends_with("within"); });
+  if (asks_within && !options.tolerance_mm) {
+    throw Error{Fault::usage, "--require within: give the tolerance by --tolerance"};
+  }
+  return conditions;
+}
+
+metrology::SurfaceErrors errors_of(const Options& options, const PrintSurface& print, const solid::Surface& design,
+                                   double largest_dimension_mm) {
+  metrology::SurfaceErrors errors;
+  if (print.uncertainty_mm.empty()) {
+    errors = metrology::roughness(print.mesh, design, largest_dimension_mm);
+  } else {
+    errors = {print.bodies ? "volume" : "mesh", print.uncertainty_mm, metrology::mean_edge_mm(print.mesh), 0, 0};
+  }
+  errors.common_mm = print.mm_per_isovalue * options.isovalue_uncertainty;
+  errors.scale = 0.01 * options.scale_uncertainty_percent;
+  return errors;
 }
 
 }  // namespace
 
 void deviation(const cli::App& app, const Options& options) {
-  std::vector<model::Condition> conditions;
-  if (!options.require.empty())
-    conditions = model::parse_conditions(
-        options.require, {"rms", "trimmed", "mean", "sigma", "mad", "max", "hausdorff", "within", "rms_percent"});
-  const bool asks_within =
-      std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name == "within"; });
-  if (asks_within && !options.tolerance_mm) {
-    throw Error{Fault::usage, "--require within: give the tolerance by --tolerance"};
-  }
+  const std::vector<metrology::Region> regions = regions_of(options);
+  const std::vector<model::Condition> conditions = conditions_of(options, regions);
   if (options.scale && !options.volume.empty()) {
     throw Error{Fault::usage, "--fit-scale: the shrinkage would be missing in --volume; omit one of them"};
   }
@@ -136,39 +145,41 @@ void deviation(const cli::App& app, const Options& options) {
   const std::optional<double> isovalue =
       options.resin_record.empty() ? options.isovalue : io::gelation_isovalue(options.resin_record);
   const model::TriangleSoup design_mesh = read_surface(options.design, options.design_isovalue);
-  std::optional<metrology::BodyCount> bodies;
-  model::TriangleSoup print = read_print(options.print, isovalue, options.pieces_mm3, bodies);
+  PrintSurface surface = read_print(options, isovalue);
+  model::TriangleSoup& print = surface.mesh;
+  const auto& bodies = surface.bodies;
   if (bodies && bodies->dropped > 0) {
     note("dropped " + std::to_string(bodies->dropped) + " bodies of " + format_number(bodies->dropped_mm3, 3) +
          " mm3, the largest " + format_number(bodies->largest_dropped_mm3, 3) + " mm3");
   }
 
   const solid::Surface design(design_mesh);
-  const solid::Alignment alignment = align(options, print, design_mesh, design);
-  if (!alignment.converged)
-    warn("alignment: not converged after " + std::to_string(alignment.iterations) + " iterations");
-  for (auto& point : print.points) point = alignment.transform(point);
-  const metrology::Comparison found = metrology::compare(print, design_mesh, design, options.samples);
+  const solid::Alignment alignment = align_print(options, regions, design_mesh, design, print);
+  metrology::Inspection found = metrology::inspect(print, design_mesh, design, options.samples, regions);
+  found.tolerance_mm = options.tolerance_mm;
+  found.pose = {options.align != "none", options.scale, 100 * (1 - 1 / alignment.transform.scale), options.datum};
+  const metrology::SurfaceErrors errors = errors_of(options, surface, design, found.distances.largest_dimension_mm);
+  Json figures = metrology::figures_json(found);
+  const Json uncertainty = metrology::expanded_uncertainty(found, print, errors);
 
-  const auto& ends = found.print_to_design.percentiles_mm;
-  const double limit_mm =
-      options.limit_mm.value_or(std::max({std::abs(ends.front().second), std::abs(ends.back().second), 1e-6}));
-  if (!options.output.empty()) write_coloured(options.output, print, design, limit_mm, app.history());
-  if (!options.histogram.empty()) write_histogram(options, found, limit_mm);
-  if (!options.volume.empty()) {
-    write_deviation_volume(app, options, print, design_mesh, found.print_to_design.rms_mm);
-  }
-  Json figures = metrology::to_json(found);
+  const Json& ends = figures["print_to_design"];
+  const double limit_mm = options.limit_mm.value_or(
+      std::max({std::abs(ends["p1_mm"].get<double>()), std::abs(ends["p99_mm"].get<double>()), 1e-6}));
+  const double rms_mm = ends["rms_mm"];
+  const plot::Histogram histogram = histogram_of(options, found.distances, limit_mm);
+  if (!options.output.empty()) write_coloured(options.output, print, design, limit_mm, errors, app.history());
+  if (!options.histogram.empty()) write_histogram(options.histogram, histogram, rms_mm);
+  if (!options.volume.empty()) write_deviation_volume(app, options, print, design_mesh, rms_mm);
+  const auto failed = failures(options, conditions, figures, uncertainty);
   figures["alignment"] = facts(options, alignment);
-  if (options.tolerance_mm) {
-    figures["tolerance_mm"] = *options.tolerance_mm;
-    figures["within_percent"] = metrology::within_percent(found.samples_mm, *options.tolerance_mm);
-  }
+  if (options.tolerance_mm) figures["tolerance_mm"] = *options.tolerance_mm;
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);
+  figures["expanded_uncertainty"] = uncertainty;
+  figures["uncertainty_budget"] = metrology::to_json(errors);
+  figures["histogram"] = {{"edges_mm", histogram.edges}, {"area_percent", histogram.percent}};
+  figures["require"] = {{"conditions", options.require}, {"guard_band", options.guard_band}, {"unmet", failed}};
   io::write_report(options.report, "vam-sdf/1", figures);
-  note_figures(found);
-  const auto failed = model::unmet(
-      conditions, [&](const std::string& name) { return figure(found, name, options.tolerance_mm.value_or(0)); });
+  note_figures(figures, uncertainty, regions);
   if (!failed.empty()) throw Error{Fault::judged, join(failed, "; ")};
 }
 

@@ -29,6 +29,12 @@ struct Options {
   std::string require;
   std::string report;
   std::optional<double> tolerance_mm;
+  std::vector<std::string> regions;
+  std::vector<std::string> datum;
+  std::string uncertainty;
+  double isovalue_uncertainty = 0;
+  double scale_uncertainty_percent = 0;
+  bool guard_band = false;
   std::string volume;
   double volume_voxel_mm = 0;
 };
@@ -49,15 +55,27 @@ struct HeightOptions {
   std::string report;
 };
 
+/// vam-sdf trend.
+struct TrendOptions {
+  std::vector<std::string> runs;
+  std::string figure = "print_to_design.rms_mm";
+  std::string plot;
+  std::string report;
+};
+
 /// A mesh as it is, or the surface of a volume at `isovalue`, in the frame of the part: vam-slice's stretch in z
 /// undone.
 [[nodiscard]] model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue);
 
-/// The same for a print: without the bodies that are too small to belong to it (metrology::keep_bodies), which are
-/// counted in `bodies`; a mesh stays as it is.
-[[nodiscard]] model::TriangleSoup read_print(const std::string& path, std::optional<double> isovalue,
-                                             std::optional<double> least_mm3,
-                                             std::optional<metrology::BodyCount>& bodies);
+/// A print: without the bodies that are too small to belong to it (metrology::keep_bodies), which are counted; a mesh
+/// stays as it is.
+struct PrintSurface {
+  model::TriangleSoup mesh;
+  std::vector<float> uncertainty_mm;  // standard, of each vertex along the normal; empty: not known
+  double mm_per_isovalue = 0;         // how far the surface moves with the isovalue; 0: a mesh
+  std::optional<metrology::BodyCount> bodies;
+};
+[[nodiscard]] PrintSurface read_print(const Options& options, std::optional<double> isovalue);
 
 /// The deviation around the design's surface as a volume, for vam-slice --compensate. `print` is aligned.
 void write_deviation_volume(const cli::App& app, const Options& options, const model::TriangleSoup& print,
@@ -68,5 +86,8 @@ void deviation(const cli::App& app, const Options& options);
 
 /// Height image against design.
 void height(const HeightOptions& options);
+
+/// Figures over repeated prints.
+void trend(const TrendOptions& options);
 
 }  // namespace vam::sdf_tool

@@ -1,12 +1,12 @@
-#include <functional>
-
 #include "base/error.hpp"
+#include "base/stats/median.hpp"
 #include "base/text.hpp"
 #include "facts.hpp"
 #include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/input_name.hpp"
 #include "io/vdb/vdb.hpp"
+#include "metrology/ost/surface_uncertainty.hpp"
 #include "solid/voxel/isosurface.hpp"
 #include "vam-sdf/options.hpp"
 
@@ -14,35 +14,61 @@ namespace vam::sdf_tool {
 
 namespace {
 
-model::TriangleSoup surface_of(const std::string& path, std::optional<double> isovalue,
-                               const std::function<void(model::Volume&, double)>& prepare) {
-  if (!io::is_volume(path)) return io::read_mesh(path);
-  const std::string name = io::input_name(path);
-  if (!isovalue)
-    throw Error{Fault::usage, name + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
-  const io::SparseVolume sparse = io::read_volume(path, "");
+model::Volume dense(const io::SparseVolume& sparse) {
   model::Volume volume{sparse.grid(), std::vector<float>(sparse.grid().size())};
   sparse.read_slices(0, volume.grid.nz, volume.values.data());
-  prepare(volume, *isovalue);
-  model::TriangleSoup mesh = solid::isosurface(volume, *isovalue);
-  if (mesh.triangles.empty()) {
-    throw Error{Fault::data, name + ": no surface, the volume does not cross " + format_number(*isovalue)};
+  return volume;
+}
+
+io::SparseVolume open_volume(const std::string& path, std::optional<double> isovalue) {
+  if (!isovalue) {
+    throw Error{Fault::usage,
+                io::input_name(path) + ": is a volume; give the isovalue of its surface by --isovalue or --resin"};
   }
-  tool::unstretch(mesh, sparse.metadata);
-  return mesh;
+  return io::read_volume(path, "");
+}
+
+model::TriangleSoup surface_of(const std::string& path, const model::Volume& volume, double isovalue) {
+  model::TriangleSoup mesh = solid::isosurface(volume, isovalue);
+  if (!mesh.triangles.empty()) return mesh;
+  throw Error{Fault::data, io::input_name(path) + ": no surface, the volume does not cross " + format_number(isovalue)};
 }
 
 }  // namespace
 
 model::TriangleSoup read_surface(const std::string& path, std::optional<double> isovalue) {
-  return surface_of(path, isovalue, [](model::Volume&, double) {});
+  if (!io::is_volume(path)) return io::read_mesh(path);
+  const io::SparseVolume sparse = open_volume(path, isovalue);
+  model::TriangleSoup mesh = surface_of(path, dense(sparse), *isovalue);
+  tool::unstretch(mesh, sparse.metadata);
+  return mesh;
 }
 
-model::TriangleSoup read_print(const std::string& path, std::optional<double> isovalue, std::optional<double> least_mm3,
-                               std::optional<metrology::BodyCount>& bodies) {
-  return surface_of(path, isovalue, [&](model::Volume& volume, double level) {
-    bodies = metrology::keep_bodies(volume, level, {least_mm3, {}});
-  });
+PrintSurface read_print(const Options& options, std::optional<double> isovalue) {
+  PrintSurface print;
+  if (!io::is_volume(options.print)) {
+    if (!options.uncertainty.empty() || options.isovalue_uncertainty > 0) {
+      throw Error{Fault::usage,
+                  options.print + ": is a mesh; --uncertainty and --isovalue-uncertainty need the volume"};
+    }
+    io::ColouredMesh read = io::read_coloured_mesh(options.print);
+    print.mesh = std::move(read.mesh);
+    print.uncertainty_mm = std::move(read.uncertainty);
+    return print;
+  }
+  const io::SparseVolume sparse = open_volume(options.print, isovalue);
+  model::Volume volume = dense(sparse);
+  print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
+  print.mesh = surface_of(options.print, volume, *isovalue);
+  if (!options.uncertainty.empty()) {
+    const model::Volume sigma = dense(io::read_volume(options.uncertainty, "uncertainty"));
+    print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, sigma, print.mesh.points);
+  }
+  if (options.isovalue_uncertainty > 0) {
+    print.mm_per_isovalue = stats::median(metrology::mm_per_value(volume, print.mesh.points));
+  }
+  tool::unstretch(print.mesh, sparse.metadata);
+  return print;
 }
 
 }  // namespace vam::sdf_tool

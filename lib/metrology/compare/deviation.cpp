@@ -12,12 +12,17 @@ namespace vam::metrology {
 
 namespace {
 
-// Quantile by linear interpolation between order statistics; `sorted` ascending.
-double quantile(const std::vector<double>& sorted, double part) {
-  const double at = part * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(at);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (at - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+// Quantile by linear interpolation between order statistics; the values are reordered. `from`: where an earlier call
+// for a smaller part left off.
+double quantile(std::vector<double>& values, double part, std::size_t* from = nullptr) {
+  const double at = part * static_cast<double>(values.size() - 1);
+  const auto low = static_cast<std::ptrdiff_t>(at);
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(from == nullptr ? 0 : *from);
+  std::nth_element(begin, values.begin() + low, values.end());
+  if (from != nullptr) *from = static_cast<std::size_t>(low);
+  const double here = values[static_cast<std::size_t>(low)];
+  if (low + 1 == std::ssize(values)) return here;
+  return here + (at - static_cast<double>(low)) * (*std::min_element(values.begin() + low + 1, values.end()) - here);
 }
 
 Json to_json(const SurfaceDeviation& d, double size_mm) {
@@ -40,35 +45,35 @@ Json to_json(const SurfaceDeviation& d, double size_mm) {
 
 SurfaceDeviation deviation(std::span<const float> distances_mm) {
   if (distances_mm.empty()) throw Error{Fault::data, "no surface to measure: the print has no area"};
-  std::vector<double> sorted(distances_mm.begin(), distances_mm.end());
-  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> values(distances_mm.begin(), distances_mm.end());
   SurfaceDeviation d;
-  d.samples = sorted.size();
-  const auto n = static_cast<double>(sorted.size());
-  for (const double x : sorted) {
+  d.samples = values.size();
+  const auto n = static_cast<double>(values.size());
+  for (const double x : values) {
     d.mean_mm += x / n;
     d.rms_mm += x * x / n;
   }
-  for (const double x : sorted) d.sigma_mm += (x - d.mean_mm) * (x - d.mean_mm) / n;
+  for (const double x : values) d.sigma_mm += (x - d.mean_mm) * (x - d.mean_mm) / n;
   d.rms_mm = std::sqrt(d.rms_mm);
   d.sigma_mm = std::sqrt(d.sigma_mm);
+  std::size_t place = 0;
   for (const double percent : {1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0}) {
-    d.percentiles_mm.emplace_back(percent, quantile(sorted, percent / 100));
+    d.percentiles_mm.emplace_back(percent, quantile(values, percent / 100, &place));
   }
-  d.min_mm = sorted.front();
-  d.max_mm = sorted.back();
+  const double median = d.percentiles_mm[3].second;
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  d.min_mm = *least;
+  d.max_mm = *most;
   d.max_abs_mm = std::max(std::abs(d.min_mm), std::abs(d.max_mm));
-  const double median = quantile(sorted, 0.5);
-  std::vector<double> sizes = sorted;
+  std::vector<double> sizes = values;
   for (double& x : sizes) x = std::abs(x);
-  std::sort(sizes.begin(), sizes.end());
   constexpr double kept = 0.95;
-  sizes.resize(std::max<std::size_t>(1, static_cast<std::size_t>(kept * n)));
-  for (const double x : sizes) d.trimmed_mm += x * x / static_cast<double>(sizes.size());
+  const auto near = std::max<std::ptrdiff_t>(1, static_cast<std::ptrdiff_t>(kept * n));
+  std::nth_element(sizes.begin(), sizes.begin() + near - 1, sizes.end());
+  for (std::ptrdiff_t i = 0; i < near; ++i) d.trimmed_mm += sizes[i] * sizes[i] / static_cast<double>(near);
   d.trimmed_mm = std::sqrt(d.trimmed_mm);
-  for (double& x : sorted) x = std::abs(x - median);
-  std::sort(sorted.begin(), sorted.end());
-  d.mad_mm = quantile(sorted, 0.5);
+  for (double& x : values) x = std::abs(x - median);
+  d.mad_mm = quantile(values, 0.5);
   return d;
 }
 
@@ -111,24 +116,30 @@ std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSampl
   return {-100 * part[0], -100 * part[1], -100 * part[2]};
 }
 
-Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
-                   const solid::Surface& design, int samples) {
-  const auto points_on = [samples](const model::TriangleSoup& mesh) {
+Distances measure(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
+                  const solid::Surface& design, int samples) {
+  const auto points_of = [](const std::vector<solid::SurfaceSample>& places) {
     std::vector<Vector3> points;
-    for (const auto& sample : solid::sample_surface(mesh, samples)) points.push_back(sample.point);
+    for (const auto& place : places) points.push_back(place.point);
     return points;
   };
+  Distances found;
+  found.largest_dimension_mm = solid::bounding_box(design_mesh).largest_side();
+  found.on_print = solid::sample_surface(print, samples);
+  found.print_mm = design.signed_distances(points_of(found.on_print));
+  if (found.print_mm.empty()) throw Error{Fault::data, "no surface to measure: the print has no area"};
+  found.on_design = solid::sample_surface(design_mesh, samples);
+  found.design_mm = solid::Surface(print).signed_distances(points_of(found.on_design));
+  for (float& distance : found.design_mm) distance = -distance;
+  return found;
+}
+
+Comparison compare(const Distances& distances) {
   Comparison result;
-  result.largest_dimension_mm = solid::bounding_box(design_mesh).largest_side();
-  result.samples_mm = design.signed_distances(points_on(print));
-  result.print_to_design = deviation(result.samples_mm);
-  const std::vector<solid::SurfaceSample> on_design = solid::sample_surface(design_mesh, samples);
-  std::vector<Vector3> points;
-  for (const auto& sample : on_design) points.push_back(sample.point);
-  std::vector<float> back = solid::Surface(print).signed_distances(points);
-  for (float& distance : back) distance = -distance;
-  result.shrinkage_percent = axis_shrinkage_percent(on_design, back);
-  result.design_to_print = deviation(back);
+  result.largest_dimension_mm = distances.largest_dimension_mm;
+  result.print_to_design = deviation(distances.print_mm);
+  result.design_to_print = deviation(distances.design_mm);
+  result.shrinkage_percent = axis_shrinkage_percent(distances.on_design, distances.design_mm);
   result.hausdorff_mm = std::max(result.print_to_design.max_abs_mm, result.design_to_print.max_abs_mm);
   return result;
 }

@@ -40,6 +40,17 @@ struct SurfaceDeviation {
 [[nodiscard]] std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
                                                            std::span<const float> distances_mm);
 
+/// Distances in mm between two surfaces, at points of both; positive: print outside the design.
+struct Distances {
+  std::vector<solid::SurfaceSample> on_print;
+  std::vector<float> print_mm;
+  std::vector<solid::SurfaceSample> on_design;
+  std::vector<float> design_mm;
+  double largest_dimension_mm = 0;  // of the design
+};
+[[nodiscard]] Distances measure(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
+                                const solid::Surface& design, int samples);
+
 /// Both directions: print to design, and design to print with the sign turned so that positive still means
 /// "print outside the design"; what is missing in the print shows only in the second.
 struct Comparison {
@@ -47,11 +58,9 @@ struct Comparison {
   SurfaceDeviation design_to_print;
   double hausdorff_mm = 0;
   double largest_dimension_mm = 0;            // of the design; percentages refer to it
-  std::vector<float> samples_mm;              // print to design, for the histogram
   std::array<double, 3> shrinkage_percent{};  // along x, y and z
 };
-[[nodiscard]] Comparison compare(const model::TriangleSoup& print, const model::TriangleSoup& design_mesh,
-                                 const solid::Surface& design, int samples);
+[[nodiscard]] Comparison compare(const Distances& distances);
 
 /// Blue (inside, -limit) over white (0) to red (outside, +limit), as CloudCompare's and [OST22 fig 6]'s scale.
 [[nodiscard]] std::array<std::uint8_t, 3> blue_white_red(double distance_mm, double limit_mm);

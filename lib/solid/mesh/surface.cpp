@@ -19,6 +19,17 @@ TriangleCorners corners(const model::TriangleSoup& mesh, std::size_t triangle) {
 
 Vector3 twice_area(const TriangleCorners& c) { return cross(c[1] - c[0], c[2] - c[0]); }
 
+// In parallel; `start` is the triangle of the point before, as neighbours in a list are mostly neighbours in space.
+template <class Work>
+void for_chunks(std::size_t count, const Work& work) {
+  constexpr std::size_t chunk = 1024;
+  parallel_for(static_cast<int>((count + chunk - 1) / chunk), [&](int c) {
+    const std::size_t begin = static_cast<std::size_t>(c) * chunk;
+    int start = 0;
+    for (std::size_t i = begin; i < std::min(count, begin + chunk); ++i) work(i, start);
+  });
+}
+
 }  // namespace
 
 struct Surface::State {
@@ -40,6 +51,15 @@ Foot Surface::closest(const Vector3& point, int start) const {
   return {nearest.point, (1 / length(normal)) * normal, nearest.triangle};
 }
 
+std::vector<Foot> Surface::closest(std::span<const Vector3> points) const {
+  std::vector<Foot> feet(points.size());
+  for_chunks(points.size(), [&](std::size_t i, int& start) {
+    feet[i] = closest(points[i], start);
+    start = feet[i].triangle;
+  });
+  return feet;
+}
+
 double Surface::signed_distance(const Vector3& point) const {
   const double distance = std::sqrt(state_->tree->nearest(point).distance2);
   return state_->winding(point) > 0.5 ? -distance : distance;
@@ -47,18 +67,11 @@ double Surface::signed_distance(const Vector3& point) const {
 
 std::vector<float> Surface::signed_distances(std::span<const Vector3> points) const {
   std::vector<float> distances(points.size());
-  constexpr std::size_t chunk = 1024;
-  const auto chunks = static_cast<int>((points.size() + chunk - 1) / chunk);
-  parallel_for(chunks, [&](int c) {
-    const std::size_t begin = static_cast<std::size_t>(c) * chunk;
-    const std::size_t end = std::min(points.size(), begin + chunk);
-    int start = 0;  // neighbours in the list are mostly neighbours in space
-    for (std::size_t i = begin; i < end; ++i) {
-      const Nearest nearest = state_->tree->nearest(points[i], start);
-      start = nearest.triangle;
-      const auto distance = static_cast<float>(std::sqrt(nearest.distance2));
-      distances[i] = state_->winding(points[i]) > 0.5 ? -distance : distance;
-    }
+  for_chunks(points.size(), [&](std::size_t i, int& start) {
+    const Nearest nearest = state_->tree->nearest(points[i], start);
+    start = nearest.triangle;
+    const auto distance = static_cast<float>(std::sqrt(nearest.distance2));
+    distances[i] = state_->winding(points[i]) > 0.5 ? -distance : distance;
   });
   return distances;
 }
@@ -83,7 +96,7 @@ std::vector<SurfaceSample> sample_surface(const model::TriangleSoup& mesh, int c
     const double root = std::sqrt(unit(random));  // uniform in the triangle
     const double along = unit(random);
     const Vector3 point = (1 - root) * c[0] + root * (1 - along) * c[1] + root * along * c[2];
-    samples.push_back({point, (1 / area) * normal});
+    samples.push_back({point, (1 / area) * normal, static_cast<int>(triangle)});
   }
   return samples;
 }

@@ -27,6 +27,8 @@ class Surface {
 
   /// `start`: Foot::triangle of a point nearby makes it faster, not different.
   [[nodiscard]] Foot closest(const Vector3& point, int start = 0) const;
+  /// closest() of all points, in parallel.
+  [[nodiscard]] std::vector<Foot> closest(std::span<const Vector3> points) const;
   /// mm, positive outside the surface, negative inside (MeshLab's, CloudCompare's and Open3D's sign).
   [[nodiscard]] double signed_distance(const Vector3& point) const;
   /// signed_distance of all points, in parallel.
@@ -41,6 +43,7 @@ class Surface {
 struct SurfaceSample {
   Vector3 point;
   Vector3 normal;
+  int triangle = 0;  // of the mesh
 };
 
 /// About `count` points, each standing for the same area (vertices would overweight fine triangles): stratified along

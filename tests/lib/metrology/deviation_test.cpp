@@ -14,7 +14,8 @@ TEST_CASE("two equal spheres, one shifted: closed form") {
   const double shift = 0.5;
   const auto design = test::sphere({0, 0, 0}, radius, 120);
   const solid::Surface surface(design);
-  const auto found = metrology::compare(test::sphere({0, 0, shift}, radius, 120), design, surface, 40000);
+  const auto found =
+      metrology::compare(metrology::measure(test::sphere({0, 0, shift}, radius, 120), design, surface, 40000));
   CHECK(found.print_to_design.rms_mm == doctest::Approx(shift / std::sqrt(3.0)).epsilon(0.005));
   CHECK(found.print_to_design.mean_mm == doctest::Approx(shift * shift / (3 * radius)).scale(1).epsilon(0.003));
   CHECK(found.print_to_design.max_mm == doctest::Approx(shift).epsilon(0.005));
@@ -28,7 +29,7 @@ TEST_CASE("two equal spheres, one shifted: closed form") {
 TEST_CASE("distances to an enlarged sphere are positive in both directions") {
   const auto design = test::sphere({1, 2, 3}, 5, 120);
   const solid::Surface surface(design);
-  const auto found = metrology::compare(test::sphere({1, 2, 3}, 5.2, 120), design, surface, 10000);
+  const auto found = metrology::compare(metrology::measure(test::sphere({1, 2, 3}, 5.2, 120), design, surface, 10000));
   for (const auto& d : {found.print_to_design, found.design_to_print}) {
     CHECK(d.mean_mm == doctest::Approx(0.2).epsilon(0.005));  // chord error 1e-3 of 0.2
     CHECK(d.sigma_mm < 1e-3);
@@ -42,7 +43,7 @@ TEST_CASE("a print that shrinks along each axis by another amount, grown by noth
   test::add_box({-1, 3, 0}, {1, 6, 2}, design);
   model::TriangleSoup print = design;
   for (auto& p : print.points) p = {0.99 * p[0] + 0.01, 0.98 * p[1] - 0.02, 0.96 * p[2]};
-  const auto found = metrology::compare(print, design, solid::Surface(design), 40000);
+  const auto found = metrology::compare(metrology::measure(print, design, solid::Surface(design), 40000));
   // Linear in 4 %: products of the second order, 0.16 %, and what closest points near edges do to a few samples.
   CHECK(found.shrinkage_percent[0] == doctest::Approx(1).epsilon(0.1));
   CHECK(found.shrinkage_percent[1] == doctest::Approx(2).epsilon(0.1));
