@@ -27,6 +27,20 @@ ok 'a page of frames' sh -c 'vam-project light.exr -o frames.exr && vam-report f
 is 'frames can be played' "$(grep -c '>play<' frames.html)" 1
 vam-report part.vdb | head -c 100 >/dev/null; report 0 'to head'
 
+# An inspection: print, design and report of vam-sdf.
+awk 'NR < 3 { print; next } NF == 3 { print 1.04 * $1, 1.02 * $2, $3; next } { print }' part.off >print.off
+vam-sdf print.off part.off --align none --region top=plane:-9,-9,1.5,9,9,2.5 --scale-uncertainty 0.5 --require 'rms<=0.01' \
+  -o deviation.ply --report inspection.json 2>/dev/null
+ok 'a page of an inspection' vam-report deviation.ply part.off inspection.json -o inspection.html
+is 'it begins with the verdict' "$(sed -n 's/.*<p class="verdict \([a-z]*\)">The print does not conform.*/\1/p' inspection.html)" bad
+is 'it loads nothing' "$(grep -Eoc 'src="[^d]|href=|@import|url\(|https?:[^/]*//[^w]' inspection.html)" 0
+for words in 'Print and design' 'section across z' '5.2 mm (design 5 mm)' '3.06 mm (design 3 mm)' 'expanded uncertainty, k = 2' \
+  'top.flatness_mm' 'The last bin holds all beyond'; do
+  ok "it has: $words" grep -q -- "$words" inspection.html
+done
+sed 's/"guard_band": false/"guard_band": true/' inspection.json >damaged.json
+fails 65 'damaged.json' vam-report deviation.ply damaged.json -o x.html
+
 hostile='<img src=x onerror=document.title=1>&"'\''.vdb'
 cp part.vdb "$hostile"
 printf '%s\n' '{"</script><script>document.title=2</script>": "<b onmouseover=x>", "list": ["<i>"]}' >bad.json
@@ -36,7 +50,10 @@ is 'hostile names create no elements' "$(grep -Ec '<img src=x|<b onm|<i>|<script
 fails 64 'FILE: ' vam-report
 fails 64 'more than once; give files' vam-report -
 fails 66 'nothing.vdb' vam-report nothing.vdb
-fails 65 'part.off: is not a volume' vam-report part.off
+echo text >words.txt
+fails 65 'words.txt: is not a volume' vam-report words.txt
+head -c 40 part.off >cut.off
+fails 65 'cut.off' vam-report cut.off
 mkdir empty && fails 65 'empty: contains no volume' vam-report empty
 fails 64 'report.pdf' vam-report part.vdb -o report.pdf
 sed 's/"ver": [^,]*/"ver": 0.5/' score.json >edited.json
@@ -93,6 +110,8 @@ document.getElementById('judged').textContent =
 PAGE
 } >judged.html
 look --dump-dom "file://$PWD/judged.html" >dom.html
+look --dump-dom "file://$PWD/inspection.html" >/dev/null
+is 'no message on the console for an inspection' "$(grep -c CONSOLE .log/browser.err)" 0
 is 'the slider moves; both bodies are drawn and rotate' "$(grep -o '<p id="judged">[^<]*' dom.html)" \
   '<p id="judged">judged true true true true true'
 done_testing

@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <vector>
 
-#include "base/base64.hpp"
-#include "base/json.hpp"
-#include "base/printable.hpp"
 #include "base/text.hpp"
 #include "facts.hpp"
 #include "model/grid.hpp"
 #include "model/mesh.hpp"
-#include "plot/canvas.hpp"
-#include "plot/colour_map.hpp"
 #include "plot/page.hpp"
 #include "solid/mesh/surface.hpp"
 #include "solid/voxel/isosurface.hpp"
-#include "vam-report/page_data.hpp"
+#include "vam-report/layers.hpp"
 
 namespace vam::report_tool {
 
@@ -77,15 +70,6 @@ double value_at(const model::Volume& volume, const Vector3& point) {
   return sum;
 }
 
-struct Layer {
-  std::string name;
-  model::TriangleSoup mesh;
-  std::vector<double> values;  // one a vertex; none: grey
-  double limit = 1;            // of the colours, on either side of 0
-  std::string unit;
-  std::string meaning;
-};
-
 /// The 98th percentile of the magnitudes as a number with one digit.
 double colour_limit(std::vector<double> values, double least) {
   for (double& value : values) value = std::abs(value);
@@ -95,55 +79,6 @@ double colour_limit(std::vector<double> values, double least) {
   const double wanted = std::max(least, *at);
   const double power = std::pow(10, std::floor(std::log10(wanted)));
   return std::ceil(wanted / power) * power;
-}
-
-template <class Number>
-std::string encoded(const std::vector<Number>& numbers) {
-  std::string raw(numbers.size() * sizeof(Number), '\0');
-  std::memcpy(raw.data(), numbers.data(), raw.size());
-  return base64(raw);
-}
-
-Json packed(const Layer& layer, const solid::Box& box) {
-  std::vector<std::uint16_t> positions;
-  std::vector<std::uint8_t> colours;
-  std::vector<std::uint32_t> triangles;
-  for (std::size_t n = 0; n < layer.mesh.points.size(); ++n) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double place = (layer.mesh.points[n][axis] - box.low[axis]) / (box.high[axis] - box.low[axis]);
-      positions.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(place, 0.0, 1.0))));
-    }
-    const Rgb colour = layer.values.empty()
-                           ? plot::paint::light_grey
-                           : plot::colour(plot::ColourMap::diverging, 0.5 + 0.5 * layer.values[n] / layer.limit);
-    colours.insert(colours.end(), colour.begin(), colour.end());
-  }
-  for (const auto& triangle : layer.mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
-  return Json::array({encoded(positions), encoded(colours), encoded(triangles)});
-}
-
-std::string scale(const Layer& layer, bool hidden) {
-  if (layer.values.empty()) return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "></div>";
-  std::string stops;
-  for (int n = 0; n <= 4; ++n) {
-    const Rgb colour = plot::colour(plot::ColourMap::diverging, 0.25 * n);
-    stops +=
-        ",rgb(" + std::to_string(colour[0]) + "," + std::to_string(colour[1]) + "," + std::to_string(colour[2]) + ")";
-  }
-  const std::string limit = format_number(layer.limit, 2) + " " + layer.unit;
-  return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "><span>-" + limit +
-         "</span><i style=\"background:linear-gradient(90deg" + stops + ")\"></i><span>+" + limit + "</span><span>" +
-         page_text(layer.meaning) + "</span></div>";
-}
-
-std::string choices(const std::vector<Layer>& layers) {
-  if (layers.size() < 2) return "";
-  std::string made = "<div class=\"control\">";
-  for (std::size_t n = 0; n < layers.size(); ++n) {
-    made += "<label><input type=\"radio\" name=\"layer\"" + std::string(n == 0 ? " checked" : "") + ">" +
-            page_text(layers[n].name) + "</label>";
-  }
-  return made + "</div>";
 }
 
 /// The design, and the print where there is a dose, on voxels of this coarseness.
@@ -184,28 +119,11 @@ std::string body_view(const io::SparseVolume& target, const std::optional<Printe
   while (vertices(layers) > most_vertices) layers = layers_of(target, print, ++by);
   if (layers[0].mesh.triangles.empty()) return "";
   for (Layer& layer : layers) tool::unstretch(layer.mesh, target.metadata);
-  solid::Box box = solid::bounding_box(layers[0].mesh);
-  const solid::Box design = box;
-  for (const Layer& layer : layers) {
-    const solid::Box other = solid::bounding_box(layer.mesh);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], other.low[axis]);
-      box.high[axis] = std::max(box.high[axis], other.high[axis]);
-    }
-  }
-  Json packed_layers = Json::array();
-  std::string scales;
-  for (std::size_t n = 0; n < layers.size(); ++n) {
-    packed_layers.push_back(packed(layers[n], box));
-    scales += scale(layers[n], n > 0);
-  }
+  const solid::Box design = solid::bounding_box(layers[0].mesh);
   const Vector3 size = design.high - design.low;
   const std::string mm =
       format_number(size[0], 3) + " x " + format_number(size[1], 3) + " x " + format_number(size[2], 3) + " mm";
-  return plot::page_figure("Part and print",
-                           "<div class=\"body\">" + choices(layers) +
-                               "<canvas tabindex=\"0\" aria-label=\"three-dimensional view of the part\"></canvas>" +
-                               scales + page_data(Json::array({box.low, box.high, packed_layers})) + "</div>",
+  return plot::page_figure("Part and print", layers_view(layers, "layer"),
                            "Drag to rotate, scroll to zoom; the rotation axis z points upwards. The design measures " +
                                mm + "; surfaces are computed on voxels of " +
                                format_number(by * target.grid().voxel_mm, 3) + " mm.");

@@ -11,7 +11,9 @@
 #include "plot/page.hpp"
 #include "score_volumes.hpp"
 #include "vam-report/body.hpp"
+#include "vam-report/inspection.hpp"
 #include "vam-report/light.hpp"
+#include "vam-report/meshes.hpp"
 #include "vam-report/names.hpp"
 #include "vam-report/tables.hpp"
 #include "vam-report/volumes.hpp"
@@ -53,13 +55,19 @@ std::string images(const std::vector<std::string>& paths) {
 }
 
 std::string views(const Sources& sources, const Volumes& volumes, const std::optional<Judged>& judged,
-                  const Wanted& wanted) {
+                  const std::optional<InspectionViews>& inspection, const Wanted& wanted) {
   std::string made = "<div class=\"images\">\n";
   if (const io::SparseVolume* target = volumes.find("target")) {
     std::optional<PrintedDose> print;
     if (judged) print = {volumes.find("dose"), judged->score.print_threshold()};
     made += body_view(*target, print);
   }
+  if (!sources.meshes.empty()) {
+    const std::vector<ShownMesh> meshes = read_meshes(sources.meshes);
+    made += meshes_view(meshes, inspection ? std::optional(inspection->limit_mm) : std::nullopt);
+    made += mesh_sections(meshes);
+  }
+  if (inspection) made += inspection->histogram;
   made += section_views(volumes, wanted.sections);
   for (const auto& stack : sources.stacks) made += light_view(stack, io::FileType::stack, wanted.projections);
   for (const auto& video : sources.videos) made += light_view(video, io::FileType::video, wanted.projections);
@@ -75,7 +83,10 @@ std::string content(const Sources& sources, const model::Printer& printer, const
   const std::optional<Judged> judged = judge(volumes, printer);
   std::string made = "<h1>" + page_text(wanted.title) + "</h1>\n";
   if (judged) made += verdict(*judged);
-  made += views(sources, volumes, judged, wanted);
+  const std::optional<InspectionViews> inspection = inspection_views(sources.reports);
+  if (inspection) made += inspection->verdict;
+  made += views(sources, volumes, judged, inspection, wanted);
+  if (inspection) made += inspection->figures;
   if (judged) {
     made += "<h2>Figures of merit</h2>\n" + figures_table(judged->score.figures());
   }

@@ -21,11 +21,13 @@ for (const box of document.querySelectorAll('.series')) {
 const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
 const vertexShader = `#version 300 es
 in vec3 p; in vec3 n; in vec3 c; uniform mat3 turn; uniform vec3 middle; uniform vec2 zoom; uniform float depth;
-out vec3 normal; out vec3 colour;
-void main() { vec3 q = turn * (p - middle); normal = turn * n; colour = c; gl_Position = vec4(q.xy * zoom, -q.z * depth, 1.0); }`;
+out vec3 place; out vec3 normal; out vec3 colour;
+void main() { vec3 q = turn * (p - middle); place = q; normal = turn * n; colour = c; gl_Position = vec4(q.xy * zoom, -q.z * depth, 1.0); }`;
 const fragmentShader = `#version 300 es
-precision highp float; in vec3 normal; in vec3 colour; out vec4 shown;
-void main() { float light = 0.35 + 0.65 * abs(normalize(normal).z); shown = vec4(colour * light, 1.0); }`;
+precision highp float; in vec3 place; in vec3 normal; in vec3 colour; out vec4 shown;
+void main() {  // smooth, but at sharp edges as the triangle lies
+  vec3 even = normalize(cross(dFdx(place), dFdy(place))), round = normalize(normal);
+  float light = 0.35 + 0.65 * mix(abs(even.z), abs(round.z), smoothstep(0.8, 0.97, abs(dot(even, round)))); shown = vec4(colour * light, 1.0); }`;
 function normals(points, triangles) {
   const sums = new Float32Array(points.length);
   for (let t = 0; t < triangles.length; t += 3) {

@@ -1,6 +1,7 @@
 #include "vam-report/sources.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <system_error>
 
@@ -8,6 +9,7 @@
 #include "base/json.hpp"
 #include "base/json_text.hpp"
 #include "io/image/image_file.hpp"
+#include "io/mesh/file.hpp"
 #include "io/stream/file_type.hpp"
 #include "io/stream/stream.hpp"
 
@@ -31,6 +33,11 @@ bool is_png(const std::string& path) {
   return io::read_all(path, io::Content::binary, most_text).starts_with("\x89PNG\r\n\x1a\n");
 }
 
+bool is_mesh_ending(const std::string& ending) {
+  constexpr std::array<const char*, 5> known{".ply", ".stl", ".off", ".obj", ".3mf"};
+  return std::find(known.begin(), known.end(), ending) != known.end();
+}
+
 /// False if a report cannot show the file.
 bool add(Sources& sources, const std::string& path) {
   if (const auto type = io::known_file_type(path)) {
@@ -51,6 +58,10 @@ bool add(Sources& sources, const std::string& path) {
   const std::string ending = fs::path(path).extension();
   if (ending == ".json" && is_report(path)) return sources.reports.push_back(path), true;
   if (ending == ".csv" && is_trace(path)) return sources.traces.push_back(path), true;
+  if (is_mesh_ending(ending)) {
+    (void)io::read_mesh(path);  // whole, or an error that names it
+    return sources.meshes.push_back(path), true;
+  }
   if (ending == ".png" && is_png(path)) {
     (void)io::read_image(path);  // whole, or an error that names it
     return sources.images.push_back(path), true;
@@ -69,7 +80,8 @@ void add_folder(Sources& sources, const std::string& folder) {
   long shown = 0;
   for (const std::string& file : files) shown += add(sources, file) ? 1 : 0;
   if (shown == 0) {
-    throw Error{Fault::data, folder + ": contains no volume, stack, video, report (JSON), trace (CSV) or image (PNG)"};
+    throw Error{Fault::data,
+                folder + ": contains no volume, mesh, stack, video, report (JSON), trace (CSV) or image (PNG)"};
   }
 }
 
@@ -82,9 +94,9 @@ Sources gather(const std::vector<std::string>& paths) {
     if (fs::is_directory(path)) {
       add_folder(sources, path);
     } else if (!add(sources, path)) {
-      throw Error{
-          Fault::data,
-          path + ": is not a volume, stack, video, report (JSON), trace (CSV of vam-optimize --trace) or image (PNG)"};
+      throw Error{Fault::data, path +
+                                   ": is not a volume, mesh, stack, video, report (JSON), trace (CSV of vam-optimize "
+                                   "--trace) or image (PNG)"};
     }
   }
   return sources;

@@ -13,6 +13,7 @@ struct Sources {
   std::vector<std::string> reports;  // JSON objects
   std::vector<std::string> traces;   // CSV of vam-optimize --trace
   std::vector<std::string> images;   // PNG
+  std::vector<std::string> meshes;
 };
 
 /// Each path is a file, or a folder whose files are taken in the order of their names, those of no use left out.

@@ -1,0 +1,101 @@
+#include "vam-report/layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "base/base64.hpp"
+#include "base/json.hpp"
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "plot/canvas.hpp"
+#include "plot/colour_map.hpp"
+#include "solid/mesh/surface.hpp"
+#include "vam-report/page_data.hpp"
+
+namespace vam::report_tool {
+
+namespace {
+
+template <class Number>
+std::string encoded(const std::vector<Number>& numbers) {
+  std::string raw(numbers.size() * sizeof(Number), '\0');
+  std::memcpy(raw.data(), numbers.data(), raw.size());
+  return base64(raw);
+}
+
+Rgb colour_of(const Layer& layer, std::size_t vertex) {
+  if (!layer.colours.empty()) return layer.colours[vertex];
+  if (layer.values.empty()) return plot::paint::light_grey;
+  return plot::colour(plot::ColourMap::diverging, 0.5 + 0.5 * layer.values[vertex] / layer.limit);
+}
+
+Json packed(const Layer& layer, const solid::Box& box) {
+  std::vector<std::uint16_t> positions;
+  std::vector<std::uint8_t> colours;
+  std::vector<std::uint32_t> triangles;
+  for (std::size_t n = 0; n < layer.mesh.points.size(); ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double place = (layer.mesh.points[n][axis] - box.low[axis]) / (box.high[axis] - box.low[axis]);
+      positions.push_back(static_cast<std::uint16_t>(std::lround(65535 * std::clamp(place, 0.0, 1.0))));
+    }
+    const Rgb colour = colour_of(layer, n);
+    colours.insert(colours.end(), colour.begin(), colour.end());
+  }
+  for (const auto& triangle : layer.mesh.triangles) triangles.insert(triangles.end(), triangle.begin(), triangle.end());
+  return Json::array({encoded(positions), encoded(colours), encoded(triangles)});
+}
+
+std::string scale(const Layer& layer, bool hidden) {
+  if (layer.meaning.empty()) return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "></div>";
+  std::string stops;
+  for (int n = 0; n <= 4; ++n) {
+    const Rgb colour = plot::colour(plot::ColourMap::diverging, 0.25 * n);
+    stops +=
+        ",rgb(" + std::to_string(colour[0]) + "," + std::to_string(colour[1]) + "," + std::to_string(colour[2]) + ")";
+  }
+  const std::string limit = format_number(layer.limit, 2) + " " + layer.unit;
+  return "<div class=\"scale\"" + std::string(hidden ? " hidden" : "") + "><span>-" + limit +
+         "</span><i style=\"background:linear-gradient(90deg" + stops + ")\"></i><span>+" + limit + "</span><span>" +
+         page_text(layer.meaning) + "</span></div>";
+}
+
+std::string choices(const std::vector<Layer>& layers, const std::string& group) {
+  if (layers.size() < 2) return "";
+  std::string made = "<div class=\"control\">";
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    made += "<label><input type=\"radio\" name=\"" + group + "\"" + std::string(n == 0 ? " checked" : "") + ">" +
+            page_text(layers[n].name) + "</label>";
+  }
+  return made + "</div>";
+}
+
+solid::Box box_of(const std::vector<Layer>& layers) {
+  solid::Box box = solid::bounding_box(layers[0].mesh);
+  for (const Layer& layer : layers) {
+    const solid::Box other = solid::bounding_box(layer.mesh);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], other.low[axis]);
+      box.high[axis] = std::max(box.high[axis], other.high[axis]);
+    }
+  }
+  return box;
+}
+
+}  // namespace
+
+std::string layers_view(const std::vector<Layer>& layers, const std::string& group) {
+  const solid::Box box = box_of(layers);
+  Json packed_layers = Json::array();
+  std::string scales;
+  for (std::size_t n = 0; n < layers.size(); ++n) {
+    packed_layers.push_back(packed(layers[n], box));
+    scales += scale(layers[n], n > 0);
+  }
+  return "<div class=\"body\">" + choices(layers, group) +
+         "<canvas tabindex=\"0\" aria-label=\"three-dimensional view of the part\"></canvas>" + scales +
+         page_data(Json::array({box.low, box.high, packed_layers})) + "</div>";
+}
+
+}  // namespace vam::report_tool

@@ -1,0 +1,158 @@
+// Sections of meshes as drawings with dimensions.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/printable.hpp"
+#include "base/text.hpp"
+#include "plot/page.hpp"
+#include "solid/mesh/surface.hpp"
+#include "vam-report/meshes.hpp"
+
+namespace vam::report_tool {
+
+namespace {
+
+using Point = std::array<double, 2>;
+
+struct Outline {
+  std::vector<std::array<Point, 2>> segments;
+  Point low{1e300, 1e300};
+  Point high{-1e300, -1e300};
+  [[nodiscard]] double size(std::size_t axis) const { return high[axis] - low[axis]; }
+};
+
+// A plane across an axis; the drawing's axes are the other two, in order.
+struct Cut {
+  std::size_t across;
+  double at_mm;
+  [[nodiscard]] Point flat(const Vector3& p) const {
+    return across == 0 ? Point{p[1], p[2]} : across == 1 ? Point{p[0], p[2]} : Point{p[0], p[1]};
+  }
+};
+
+Outline outline_of(const model::TriangleSoup& mesh, const Cut& cut) {
+  Outline found;
+  for (const auto& triangle : mesh.triangles) {
+    std::vector<Point> ends;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Vector3& a = mesh.points[triangle[n]];
+      const Vector3& b = mesh.points[triangle[(n + 1) % 3]];
+      const double from = a[cut.across] - cut.at_mm;
+      const double to = b[cut.across] - cut.at_mm;
+      if ((from < 0) == (to < 0)) continue;
+      ends.push_back(cut.flat(a + (from / (from - to)) * (b - a)));
+    }
+    if (ends.size() != 2) continue;
+    found.segments.push_back({ends[0], ends[1]});
+    for (const Point& end : ends) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        found.low[k] = std::min(found.low[k], end[k]);
+        found.high[k] = std::max(found.high[k], end[k]);
+      }
+    }
+  }
+  return found;
+}
+
+constexpr double drawn_px = 360;
+constexpr double margin_px = 60;
+
+/// mm to pixels, upwards.
+struct Sheet {
+  Point low;
+  Point high;
+  double scale;
+  [[nodiscard]] std::string x(double mm) const { return format_number(margin_px + (mm - low[0]) * scale, 6); }
+  [[nodiscard]] std::string y(double mm) const { return format_number(0.5 * margin_px + (high[1] - mm) * scale, 6); }
+};
+
+std::string path_of(const Outline& outline, const Sheet& sheet, const std::string& style) {
+  std::string path;
+  for (const auto& [a, b] : outline.segments) {
+    path += "M" + sheet.x(a[0]) + " " + sheet.y(a[1]) + "L" + sheet.x(b[0]) + " " + sheet.y(b[1]);
+  }
+  return "<path d=\"" + path + "\" fill=\"none\" " + style + "/>";
+}
+
+std::string line(double x0, double y0, double x1, double y1) {
+  return "<line x1=\"" + format_number(x0, 6) + "\" y1=\"" + format_number(y0, 6) + "\" x2=\"" + format_number(x1, 6) +
+         "\" y2=\"" + format_number(y1, 6) + "\" stroke=\"#444\"/>";
+}
+
+std::string words(const std::vector<Outline>& outlines, std::size_t axis) {
+  std::string text = format_number(outlines[0].size(axis), 5) + " mm";
+  if (outlines.size() > 1) text += " (design " + format_number(outlines[1].size(axis), 5) + " mm)";
+  return text;
+}
+
+// The extent of the first outline, below it and on its left.
+std::string dimensions(const std::vector<Outline>& outlines, const Sheet& sheet) {
+  const double left = margin_px + (outlines[0].low[0] - sheet.low[0]) * sheet.scale;
+  const double right = margin_px + (outlines[0].high[0] - sheet.low[0]) * sheet.scale;
+  const double top = 0.5 * margin_px + (sheet.high[1] - outlines[0].high[1]) * sheet.scale;
+  const double bottom = 0.5 * margin_px + (sheet.high[1] - outlines[0].low[1]) * sheet.scale;
+  const double below = 0.5 * margin_px + (sheet.high[1] - sheet.low[1]) * sheet.scale + 14;
+  constexpr double tick = 5;
+  const double beside = margin_px - 16;
+  const auto text = [](double x, double y, const std::string& turn, const std::string& what) {
+    return "<text x=\"" + format_number(x, 6) + "\" y=\"" + format_number(y, 6) +
+           "\" text-anchor=\"middle\" font-size=\"12\"" + turn + ">" + page_text(what) + "</text>";
+  };
+  const double middle = 0.5 * (top + bottom);
+  return line(left, below, right, below) + line(left, below - tick, left, below + tick) +
+         line(right, below - tick, right, below + tick) +
+         text(0.5 * (left + right), below + 16, "", words(outlines, 0)) + line(beside, top, beside, bottom) +
+         line(beside - tick, top, beside + tick, top) + line(beside - tick, bottom, beside + tick, bottom) +
+         text(beside - 8, middle,
+              " transform=\"rotate(-90 " + format_number(beside - 8, 6) + " " + format_number(middle, 6) + ")\"",
+              words(outlines, 1));
+}
+
+std::string drawing(const std::vector<Outline>& outlines) {
+  Sheet sheet{outlines[0].low, outlines[0].high, 1};
+  for (const Outline& outline : outlines) {
+    for (std::size_t k = 0; k < 2 && !outline.segments.empty(); ++k) {
+      sheet.low[k] = std::min(sheet.low[k], outline.low[k]);
+      sheet.high[k] = std::max(sheet.high[k], outline.high[k]);
+    }
+  }
+  const double wide_mm = sheet.high[0] - sheet.low[0];
+  const double high_mm = sheet.high[1] - sheet.low[1];
+  sheet.scale = drawn_px / std::max({wide_mm, high_mm, 1e-9});
+  std::string made = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " +
+                     format_number(1.5 * margin_px + std::max(wide_mm * sheet.scale, 160.0), 6) + " " +
+                     format_number(1.5 * margin_px + std::max(high_mm * sheet.scale, 160.0), 6) +
+                     "\" role=\"img\" font-family=\"sans-serif\">";
+  for (std::size_t n = outlines.size(); n-- > 0;) {
+    made += path_of(outlines[n], sheet,
+                    n == 0 ? "stroke=\"#0072b2\" stroke-width=\"1.5\""
+                           : "stroke=\"#999\" stroke-width=\"1.5\" stroke-dasharray=\"4 3\"");
+  }
+  return made + dimensions(outlines, sheet) + "</svg>";
+}
+
+}  // namespace
+
+std::string mesh_sections(const std::vector<ShownMesh>& meshes) {
+  if (meshes.empty()) return "";
+  constexpr std::array<const char*, 3> names{"x", "y", "z"};
+  const solid::Box box = solid::bounding_box(meshes[0].mesh);
+  std::string made;
+  for (std::size_t axis = 3; axis-- > 0;) {
+    const Cut cut{axis, 0.5 * (box.low[axis] + box.high[axis])};
+    std::vector<Outline> outlines;
+    for (const ShownMesh& mesh : meshes) outlines.push_back(outline_of(mesh.mesh, cut));
+    if (outlines[0].segments.empty()) continue;
+    outlines.resize(std::min<std::size_t>(outlines.size(), 2));
+    if (outlines.size() > 1 && outlines[1].segments.empty()) outlines.pop_back();
+    const std::string where =
+        std::string("section across ") + names[axis] + " at " + format_number(cut.at_mm, 4) + " mm";
+    made += plot::page_figure(meshes[0].name + ", " + where, drawing(outlines),
+                              outlines.size() > 1 ? "Solid: " + meshes[0].name + "; dashed: " + meshes[1].name + "."
+                                                  : "Dimensions of the section.");
+  }
+  return made;
+}
+
+}  // namespace vam::report_tool
