@@ -201,12 +201,12 @@ void once(const cli::App& app, const Options& options) {
   metrology::require_alike(views);
   model::Volume volume = session.reconstruct(views, source.pixel_mm());
   print.require_in(volume);
-  session.write("scatter", volume, options.output, source.history());
+  session.write(volume, options.output, source.history());
   print.keep(volume);
-  std::optional<model::Volume> sigma;
+  std::optional<metrology::VoxelUncertainty> sigma;
   if (!options.uncertainty.empty()) {
     sigma = session.uncertainty(views);
-    session.write("uncertainty", *sigma, options.uncertainty, source.history());
+    session.write(*sigma, options.uncertainty, source.history());
   }
   print.write(volume, sigma ? &*sigma : nullptr);
   Json report = session.figures(volume);

@@ -56,7 +56,7 @@ class Turns {
     char name[32];
     std::snprintf(name, sizeof name, "scatter-%04d.vdb", index_++);
     if (options_.output != "-")
-      session_.write("scatter", volume, (std::filesystem::path(options_.output) / name).string(), history);
+      session_.write(volume, (std::filesystem::path(options_.output) / name).string(), history);
     print_.keep(volume);
     print_.write(volume);
     const auto state = print_.state(volume);

@@ -10,7 +10,6 @@
 #include "io/settings/resin_record.hpp"
 #include "io/vdb/vdb.hpp"
 #include "metrology/ost/projection_sheet.hpp"
-#include "metrology/ost/surface_uncertainty.hpp"
 #include "plot/image_figure.hpp"
 #include "plot/save.hpp"
 #include "solid/voxel/isosurface.hpp"
@@ -69,7 +68,7 @@ void Print::require_in(const model::Volume& volume) const {
                                " everywhere; check --isovalue"};
 }
 
-void Print::write(const model::Volume& volume, const model::Volume* sigma) const {
+void Print::write(const model::Volume& volume, const metrology::VoxelUncertainty* sigma) const {
   if (!options_.mesh.empty()) {
     const auto mesh = solid::isosurface(volume, *isovalue_);
     if (sigma != nullptr && options_.mesh.ends_with(".ply")) {

@@ -7,6 +7,7 @@
 #include "cli/app.hpp"
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/cured.hpp"
+#include "metrology/ost/surface_uncertainty.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
 #include "vam-ost/options.hpp"
@@ -23,7 +24,7 @@ class Print {
   /// With an isovalue: drops the bodies that are not the print, for all that follows. Says what was dropped.
   void keep(model::Volume& volume);
   /// --mesh, with the uncertainty of its vertices where that of the voxels is known, and --projections.
-  void write(const model::Volume& volume, const model::Volume* sigma = nullptr) const;
+  void write(const model::Volume& volume, const metrology::VoxelUncertainty* sigma = nullptr) const;
   /// What the last call of keep() kept and dropped; nothing without an isovalue.
   [[nodiscard]] std::optional<metrology::BodyCount> bodies() const;
   /// Nothing without isovalue and target.

@@ -78,19 +78,33 @@ model::Volume Session::reconstruct(std::span<const metrology::CameraView> views,
   return volume;
 }
 
-model::Volume Session::uncertainty(std::span<const metrology::CameraView> views) const {
+metrology::VoxelUncertainty Session::uncertainty(std::span<const metrology::CameraView> views) const {
   return rig_->uncertainty(views);
 }
 
-void Session::write(const std::string& name, const model::Volume& volume, const std::string& path,
+io::SparseVolume Session::sparse(const std::string& name, const model::Volume& volume,
+                                 const std::vector<std::string>& history) const {
+  io::SparseVolume made(name, volume.grid);
+  made.history = history;
+  made.history.push_back(app_.history());
+  made.metadata["vam:printer"] = io::printer_settings(printer_);
+  made.units = "view units per mm";
+  made.write_slices(0, volume.grid.nz, volume.values.data());
+  return made;
+}
+
+void Session::write(const model::Volume& volume, const std::string& path,
                     const std::vector<std::string>& history) const {
-  io::SparseVolume sparse(name, volume.grid);
-  sparse.history = history;
-  sparse.history.push_back(app_.history());
-  sparse.metadata["vam:printer"] = io::printer_settings(printer_);
-  sparse.units = "view units per mm";
-  sparse.write_slices(0, volume.grid.nz, volume.values.data());
-  io::write_volume(path, sparse);
+  io::SparseVolume made = sparse("scatter", volume, history);
+  io::write_volume(path, made);
+}
+
+void Session::write(const metrology::VoxelUncertainty& voxels, const std::string& path,
+                    const std::vector<std::string>& history) const {
+  io::SparseVolume made = sparse("uncertainty", voxels.sigma, history);
+  made.metadata["vam:correlation_xy"] = format_number(voxels.correlation_xy, 4);
+  made.metadata["vam:correlation_z"] = format_number(voxels.correlation_z, 4);
+  io::write_volume(path, made);
 }
 
 void Session::say_dirt() const {

@@ -34,9 +34,9 @@ class Session {
   /// The first call finds the axis and sets up the rig.
   model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// Standard deviations of its voxels.
-  [[nodiscard]] model::Volume uncertainty(std::span<const metrology::CameraView> views) const;
-  /// `name`: scatter or uncertainty.
-  void write(const std::string& name, const model::Volume& volume, const std::string& path,
+  [[nodiscard]] metrology::VoxelUncertainty uncertainty(std::span<const metrology::CameraView> views) const;
+  void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
+  void write(const metrology::VoxelUncertainty& voxels, const std::string& path,
              const std::vector<std::string>& history) const;
   /// What was taken out of the views of the last volume.
   [[nodiscard]] Json dirt() const { return metrology::to_json(dirt_); }
@@ -46,6 +46,8 @@ class Session {
   [[nodiscard]] const model::Printer& printer() const { return printer_; }
 
  private:
+  [[nodiscard]] io::SparseVolume sparse(const std::string& name, const model::Volume& volume,
+                                        const std::vector<std::string>& history) const;
   void say_dirt() const;
   void say_axis() const;
   [[nodiscard]] metrology::AxisEstimate axis_of(std::span<const metrology::CameraView> views) const;

@@ -61,8 +61,11 @@ PrintSurface read_print(const Options& options, std::optional<double> isovalue) 
   print.bodies = metrology::keep_bodies(volume, *isovalue, {options.pieces_mm3, {}});
   print.mesh = surface_of(options.print, volume, *isovalue);
   if (!options.uncertainty.empty()) {
-    const model::Volume sigma = dense(io::read_volume(options.uncertainty, "uncertainty"));
-    print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, sigma, print.mesh.points);
+    const io::SparseVolume known = io::read_volume(options.uncertainty, "uncertainty");
+    const auto correlation = [&](const char* name) { return tool::stated_number(known.metadata, name).value_or(0); };
+    const metrology::VoxelUncertainty voxels{dense(known), correlation("vam:correlation_xy"),
+                                             correlation("vam:correlation_z")};
+    print.uncertainty_mm = metrology::surface_uncertainty_mm(volume, voxels, print.mesh.points);
   }
   if (options.isovalue_uncertainty > 0) {
     print.mm_per_isovalue = stats::median(metrology::mm_per_value(volume, print.mesh.points));

@@ -10,6 +10,7 @@
 #include "metrology/ost/axis.hpp"
 #include "metrology/ost/dirt.hpp"
 #include "metrology/ost/run_out.hpp"
+#include "metrology/ost/surface_uncertainty.hpp"
 #include "metrology/ost/views.hpp"
 #include "model/grid.hpp"
 #include "model/printer.hpp"
@@ -54,7 +55,7 @@ class OstReconstructor {
   /// Standard deviation of each voxel of that volume by the noise of the views, their angles counted: the RMS of two
   /// drawn reconstructions of nothing but such noise, over 9 x 9 x 9 voxels of the circle that is seen. Without what
   /// clipping and MLEM make of it.
-  [[nodiscard]] model::Volume uncertainty(std::span<const CameraView> views) const;
+  [[nodiscard]] VoxelUncertainty uncertainty(std::span<const CameraView> views) const;
 
  private:
   struct State;

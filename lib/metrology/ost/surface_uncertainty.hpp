@@ -9,14 +9,22 @@
 
 namespace vam::metrology {
 
-/// How far an isosurface moves along its normal with the isovalue: 1 / |gradient| in mm per unit of the volume, by
-/// central differences over half a voxel either side. At most 3 voxels per 10 % of the volume's largest value, where
+/// How far an isosurface moves along its normal with the isovalue: 1 / |gradient| in mm per unit of the volume, of
+/// the trilinear field. At most 3 voxels per 10 % of the volume's largest value, where
 /// the volume is flat.
 [[nodiscard]] std::vector<float> mm_per_value(const model::Volume& volume, std::span<const Vector3> points);
 
-/// Standard uncertainty along the normal of points of an isosurface of `scatter`; `sigma` is the standard deviation of
-/// its values, on its grid or another.
-[[nodiscard]] std::vector<float> surface_uncertainty_mm(const model::Volume& scatter, const model::Volume& sigma,
+/// The noise of a volume: the standard deviation of each voxel, on its grid or another, and how far the noise of
+/// neighbours along x or y, and along z, is the same.
+struct VoxelUncertainty {
+  model::Volume sigma;
+  double correlation_xy = 0;
+  double correlation_z = 0;
+};
+
+/// Standard uncertainty along the normal of points of an isosurface of `scatter`: that of the trilinear value over the
+/// gradient.
+[[nodiscard]] std::vector<float> surface_uncertainty_mm(const model::Volume& scatter, const VoxelUncertainty& voxels,
                                                         std::span<const Vector3> points);
 
 }  // namespace vam::metrology

@@ -1,6 +1,7 @@
 // The uncertainty of a reconstruction: noise through the same reconstruction [physics §8].
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/index.hpp"
 #include "base/parallel.hpp"
@@ -37,9 +38,23 @@ void sum_neighbours(model::Volume& volume) {
   });
 }
 
+/// Mean product of neighbours `step` apart, along x (as along y) or along z, over the mean square.
+double correlation(const model::Volume& noise, bool along_z) {
+  const model::Grid& g = noise.grid;
+  const std::size_t step = along_z ? g.slice_size() : 1;
+  double products = 0;
+  double squares = 0;
+  for (std::size_t i = 0; i + step < noise.values.size(); ++i) {
+    const auto here = static_cast<double>(noise.values[i]);
+    products += here * static_cast<double>(noise.values[i + step]);
+    squares += here * here;
+  }
+  return squares > 0 ? std::clamp(products / squares, 0.0, 1.0) : 0.0;
+}
+
 }  // namespace
 
-model::Volume OstReconstructor::uncertainty(std::span<const CameraView> views) const {
+VoxelUncertainty OstReconstructor::uncertainty(std::span<const CameraView> views) const {
   auto state = std::make_unique<State>(*state_);
   state->options.clean = false;
   state->options.non_negative = false;
@@ -47,10 +62,12 @@ model::Volume OstReconstructor::uncertainty(std::span<const CameraView> views) c
   const OstReconstructor plain(std::move(state));
   const ViewNoise noise = view_noise(views);
   constexpr int draws = 2;
+  VoxelUncertainty found;
   model::Volume squares;
   model::Volume seen;
   for (int draw = 0; draw < draws; ++draw) {
     model::Volume one = plain.reconstruct(noise_views(views, noise, static_cast<std::uint64_t>(draw) + 1));
+    if (draw == 0) found = {{}, correlation(one, false), correlation(one, true)};
     for (float& value : one.values) value *= value;
     if (draw == 0) {
       seen = one;
@@ -67,7 +84,8 @@ model::Volume OstReconstructor::uncertainty(std::span<const CameraView> views) c
     float& value = squares.values[i];
     value = inside.values[i] > 0 ? std::sqrt(std::max(0.0F, value) / (draws * seen.values[i])) : 0.0F;
   }
-  return squares;
+  found.sigma = std::move(squares);
+  return found;
 }
 
 }  // namespace vam::metrology
