@@ -37,7 +37,7 @@ std::vector<std::string> failures(const Options& options, const std::vector<mode
   for (const model::Condition& condition : conditions) {
     const double band = options.guard_band ? number_at(uncertainty, condition.name) : 0.0;
     const double value = number_at(figures, condition.name) + (condition.relation.starts_with('>') ? -band : band);
-    for (std::string line : model::unmet({condition}, [&](const std::string&) { return value; })) {
+    for (const std::string& line : model::unmet({condition}, [&](const std::string&) { return value; })) {
       failed.push_back(line + (options.guard_band ? " (with its uncertainty of " + format_number(band, 3) + ")" : ""));
     }
   }
@@ -110,7 +110,7 @@ std::vector<metrology::Region> regions_of(const Options& options) {
 
 std::vector<model::Condition> conditions_of(const Options& options, const std::vector<metrology::Region>& regions) {
   if (options.require.empty()) return {};
-  const auto conditions = model::parse_conditions(options.require, figure_names(regions));
+  auto conditions = model::parse_conditions(options.require, figure_names(regions));
   const bool asks_within =
       std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name.ends_with("within"); });
   if (asks_within && !options.tolerance_mm) {
