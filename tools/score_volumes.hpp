@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/progress.hpp"
 #include "facts.hpp"
 #include "io/vdb/covered.hpp"
 #include "io/vdb/vdb.hpp"

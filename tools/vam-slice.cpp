@@ -8,6 +8,7 @@
 #include "base/json.hpp"
 #include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/progress.hpp"
 #include "base/slab.hpp"
 #include "base/text.hpp"
 #include "io/settings/report.hpp"

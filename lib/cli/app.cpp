@@ -151,10 +151,7 @@ App& App::choice(const std::string& flag, std::string& target, const std::vector
   return declare(
       {flag, "WORD", help, target, "", values},
       [&target, flag, values](const std::string& text) {
-        if (std::find(values.begin(), values.end(), text) == values.end()) {
-          throw Error{Fault::usage,
-                      flag + ": '" + text + "' is not one of " + join(values, ", ") + did_you_mean(text, values)};
-        }
+        if (std::find(values.begin(), values.end(), text) == values.end()) throw not_one_of(flag, text, values);
         target = text;
       },
       [&target] { return target; });
@@ -170,6 +167,15 @@ App& App::flag(const std::string& name, bool& target, const std::string& help) {
 
 App& App::default_is(const std::string& text) {
   state_->current_group().options.back().default_text = text;
+  return *this;
+}
+
+App& App::usual(const std::vector<std::string>& flags) {
+  for (Group& group : state_->tool.groups) {
+    for (Option& option : group.options) {
+      option.usual = option.required || std::find(flags.begin(), flags.end(), long_flag(option)) != flags.end();
+    }
+  }
   return *this;
 }
 

@@ -84,6 +84,8 @@ class App {
   App& flag(const std::string& name, bool& target, const std::string& help);
   /// The default of the option declared last in words, where the tool works it out: "projector.pixel_mm".
   App& default_is(const std::string& text);
+  /// Of the options declared so far, --help shows these and those that are required; --help=all shows all.
+  App& usual(const std::vector<std::string>& flags);
   /// The option declared last must be given; or where that other one is not.
   App& required();
   App& required_without(const std::string& flag);

@@ -9,16 +9,22 @@ namespace vam::cli {
 
 namespace {
 
-const std::vector<std::string> about{"--memory", "--help", "--version", "--man", "--completion"};
+const std::vector<std::string> about{"--help", "--version", "--man", "--completion"};
 
-std::vector<const Option*> options_of(const Declaration& tool) {
+std::vector<const Option*> own_options(const Declaration& tool) {
   std::vector<const Option*> options;
   for (const auto& group : tool.groups) {
     for (const auto& option : group.options) options.push_back(&option);
   }
   for (const auto& nested : tool.subcommands) {
-    for (const Option* option : options_of(nested)) options.push_back(option);
+    for (const Option* option : own_options(nested)) options.push_back(option);
   }
+  return options;
+}
+
+std::vector<const Option*> options_of(const Declaration& tool) {
+  std::vector<const Option*> options = own_options(tool);
+  for (const Option& option : options_of_all()) options.push_back(&option);
   return options;
 }
 

@@ -37,7 +37,32 @@ std::string usage(const Declaration& tool) {
   return "Usage: " + join(lines, "\n       ") + "\n";
 }
 
+std::string help_text(const Group& group) {
+  std::string text = group.title + ":\n";
+  for (const auto& option : group.options) {
+    text += "  " + join(split(option.flag, ','), ", ");
+    if (!option.value_name.empty()) text += " " + option.value_name;
+    text += "\n" + wrap(join(details(option), " "), width, indent);
+  }
+  return text;
+}
+
+/// The usual options, and how many are left out.
+std::vector<Group> usual_groups(std::vector<Group> groups, std::size_t& hidden) {
+  for (Group& group : groups) {
+    hidden += std::erase_if(group.options, [](const Option& option) { return !option.usual; });
+  }
+  std::erase_if(groups, [](const Group& group) { return group.options.empty(); });
+  return groups;
+}
+
 }  // namespace
+
+bool has_usual(const Declaration& tool) {
+  return std::any_of(tool.groups.begin(), tool.groups.end(), [](const Group& group) {
+    return std::any_of(group.options.begin(), group.options.end(), [](const Option& option) { return option.usual; });
+  });
+}
 
 bool has_plain_form(const Declaration& tool) {
   return tool.subcommands.empty() || !tool.positionals.empty() || !tool.groups.empty();
@@ -116,7 +141,7 @@ std::vector<ExitStatus> exit_statuses(const Declaration& tool) {
   return statuses;
 }
 
-std::string help_text(const Declaration& tool) {
+std::string help_text(const Declaration& tool, bool all) {
   std::string text = usage(tool) + wrap(tool.manual.summary, width, 2) + "\n";
   if (!tool.subcommands.empty()) text += "Commands:\n";
   for (const auto& nested : tool.subcommands) {
@@ -127,16 +152,11 @@ std::string help_text(const Declaration& tool) {
     text += "  " + positional.value_name + "\n" + wrap(details(positional), width, indent);
   }
   if (!tool.positionals.empty()) text += "\n";
-  for (const auto& group : tool.groups) {
-    text += group.title + ":\n";
-    for (const auto& option : group.options) {
-      text += "  " + join(split(option.flag, ','), ", ");
-      if (!option.value_name.empty()) text += " " + option.value_name;
-      text += "\n" + wrap(join(details(option), " "), width, indent);
-    }
-    text += "\n";
-  }
-  text += "Common options:\n  --memory GIB\n" + wrap(memory_help, width, indent);
+  std::size_t hidden = 0;
+  const bool whole = all || !has_usual(tool);
+  for (const auto& group : whole ? tool.groups : usual_groups(tool.groups, hidden)) text += help_text(group) + "\n";
+  if (hidden > 0) text += std::to_string(hidden) + " more options: " + tool.manual.name + " --help=all\n\n";
+  text += help_text(Group{"Common options", options_of_all()});
   text += "  -h, --help; --version; --man (the manual page); --completion bash|zsh|fish\n";
   return text;
 }

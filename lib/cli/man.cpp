@@ -93,16 +93,20 @@ std::string flag_words(const Option& option) {
   return out;
 }
 
+std::string option_items(const std::vector<Option>& options) {
+  std::string out;
+  for (const auto& option : options) {
+    out += ".It " + flag_words(option) + "\n";
+    for (const auto& text : details(option)) out += paragraph(text);
+  }
+  return out;
+}
+
 std::string option_list(const Declaration& tool) {
   std::string out;
   for (const auto& group : tool.groups) {
     if (tool.groups.size() > 1 || group.title != "Options") out += ".Ss " + group.title + "\n";
-    out += ".Bl -tag -width Ds\n";
-    for (const auto& option : group.options) {
-      out += ".It " + flag_words(option) + "\n";
-      for (const auto& text : details(option)) out += paragraph(text);
-    }
-    out += ".El\n";
+    out += ".Bl -tag -width Ds\n" + option_items(group.options) + ".El\n";
   }
   return out;
 }
@@ -247,9 +251,10 @@ std::string head(const Manual& manual) {
          " 1\n.Os\n.Sh NAME\n.Nm " + manual.name + "\n.Nd " + escape(manual.summary) + "\n";
 }
 
-std::string every_tool() {
-  return ".Ss Common options\n.Bl -tag -width Ds\n.It Fl -memory Ar GIB\n" + paragraph(memory_help) +
-         ".It Fl h , Fl -help\nPrint a summary of the options.\n"
+std::string every_tool(const Declaration& tool) {
+  return ".Ss Common options\n.Bl -tag -width Ds\n" + option_items(options_of_all()) +
+         ".It Fl h , Fl -help\nPrint a summary of the " +
+         (has_usual(tool) ? "usual options;\n.Fl -help Ns = Ns Cm all ,\nof all.\n" : "options.\n") +
          ".It Fl -version\nPrint name and version.\n.It Fl -man\nPrint this page in\n.Xr mdoc 7 .\n"
          ".It Fl -completion Ar SHELL\nPrint the completion script for bash, zsh or fish.\n.El\n";
 }
@@ -276,7 +281,7 @@ std::string manual_page(const Declaration& tool) {
   const Manual& manual = tool.manual;
   std::string out = head(manual) + ".Sh SYNOPSIS\n" + synopsis(tool);
   out += ".Sh DESCRIPTION\n" + paragraphs(manual.description);
-  out += positional_list(tool) + option_list(tool) + commands(tool) + every_tool();
+  out += positional_list(tool) + option_list(tool) + commands(tool) + every_tool(tool);
   if (!manual.notes.empty()) out += ".Sh IMPLEMENTATION NOTES\n" + paragraphs(manual.notes);
   out += environment(tool);
   if (find_option(tool, "--printer") != nullptr || find_option(tool, "--output") != nullptr ||

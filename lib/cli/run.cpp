@@ -1,8 +1,11 @@
 // Parses what the user gave, checks it as a whole, and runs the tool.
+#include <sys/resource.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -49,6 +52,15 @@ Declaration asked_about(Declaration tool, const std::vector<std::string>& words)
     return nested;
   }
   return tool;
+}
+
+/// "vam-slice: 0.52 s, 0.21 GiB of memory"
+std::string use_of_machine(double seconds) {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  constexpr double kib_per_gib = 1 << 20;
+  return program_name() + ": " + format_number(seconds, 3) + " s, " +
+         format_number(static_cast<double>(used.ru_maxrss) / kib_per_gib, 2) + " GiB of memory";
 }
 
 }  // namespace
@@ -124,8 +136,10 @@ void bound(const std::optional<std::string>& gib) {
 void App::parse(int argc, char** argv) {
   const Declaration tool = whole();
   std::vector<std::string> words(argv + 1, argv + argc);
+  const ForAll given = take_for_all(words);
+  set_talk(given.talk);
+  bound(given.memory_gib);
   rename_former(tool, words);
-  bound(take_memory(words));
   state_->history = tool.manual.name + " " + VAM_VERSION;
   for (const auto& word : words) state_->history += " " + quoted(word);
   require_command(tool, words);
@@ -157,8 +171,9 @@ bool App::print_about(int argc, char** argv) const {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--") return false;
-    if (word == "--help" || word == "-h") {
-      std::fputs(help_text(asked_about(whole(), words)).c_str(), stdout);
+    if (flag_of(word) == "--help" || word == "-h") {
+      if (flag_of(word) != word && word != "--help=all") throw not_one_of("--help", word.substr(7), {"all"});
+      std::fputs(help_text(asked_about(whole(), words), word == "--help=all").c_str(), stdout);
     } else if (word == "--version") {
       std::printf("%s %s\n", state_->tool.manual.name.c_str(), VAM_VERSION);
     } else if (word == "--man") {
@@ -174,14 +189,16 @@ bool App::print_about(int argc, char** argv) const {
 }
 
 int App::run(int argc, char** argv, const std::function<void()>& body) {
-  const std::string& name = state_->tool.manual.name;
-  set_program_name(name);
+  set_program_name(state_->tool.manual.name);
+  const auto start = std::chrono::steady_clock::now();
   std::string line;
   Fault fault = Fault::bug;
   try {
     if (!print_about(argc, argv)) {
       parse(argc, argv);
       body();
+      if (talk().verbose)
+        note(use_of_machine(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()));
     }
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
@@ -200,7 +217,7 @@ int App::run(int argc, char** argv, const std::function<void()>& body) {
   } catch (const std::exception& error) {
     line = std::string("internal error: ") + error.what() + "; please report this";
   }
-  std::fprintf(stderr, "%s: %s\n", name.c_str(), printable(line).c_str());
+  say(line);
   return static_cast<int>(fault);
 }
 

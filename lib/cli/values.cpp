@@ -54,4 +54,8 @@ int checked_integer(const std::string& flag, const std::string& text, const Rang
   return whole;
 }
 
+Error not_one_of(const std::string& flag, const std::string& text, const std::vector<std::string>& words) {
+  return {Fault::usage, flag + ": '" + text + "' is not one of " + join(words, ", ") + did_you_mean(text, words)};
+}
+
 }  // namespace vam::cli

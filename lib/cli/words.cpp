@@ -1,10 +1,10 @@
 #include "cli/private/words.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <set>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 
 namespace vam::cli {
@@ -44,7 +44,8 @@ const Declaration& form_of(const Declaration& tool, const std::vector<std::strin
 }
 
 std::vector<std::string> flags_of(const Declaration& form) {
-  std::vector<std::string> flags{"--memory", "--help", "--version", "--man", "--completion"};
+  std::vector<std::string> flags{"--help", "--version", "--man", "--completion"};
+  for (const Option& option : options_of_all()) flags.push_back(long_flag(option));
   for (const auto& group : form.groups) {
     for (const auto& option : group.options) flags.push_back(long_flag(option));
   }
@@ -62,7 +63,7 @@ std::string takers(const Declaration& tool, const std::string& flag) {
 }
 
 // "--from FILE" and "--from=FILE" become "FILE".
-void make_operand(const std::string& tool, const Positional& positional, std::vector<std::string>& words) {
+void make_operand(const Positional& positional, std::vector<std::string>& words) {
   const auto word = std::find_if(words.begin(), words.end(),
                                  [&](const std::string& text) { return flag_of(text) == positional.former; });
   if (word == words.end()) return;
@@ -71,11 +72,10 @@ void make_operand(const std::string& tool, const Positional& positional, std::ve
   } else {
     word->erase(0, positional.former.size() + 1);
   }
-  std::fprintf(stderr, "%s: warning: %s FILE is now the operand %s\n", tool.c_str(), positional.former.c_str(),
-               positional.value_name.c_str());
+  warn(positional.former + " FILE is now the operand " + positional.value_name);
 }
 
-void rename_flags(const std::string& tool, const Declaration& form, std::vector<std::string>& words) {
+void rename_flags(const Declaration& form, std::vector<std::string>& words) {
   std::set<std::string> reported;
   for (auto& word : words) {
     if (word == "--") return;
@@ -83,16 +83,15 @@ void rename_flags(const std::string& tool, const Declaration& form, std::vector<
     const Option* option = find_own(form, flag);
     const Former* former = option == nullptr ? nullptr : former_name(*option, flag);
     if (former == nullptr) continue;
-    const std::string value = former->value.empty() ? "" : " " + former->value;
     const std::string present = long_flag(*option);
     word = former->value.empty() ? present + word.substr(flag.size()) : present + "=" + former->value;
     if (!reported.insert(flag).second) continue;
-    std::fprintf(stderr, "%s: warning: %s is now %s%s\n", tool.c_str(), flag.c_str(), present.c_str(), value.c_str());
+    warn(flag + " is now " + present + (former->value.empty() ? "" : " " + former->value));
   }
 }
 
 // The value follows its option, or stands behind "=".
-void rename_values(const std::string& tool, const Declaration& form, std::vector<std::string>& words) {
+void rename_values(const Declaration& form, std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
     const std::string flag = flag_of(words[i]);
     const Option* option = find_own(form, flag);
@@ -103,8 +102,7 @@ void rename_values(const std::string& tool, const Declaration& form, std::vector
     if (former == option->former_values.end()) continue;
     const auto& [old_value, value] = *former;
     words[i] = joined ? flag + "=" + value : value;
-    std::fprintf(stderr, "%s: warning: %s %s is now %s %s\n", tool.c_str(), flag.c_str(), old_value.c_str(),
-                 flag.c_str(), value.c_str());
+    warn(flag + " " + old_value + " is now " + flag + " " + value);
   }
 }
 
@@ -162,24 +160,10 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 void rename_former(const Declaration& tool, std::vector<std::string>& words) {
   const Declaration form = form_of(tool, words);
   for (const auto& positional : form.positionals) {
-    if (!positional.former.empty()) make_operand(tool.manual.name, positional, words);
+    if (!positional.former.empty()) make_operand(positional, words);
   }
-  rename_flags(tool.manual.name, form, words);
-  rename_values(tool.manual.name, form, words);
-}
-
-std::optional<std::string> take_memory(std::vector<std::string>& words) {
-  const auto end = std::find(words.begin(), words.end(), "--");
-  const auto is_memory = [](const std::string& word) { return flag_of(word) == memory_flag; };
-  const auto word = std::find_if(words.begin(), end, is_memory);
-  if (word == end) return {};
-  const std::string name = memory_flag;
-  if (std::find_if(word + 1, end, is_memory) != end) throw Error{Fault::usage, name + ": given twice"};
-  const bool joined = *word != name;
-  if (!joined && word + 1 == end) throw Error{Fault::usage, name + ": needs a value"};
-  std::string value = joined ? word->substr(name.size() + 1) : *(word + 1);
-  words.erase(word, word + (joined ? 1 : 2));
-  return value;
+  rename_flags(form, words);
+  rename_values(form, words);
 }
 
 std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words, const std::string& unknown) {

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/json.hpp"
 #include "base/log.hpp"
+#include "base/progress.hpp"
 #include "device/open/camera.hpp"
 #include "device/os/event_log.hpp"
 #include "device/port/lines.hpp"

@@ -11,6 +11,7 @@
 #include "base/log.hpp"
 #include "base/memory.hpp"
 #include "base/parallel.hpp"
+#include "base/progress.hpp"
 #include "base/slab_lanes.hpp"
 #include "base/text.hpp"
 #include "dark_part.hpp"

@@ -47,6 +47,7 @@ struct Level {
 
 Level solve_level(const Inputs& in, const Scene& scene, Options options, std::optional<CoarseStart> before) {
   optimize::VolumeTask task = make_task(scene, in, options);
+  task.title += " at " + mm_text(scene.grid.voxel_mm);
   task.limits.patience = task.limits.early = 0;
   task.limits.at_least = task.limits.iterations = before ? next_iterations : first_iterations;
   if (before) continue_from(std::move(*before), task, options);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "base/text.hpp"
 #include "response.hpp"
 
@@ -16,8 +17,7 @@ Sink::Sink(const Options& options, const model::Printer& printer, const model::S
     : keep_(options.printer_tolerances || options.bits),
       bits_(options.bits),
       full_scale_(options.full_scale),
-      out_(options.output, info, options.stack),
-      progress_("optimising", info.count) {
+      out_(options.output, info, options.stack) {
   if (!options.bits) return;
   levels_.emplace(grey_levels(printer, *options.bits), options.full_scale, options.dither_turns.has_value(),
                   [this](const Image& image) { write(image); });
@@ -35,7 +35,6 @@ void Sink::add(const Image& image) {
   } else {
     write(image);
   }
-  progress_.tick();
 }
 
 void Sink::finish() {

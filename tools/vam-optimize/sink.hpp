@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "base/log.hpp"
 #include "io/exr/stack.hpp"
 #include "model/printer.hpp"
 #include "optimize/run/quantise.hpp"
@@ -40,7 +39,6 @@ class Sink {
   std::vector<Image> kept_;
   io::StackWriter out_;
   std::optional<optimize::Quantiser> levels_;
-  Progress progress_;
 };
 
 }  // namespace vam::optimize_tool

@@ -7,7 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
-#include "base/log.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "optics/flatland_movie.hpp"
 

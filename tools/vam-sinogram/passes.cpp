@@ -4,8 +4,8 @@
 #include <future>
 
 #include "base/index.hpp"
-#include "base/log.hpp"
 #include "base/memory.hpp"
+#include "base/progress.hpp"
 #include "model/grid_size.hpp"
 
 namespace vam::sinogram_tool {

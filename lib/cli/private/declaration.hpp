@@ -34,6 +34,7 @@ struct Option {
   bool reads = false;                                     // names a file that is read
   bool writes = false;                                    // names a file that is written
   std::vector<std::string> endings = {};                  // of which its name has one; empty: any
+  bool usual = false;                                     // --help shows it where others need --help=all
 };
 
 struct Group {
@@ -58,11 +59,8 @@ struct Declaration {
   std::vector<Declaration> subcommands;  // their manual has name and summary only
 };
 
-/// Of the option that every tool has.
-inline constexpr const char* memory_help =
-    "Maximum amount of memory; a computation that needs more is refused, or uses scratch files where this page says "
-    "so. Range: more than 0, at most 1e6. Default: the "
-    "memory that is available.";
+/// The options that every tool has, beside those that print something and end.
+[[nodiscard]] const std::vector<Option>& options_of_all();
 
 /// "--voxel" of "-v,--voxel".
 [[nodiscard]] std::string long_flag(const Option& option);
@@ -83,7 +81,11 @@ inline constexpr const char* memory_help =
 [[nodiscard]] std::vector<std::string> details(const Option& option);
 [[nodiscard]] std::string details(const Positional& positional);
 
-[[nodiscard]] std::string help_text(const Declaration& tool);
+/// Does --help leave options out?
+[[nodiscard]] bool has_usual(const Declaration& tool);
+
+/// all: also the options that are not usual, where some are.
+[[nodiscard]] std::string help_text(const Declaration& tool, bool all);
 [[nodiscard]] std::string manual_page(const Declaration& tool);  // mdoc(7)
 [[nodiscard]] std::string completion(const Declaration& tool, const std::string& shell);
 

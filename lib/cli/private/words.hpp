@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/log.hpp"
 #include "cli/private/declaration.hpp"
 
 namespace vam::cli {
@@ -26,11 +27,16 @@ void put_command_first(const Declaration& tool, std::vector<std::string>& words)
 /// Puts the present spelling of options for former ones, with a line on stderr, once each. A command's come first.
 void rename_former(const Declaration& tool, std::vector<std::string>& words);
 
+/// The values of options_of_all().
+struct ForAll {
+  std::optional<std::string> memory_gib;  // as given
+  Talk talk;
+};
 inline constexpr const char* memory_flag = "--memory";
 
-/// Takes the option that every tool has out of the words, and returns its value; nothing where it is not given.
-/// Throws Fault::usage where it is given twice or has no value.
-[[nodiscard]] std::optional<std::string> take_memory(std::vector<std::string>& words);
+/// Takes the options that every tool has out of the words, so that they are not part of its history. Throws
+/// Fault::usage where one is given twice, has no value or one that is not allowed.
+[[nodiscard]] ForAll take_for_all(std::vector<std::string>& words);
 
 /// The line for a word that the tool, or the command that the words name, does not know.
 [[nodiscard]] std::string unknown_word(const Declaration& tool, const std::vector<std::string>& words,

@@ -9,6 +9,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "base/per_slice.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
@@ -184,6 +185,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   Dirt dirt;
   if (s.options.clean) dirt = even_background(mean_view(views));
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
+  Progress progress("reconstructing", s.grid.nz);
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
     const int count = std::min(slices_a_pass, s.grid.nz - first);
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
@@ -206,6 +208,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     if (s.options.mlem_iterations > 0) {
       s.refine_slices(std::span(sinograms).subspan(beyond, count), first, volume);
     }
+    progress.tick(count);
   }
   if (found != nullptr) *found = dirt;
   return volume;

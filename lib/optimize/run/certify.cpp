@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "base/progress.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/step_length.hpp"
 #include "optimize/run/private/saddle.hpp"
@@ -179,7 +180,8 @@ Certificate certify(const Problem& problem, const light::Operator& light, std::v
   Prover prover(problem, light);
   Saddle saddle(light, prover.sign(), at_one(problem, light, std::move(g)), largest_eigenvalue(light, problem));
   double reached = prover.ratio_of(saddle.point());
-  for (int i = 1; i <= iterations; ++i) {
+  Progress progress("proving", iterations);
+  for (int i = 1; i <= iterations; ++i, progress.tick()) {
     saddle.step();
     if (i % look_every != 0 && i != iterations) continue;
     const double ratio = prover.ratio_of(saddle.point());

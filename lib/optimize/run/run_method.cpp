@@ -66,7 +66,7 @@ bool in_time(const std::optional<Deadline>& deadline, const Standing& standing) 
 std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
                                const Limits& limits, const Iterate& state, Standing& standing, const Watch& watch) {
   const bool last = standing.iteration == limits.iterations;
-  if (watch || !last) {  // looking costs little, but a plain fbp need not be evaluated
+  if (limits.watch_last || !last) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
     if (watch) watch(standing.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all

@@ -26,6 +26,7 @@ struct Limits {
   int early = 0;                          // so many do where the print's surface is true by then; 0: none
   int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
   double least_gain = 1e-4;               // an improvement of the mean of IoU + PW smaller than this is none
+  bool watch_last = false;                // evaluate the last iterate, too, on which nothing depends
   std::optional<Deadline> deadline = {};  // no iteration begins that might end after it
 };
 
@@ -41,7 +42,7 @@ struct Outcome {
   StopReason stop = StopReason::iterations;
 };
 
-/// Called with iteration 0 (the start) and after every step; one entry per slice of the pass.
+/// Called with iteration 0 (the start) and after every step that is evaluated; one entry per slice of the pass.
 using Watch = std::function<void(int iteration, const std::vector<model::DoseMetrics>& slices)>;
 /// Asked after every complete iterate whether to break off there.
 using Pause = std::function<bool()>;

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/index.hpp"
+#include "base/progress.hpp"
 #include "base/text.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/run/private/division.hpp"
@@ -127,17 +128,18 @@ class VolumeRun {
     if (!work.method) begin(work, pass, light.sharp());
     const Scenarios* faced = scenarios ? &*scenarios : nullptr;
     if (faced != nullptr) work.method->face(*faced);
-    Watch watch;
-    if (task_.watch) {
-      watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) { note(pass, iteration, slices); };
-    }
+    const Watch watch = [&](int iteration, const std::vector<model::DoseMetrics>& slices) {
+      note(pass, iteration, slices);
+    };
     AtLimit at_limit;
     if (task_.front) {
       at_limit = [&](double most) {
         front_.push_back(front_point(input.problem, light.blurred(), most, work.state, faced, task_.front));
       };
     }
-    const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), limits_of(pass), task_.raising,
+    Limits limits = limits_of(pass);
+    limits.watch_last = task_.watch;
+    const Outcome outcome = run_shortest(*work.method, input.problem, light.blurred(), limits, task_.raising,
                                          work.state, work.search, watch, task_.interruption.pause, at_limit);
     if (outcome.stop == StopReason::interrupted) {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
@@ -186,7 +188,20 @@ class VolumeRun {
     for (int job = pass.first; job < pass.last; ++job) {
       figures.add(slices[job - pass.low], times_[job]);
     }
-    ledger_.note(iteration, figures);
+    show(pass, iteration, figures.mean());
+    if (task_.watch) ledger_.note(iteration, figures);
+  }
+
+  /// Progress in iterations of a job. A goal may be met before the last of them, but not before the first that counts.
+  void show(const Pass& pass, int iteration, const model::DoseMetrics& figures) {
+    const Limits& limits = task_.limits;
+    int expected = limits.iterations;
+    if (!limits.until.empty() && limits.at_least > 0) expected = std::min(expected, limits.at_least);
+    while (expected < iteration) expected *= 2;
+    const int most = std::max(1, std::min(expected, limits.iterations));
+    progress_.stand(static_cast<long>(pass.first) * most + static_cast<long>(pass.last - pass.first) * iteration,
+                    static_cast<long>(jobs()) * most,
+                    {{"iteration", static_cast<double>(iteration)}, {"VER", figures.ver}, {"PW", figures.pw}});
   }
 
   /// Takes the finished slices out of the pass.
@@ -260,6 +275,7 @@ class VolumeRun {
   std::optional<Certificate> certificate_;
   std::vector<std::int64_t> wrong_;
   Finished finished_{schedule_, task_.write};
+  Progress progress_{task_.title, 0};
 };
 
 }  // namespace

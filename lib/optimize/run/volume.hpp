@@ -28,6 +28,7 @@ struct IntensityLimit {
 };
 
 struct VolumeTask {
+  std::string title = "optimising";  // of the progress
   VolumeSource source;
   Circle circle;
   model::VoxelBox part;  // its box

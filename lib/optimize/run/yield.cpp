@@ -6,7 +6,7 @@
 
 #include "base/index.hpp"
 #include "base/json.hpp"
-#include "base/log.hpp"
+#include "base/progress.hpp"
 #include "light/blur/blur_stream.hpp"
 #include "light/blur/gaussian_blur.hpp"
 #include "light/simulation/simulation.hpp"

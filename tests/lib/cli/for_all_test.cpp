@@ -1,0 +1,104 @@
+#include <doctest/doctest.h>
+
+#include "base/log.hpp"
+#include "base/progress.hpp"
+#include "cli/private/words.hpp"
+#include "lib/cli/demo.hpp"
+
+using namespace vam;
+using namespace vam::cli;
+
+namespace {
+
+std::string warned(const std::vector<std::string>& words) {
+  Tool tool;
+  return written_to(stderr, [&] { CHECK(tool.run(words) == 0); });
+}
+
+std::string refused(const std::vector<std::string>& words) {
+  Tool tool;
+  return written_to(stderr, [&] { CHECK(tool.run(words) == 64); });
+}
+
+}  // namespace
+
+TEST_CASE("options of every tool are taken out of the words, wherever they stand") {
+  std::vector<std::string> words{"-v", "part.stl", "--progress=json", "--memory", "2", "--half", "--", "--quiet"};
+  const ForAll all = take_for_all(words);
+  CHECK(words == std::vector<std::string>{"part.stl", "--half", "--", "--quiet"});
+  CHECK(all.memory_gib == "2");
+  CHECK(all.talk.verbose);
+  CHECK_FALSE(all.talk.quiet);
+  CHECK(all.talk.progress == ProgressStyle::json);
+  std::vector<std::string> none{"part.stl"};
+  CHECK(take_for_all(none).talk.progress == ProgressStyle::line);
+}
+
+TEST_CASE("and are not part of the history") {
+  Tool tool;
+  CHECK(tool.run({"--quiet", "part.vdb", "--progress", "none"}) == 0);
+  CHECK(tool.app.history() == std::string("vam-demo ") + VAM_VERSION + " part.vdb");
+}
+
+TEST_CASE("what is wrong with them is a usage error") {
+  CHECK(refused({"--progress", "jason"}) ==
+        "vam-demo: --progress: 'jason' is not one of line, json, none; did you mean json?\n");
+  CHECK(refused({"--progress"}) == "vam-demo: --progress: needs a value\n");
+  CHECK(refused({"--quiet=yes"}) == "vam-demo: --quiet: takes no value\n");
+  CHECK(refused({"-q", "--quiet"}) == "vam-demo: --quiet: given twice\n");
+  CHECK(refused({"-q", "-v"}) == "vam-demo: --quiet: contradicts --verbose\n");
+  CHECK(refused({"--help=most"}) == "vam-demo: --help: 'most' is not one of all\n");
+}
+
+TEST_CASE("quiet leaves out warnings, not errors") {
+  CHECK(warned({"--taper", "hann"}) == "vam-demo: warning: --taper is now --window\n");
+  CHECK(warned({"--taper", "hann", "--quiet"}) == "");
+  CHECK(refused({"--voxel", "0", "-q"}).starts_with("vam-demo: --voxel: 0 is out of range"));
+}
+
+TEST_CASE("verbose states time and memory") {
+  const std::string text = warned({"part.vdb", "--verbose"});
+  CHECK(text.starts_with("vam-demo: "));
+  CHECK(text.ends_with(" GiB of memory\n"));
+}
+
+TEST_CASE("--help shows the usual options, --help=all all") {
+  const auto help = [](bool usual, const std::string& word) {
+    Tool tool;
+    if (usual) tool.app.usual({"--voxel", "--half"});
+    return written_to(stdout, [&] { CHECK(tool.run({word}) == 0); });
+  };
+  const std::string some = help(true, "--help");
+  CHECK(some.find("  --voxel MM\n") != std::string::npos);
+  CHECK(some.find("--angles") == std::string::npos);
+  CHECK(some.find("\n4 more options: vam-demo --help=all\n") != std::string::npos);
+  CHECK(some.find("--quiet") != std::string::npos);
+  CHECK(help(true, "--help=all") == help(false, "--help"));
+}
+
+TEST_CASE("progress as JSON: a line when the work ends, with its figures") {
+  set_talk({.progress = ProgressStyle::json});
+  const std::string text = written_to(stderr, [] {
+    Progress progress("optimising", 8);
+    progress.stand(3, 9, {{"iteration", 3}, {"VER", 0.25}});
+  });
+  CHECK(text.find(R"("task":"optimising","done":3,"total":9,)") != std::string::npos);
+  CHECK(text.find(R"("left_s":0.0,"iteration":3.0,"ver":0.25})") != std::string::npos);
+  const std::string failed = written_to(stderr, [] {
+    try {
+      const Progress progress("slicing", 8);
+      throw 1;
+    } catch (int) {
+    }
+  });
+  CHECK(failed.empty());
+  set_talk({.quiet = true, .progress = ProgressStyle::json});
+  CHECK(written_to(stderr, [] { Progress("slicing", 8).tick(8); }).empty());
+  set_talk({});
+}
+
+TEST_CASE("times left") {
+  CHECK(clock_text(4.6) == "0:05");
+  CHECK(clock_text(760) == "12:40");
+  CHECK(clock_text(3760) == "1:02:40");
+}

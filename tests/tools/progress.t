@@ -1,0 +1,47 @@
+# Where long work stands: one line that fits the terminal, shared by the tools of a pipe; --quiet, -v, --progress.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+seen() { python3 "$VAM_SOURCE/tests/tools/progress.py" "$@"; }
+work='vam-optimize --iterations 8 --angles 90 part.vdb'  # of some seconds
+vam-slice --shape gyroid --voxel 0.29 -o part.vdb
+
+ok 'on a terminal' seen 100 "$work" ; mv .log/out rows
+grep '^vam-optimize: optimising' rows >drawn
+holds 'there is a line' "$(wc -l <drawn) > 0"
+is 'which says where it stands' "$(grep -Evc '^vam-optimize: optimising( at [0-9.]+ mm)? \[#* *\] [ 0-9][0-9]+ %, [0-9]+:[0-9]{2} left, iteration [0-9]+, VER [0-9.e-]+, PW [0-9.e-]+\$$' drawn)" 0
+holds 'in the terminal' "$(awk '{ n = length($0) - 1; if (n > most) most = n } END { print most }' drawn) <= 99"
+is 'and goes' "$(grep -A 1 '^vam-optimize: optimising' rows | tail -n 1 | cut -c1)" '$'
+ok 'on a narrow one' seen 39 "$work"
+is 'it is short' "$(grep '^optimising' .log/out | grep -Evc '^optimising( at [0-9.]+ mm)? (\[#* *\] )?[ 0-9][0-9]+ %(, [0-9]+:[0-9]{2} left)?\$$')" 0
+holds 'and fits' "$(grep '^optimising' .log/out | awk '{ n = length($0) - 1; if (n > most) most = n } END { print most }') <= 38"
+
+ok 'while another tool has the line' seen 100 "$work" taken
+is 'nothing is drawn' "$(grep -c optimising .log/out)" 0
+is 'and messages clear it' "$(grep -c '^\$vam-optimize: part.vdb will' .log/out)" 1
+vam-slice --shape gyroid --voxel 0.12 --stretch-z 1 -o fine.vdb
+ok 'the tools of a pipe' seen 80 'vam-sinogram --angles 90 fine.vdb | vam-resample | vam-dose --like fine.vdb | vam-score --target fine.vdb'
+grep -o '^vam-[a-z]*: [a-z]* ' .log/out | uniq >turns
+is 'take turns' "$(sort turns | uniq -d)" ''
+
+ok 'no terminal' sh -c "$work -o x.exr"
+is 'no line' "$(cat .log/err)" ''
+mv x.exr plain.exr
+ok '--progress none' seen 80 "$work --progress none"
+is 'none' "$(grep -c optimising .log/out)" 0
+ok '--quiet' seen 80 "$work --quiet --seconds 1"
+is 'is quiet' "$(tr -d '\n' <.log/out)" ''
+ok '-v' $work -v -o x.exr
+is 'says what each step took' "$(grep -c '^vam-optimize: optimising.*: [0-9.]* s$' .log/err)" 2
+is 'and all' "$(tail -n 1 .log/err | sed 's/[0-9.][0-9.]*/N/g')" 'vam-optimize: N s, N GiB of memory'
+same 'the same bytes' plain.exr x.exr
+ok '--progress json' $work --progress json -o x.exr
+cat >judge.py <<'PY'
+import json, sys
+lines = [json.loads(line) for line in sys.stdin]
+last = [line for line in lines if line["task"] == "optimising"]
+print(all(a["iteration"] <= b["iteration"] and a["elapsed_s"] <= b["elapsed_s"] for a, b in zip(last, last[1:])),
+      all(line["tool"] == "vam-optimize" and 0 <= line["done"] <= line["total"] for line in lines),
+      all(0 <= line["ver"] <= 1 and -2 <= line["pw"] <= 1 for line in lines), last[-1]["left_s"], len(last) > 1)
+PY
+is 'is lines of JSON' "$(python3 judge.py <.log/err)" 'True True True 0.0 True'
+done_testing
