@@ -262,6 +262,8 @@ void declare(cli::App& app, Options& options) {
   cli::add_report(app, options.report);
   cli::add_stack_output(app, options.stack.half, options.stack.compression);
   cli::add_threads(app);
+  app.usual({"--output", "--method", "--geometry", "--angles", "--iterations", "--until", "--shortest", "--turns",
+             "--robust", "--checkpoint", "--printer", "--set", "--report"});
 }
 
 }  // namespace vam::optimize_tool
