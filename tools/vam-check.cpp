@@ -39,11 +39,16 @@ cli::Manual manual() {
            "from others. Files of other programs have no seal, which is printed and is not an error. Seals reveal bit "
            "rot, truncation and edits; they are not signatures."},
           {{"Check a part and its sinogram:",
-            "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o sino.exr && vam-check "
-            "part.vdb sino.exr"},
-           {"Headers only, for large archives:", "vam-check --fast sino.exr"},
+            "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
+            "vam-sinogram part.vdb -o sino.exr\n"
+            "vam-check part.vdb sino.exr"},
+           {"Headers only, for large archives:",
+            "vam-slice --shape gyroid --voxel 0.2 | vam-sinogram -o sino.exr\n"
+            "vam-check --fast sino.exr"},
            {"Seal printer settings:",
-            "vam-slice --print-printer -o printer.toml && vam-check --seal printer.toml && vam-check printer.toml"}},
+            "vam-slice --print-printer -o printer.toml\n"
+            "vam-check --seal printer.toml\n"
+            "vam-check printer.toml"}},
           {"Memory: one image, or the topology of one volume. Speed: that of reading."},
           {"vam-print", "vam-view"}};
 }

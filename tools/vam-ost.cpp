@@ -70,23 +70,32 @@ std::vector<std::string> notes() {
 }
 
 cli::Manual manual() {
-  return {
-      "vam-ost",
-      "reconstruct the scattering volume of a print from camera views of the rotating vial",
-      description(),
-      {{"Views of a synthetic cylinder, as a camera would record them:",
-        "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 -o design.vdb\nvam-sinogram "
-        "design.vdb --angles 90 | vam-resample -o seen.exr\nvam-project seen.exr -o views --set projector.fps=2.5"},
-       {"Reconstruct from a folder of images taken every 4 degrees:",
-        "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
-        "scatter.vdb --projections seen.png"},
-       {"Determine the gelation threshold from this volume, and use it:",
-        "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\nvam-ost views --view-step 4 --pixel 0.065 --set "
-        "camera.distance_mm=119.808 --resin resin.json --mesh print.ply -o again.vdb"}},
-      notes(),
-      {"vam-calibrate", "vam-capture", "vam-sdf", "vam-view", "vam-resample"},
-      {"In captured stacks the attributes vam:angle_deg and vam:time_s give a view's angle and time; a view marked "
-       "vam:incomplete is skipped with a warning that names its vam:number."}};
+  return {"vam-ost",
+          "reconstruct the scattering volume of a print from camera views of the rotating vial",
+          description(),
+          {{"Views of a synthetic cylinder, as a camera would record them:",
+            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
+            "vam-resample -o seen.exr\n"
+            "vam-project seen.exr -o views --set projector.fps=2.5"},
+           {"Reconstruct from a folder of images taken every 4 degrees:",
+            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
+            "vam-resample -o seen.exr\n"
+            "vam-project seen.exr -o views --set projector.fps=2.5\n"
+            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+            "scatter.vdb --projections seen.png"},
+           {"Determine the gelation threshold from this volume, and use it:",
+            "vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 --stretch-z 1 | vam-sinogram --angles 90 | "
+            "vam-resample -o seen.exr\n"
+            "vam-project seen.exr -o views --set projector.fps=2.5\n"
+            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 -o "
+            "scatter.vdb\n"
+            "vam-calibrate resin scatter.vdb --diameter 6 -o resin.json\n"
+            "vam-ost views --view-step 4 --pixel 0.065 --set camera.distance_mm=119.808 --set camera.azimuth_deg=0 "
+            "--resin resin.json --mesh print.ply -o again.vdb"}},
+          notes(),
+          {"vam-calibrate", "vam-capture", "vam-sdf", "vam-view", "vam-resample"},
+          {"In captured stacks the attributes vam:angle_deg and vam:time_s give a view's angle and time; a view marked "
+           "vam:incomplete is skipped with a warning that names its vam:number."}};
 }
 
 void declare_camera(cli::App& app, Options& o) {

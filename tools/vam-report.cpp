@@ -48,15 +48,21 @@ cli::Manual manual() {
        "deviation, the outermost bins of which hold what is beyond.",
        "The first target and the first dose are scored as by vam-score, with the settings of the printer file."},
       {{"A print from design to dose:",
-        "vam-slice --shape gyroid --voxel 0.3 -o part.vdb && vam-optimize part.vdb --angles 120 --iterations 12 "
-        "--trace trace.csv -o light.exr --report light.json && vam-dose light.exr --like part.vdb -o dose.vdb && "
+        "vam-slice --shape gyroid --voxel 0.3 -o part.vdb\n"
+        "vam-optimize part.vdb --angles 120 --iterations 12 --trace trace.csv -o light.exr --report light.json\n"
+        "vam-dose light.exr --like part.vdb -o dose.vdb\n"
         "vam-report part.vdb light.exr dose.vdb light.json trace.csv -o report.html"},
        {"The inspection of a print:",
-        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb && vam-slice --shape box:x=6.2,y=6.2,z=6.2 "
-        "--stretch-z 1 -o seen.vdb && vam-sdf seen.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
-        "inspection.json && vam-report deviation.ply inspection.json -o inspection.html"},
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o seen.vdb\n"
+        "vam-sdf seen.vdb design.vdb --isovalue 0.5 -o deviation.ply --report inspection.json\n"
+        "vam-report deviation.ply inspection.json -o inspection.html"},
        {"Everything in a folder:",
-        "mkdir print && cp part.vdb dose.vdb light.json print/ && vam-report print -o print.html"}},
+        "mkdir print\n"
+        "vam-slice --shape gyroid --voxel 0.3 -o print/part.vdb\n"
+        "vam-optimize print/part.vdb --angles 120 -o print/light.exr --report print/light.json\n"
+        "vam-dose print/light.exr --like print/part.vdb -o print/dose.vdb\n"
+        "vam-report print -o print.html"}},
       {"Memory: the volumes as stored in their files, one image of a stack, and the page itself. A page has 2 to "
        "15 MB, depending on --max-sections and --max-images.",
        "Surfaces are computed on voxels averaged until they have less than 60,000 vertices; for measurements use "

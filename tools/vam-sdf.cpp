@@ -56,6 +56,8 @@ cli::Manual manual() {
         "--stretch-z 1 -o print.vdb\nvam-sdf print.vdb design.vdb --isovalue 0.5 -o deviation.ply --report "
         "deviation.json"},
        {"Check a tolerance in a script:",
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
        {"Measure the flatness of the upper face (the box is larger than the face) and the thickness of the part, with "
         "uncertainties:",

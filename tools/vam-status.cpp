@@ -47,12 +47,15 @@ cli::Manual manual() {
        "server; it shows when it is no longer updated.",
        "On a terminal vam-print prints this line itself; with --run-page it writes page.html into the run folder."},
       {{"The progress of a print, here a dry run:",
-        "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\nvam-print "
-        "projector.exr "
-        "--display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set stage.speed_deg_s=85 --run "
-        "dry-run\n"
+        "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
+        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set "
+        "stage.speed_deg_s=85 --run dry-run\n"
         "vam-status dry-run"},
-       {"The same as a page:", "vam-status dry-run --page page.html"}},
+       {"The same as a page:",
+        "vam-slice --shape disc-grid --voxel 0.4 | vam-optimize --iterations 5 -o projector.exr\n"
+        "vam-print projector.exr --display null: --uncalibrated --max-missed 0.9 --set stage.device=sim: --set "
+        "stage.speed_deg_s=85 --run dry-run\n"
+        "vam-status dry-run --page page.html"}},
       {"Dose. The page shows the dose in the middle slice, by horizontal rays and without blur; vam-dose --shown "
        "computes the dose of all slices with the full model.",
        "Memory. The sinogram is read once, and at most 300 columns, slices and stage angles of it are kept.",

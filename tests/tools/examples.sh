@@ -1,15 +1,18 @@
-# The examples of a tool's manual page run. usage: examples.sh TOOL
+# Each example of a tool's manual page runs alone, as if pasted into an empty folder. usage: examples.sh TOOL
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 tool=$1
 PATH=$VAM_SOURCE/scripts:$PATH  # vam-print
 
-awk '/^\.Sh /{inside = ($2 == "EXAMPLES")} inside && /^\.Ed/{code = 0} inside && code{print} inside && /^\.Bd/{code = 1}' \
-  "$VAM_SOURCE/man/$tool.1" | sed -e 's/^\\&//' -e 's/\\e/\\/g' >commands
-[ $tool != vam-print ] || sed -i '/drm:/,$d' commands  # its other examples name real devices
-[ -s commands ]; report $? "$tool: the page has examples"
-mkdir examples
-(cd examples && sh -e ../commands) >.log/example 2>&1; status=$?
-report $status "$tool: the examples run"
-[ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
-is "$tool: the examples use no former spelling" "$(grep ' is now ' .log/example)" ''
+sed -e 's/^\\&//' -e 's/\\e/\\/g' "$VAM_SOURCE/man/$tool.1" |
+  awk '/^\.Sh /{inside = ($2 == "EXAMPLES")} /^\.Ed/{code = 0} code{print >("example-" n)} inside && /^\.Bd/{code = 1; ++n}'
+[ -s example-1 ]; report $? "$tool: the page has examples"
+for example in example-*; do
+  if grep -q 'drm:' "$example"; then continue; fi  # it names a real device
+  mkdir alone
+  (cd alone && sh -e "../$example") >.log/example 2>&1; status=$?
+  report $status "$tool: $example runs alone"
+  [ $status -eq 0 ] || sed 's/^/# /' .log/example | tail -n 10
+  is "$tool: $example uses no former spelling" "$(grep ' is now ' .log/example)" ''
+  rm -rf alone
+done
 done_testing

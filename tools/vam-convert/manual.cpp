@@ -32,20 +32,19 @@ cli::Manual manual() {
        "channel "
        "first. The stage angle between the frames of a video is 6 x turns per minute / frames per second."},
       {{"A part to NumPy, and back:",
-        "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb && vam-convert part.vdb -o part.npy && vam-convert "
-        "part.npy "
-        "--voxel 0.5 -o again.vdb"},
+        "vam-slice --shape disc-grid --voxel 0.5 | vam-convert -o part.npy\n"
+        "vam-convert part.npy --voxel 0.5 -o again.vdb"},
        {"Its projections as an array, and the dose of such an array:",
-        "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-convert -o sino.npy && vam-convert sino.npy "
-        "--geometry parallel --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
+        "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
+        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-convert -o sino.npy\n"
+        "vam-convert sino.npy --geometry parallel --pixel 0.5 | vam-dose --like part.vdb -o dose.vdb"},
        {"Does a folder of frames print?",
-        "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.columns=64 --set "
-        "projector.rows=64 --set projector.pixel_mm=0.5 | vam-project --set projector.columns=64 --set "
-        "projector.rows=64 "
-        "--set projector.pixel_mm=0.5 --turns 1 -o frames && vam-convert frames --geometry vial --set "
-        "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 --like part.vdb | vam-dose --like "
-        "part.vdb --set "
-        "projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 | vam-score --target part.vdb"}},
+        "vam-slice --print-printer --set projector.columns=64 --set projector.rows=64 --set projector.pixel_mm=0.5 -o "
+        "small.toml\n"
+        "export VAM_PRINTER=small.toml\n"
+        "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
+        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample | vam-project --turns 1 -o frames\n"
+        "vam-convert frames --geometry vial --like part.vdb | vam-dose --like part.vdb | vam-score --target part.vdb"}},
       {"Memory: one image of an array in C order; the whole of an array in another order, whose first values are "
        "needed "
        "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",

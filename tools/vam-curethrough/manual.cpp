@@ -31,28 +31,31 @@ std::vector<std::string> description() {
 }
 
 std::vector<std::pair<std::string, std::string>> examples() {
-  return {
-      {"The ladder of the paper and the result of ordinary slices:",
-       "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb && vam-curethrough model ladder.vdb "
-       "--max-irradiance 110 --min-irradiance 0.2 --section ordinary.png"},
-      {"The corrected slices of the ladder, exact and as 8-bit images:",
-       "vam-curethrough correct ladder.vdb --max-irradiance 110 --min-irradiance 0.2 -o slices.exr --png slices"},
-      {"The result of the corrected slices:",
-       "vam-curethrough model slices.exr --target ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section "
-       "corrected.png --report corrected.json"},
-      {"Comparison of three resins for this part:",
-       "printf 'name,absorbance_height_um,full_cure_dose_mj_cm3\\nclear,2000,576\\ndyed,800,576\\ndark,300,576\\n' > "
-       "resins.csv && vam-curethrough correct ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --catalogue "
-       "resins.csv"},
-      {"Absorbance height and gelation threshold from measured thicknesses:",
-       "printf 'exposure_mj_cm2,thickness_um\\n20,370\\n20,381\\n50,1168\\n50,1175\\n130,2004\\n130,1996\\n' | "
-       "vam-curethrough working-curve --plot curve.png"},
-      {"The grey response from photodiode readings:",
-       "printf 'grey,reading\\n0,0.2\\n64,5.3\\n128,24\\n192,57\\n255,110\\n' | vam-curethrough response -o "
-       "response.csv"},
-      {"The study of the paper's figure 5c:",
-       "vam-curethrough sweep df_over_dc=1..8,omega_max=1..5 --max-irradiance 110 --min-irradiance 0.2 --report "
-       "sweep.json"}};
+  return {{"The ladder of the paper and the result of ordinary slices:",
+           "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough model --max-irradiance 110 "
+           "--min-irradiance 0.2 --section ordinary.png"},
+          {"The corrected slices of the ladder, exact and as 8-bit images:",
+           "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-irradiance 110 "
+           "--min-irradiance 0.2 -o slices.exr --png slices"},
+          {"The result of the corrected slices:",
+           "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 -o ladder.vdb\n"
+           "vam-curethrough correct ladder.vdb --max-irradiance 110 --min-irradiance 0.2 -o slices.exr\n"
+           "vam-curethrough model slices.exr --target ladder.vdb --max-irradiance 110 --min-irradiance 0.2 --section "
+           "corrected.png --report corrected.json"},
+          {"Comparison of three resins for this part:",
+           "printf 'name,absorbance_height_um,full_cure_dose_mj_cm3\\nclear,2000,576\\ndyed,800,576\\ndark,300,576\\n' "
+           ">resins.csv\n"
+           "vam-slice --shape ladder:rungs=2 --voxel 0.05 --stretch-z 1 | vam-curethrough correct --max-irradiance 110 "
+           "--min-irradiance 0.2 --catalogue resins.csv"},
+          {"Absorbance height and gelation threshold from measured thicknesses:",
+           "printf 'exposure_mj_cm2,thickness_um\\n20,370\\n20,381\\n50,1168\\n50,1175\\n130,2004\\n130,1996\\n' | "
+           "vam-curethrough working-curve --plot curve.png"},
+          {"The grey response from photodiode readings:",
+           "printf 'grey,reading\\n0,0.2\\n64,5.3\\n128,24\\n192,57\\n255,110\\n' | vam-curethrough response -o "
+           "response.csv"},
+          {"The study of the paper's figure 5c:",
+           "vam-curethrough sweep df_over_dc=1..8,omega_max=1..5 --max-irradiance 110 --min-irradiance 0.2 --report "
+           "sweep.json"}};
 }
 
 std::vector<std::string> notes() {

@@ -41,27 +41,34 @@ std::vector<std::string> description() {
 }
 
 std::vector<std::pair<std::string, std::string>> examples() {
-  return {{"Simulate the print of the disc grid and score it:",
-           "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb --filter ram-lak --negative "
-           "clip | vam-resample | vam-dose --like part.vdb -o dose.vdb && vam-score dose.vdb --target part.vdb"},
-          {"Effect of a telecentric correction on a projector that is not telecentric:",
-           "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample --set projector.telecentric=true | "
-           "vam-dose --like part.vdb -o wrong.vdb"},
-          {"Projections computed for a centred vial, shown to one that wobbles by 0.3 mm:",
-           "seq 0 89 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { t = $1 * 3.14159265 / 45; print 4 "
-           "* $1 \",\" 0.3 * cos(t) \",\" (-0.3 * sin(t)) \",0,vial\" }' >wobble.csv && vam-optimize --angles 90 "
-           "part.vdb | vam-dose --poses wobble.csv --like part.vdb -o wobbled.vdb"},
-          {"A handle printed around the shaft of a screwdriver:",
-           "vam-slice --shape handle --insert-shape screwdriver --voxel 0.8 -o handle.vdb && vam-optimize --angles 60 "
-           "handle.vdb | vam-dose --like handle.vdb | vam-score --target handle.vdb"},
-          {"Duration of a print in an absorbing resin:",
-           "vam-sinogram part.vdb --filter ram-lak --negative clip | vam-resample | vam-dose --like part.vdb --set "
-           "resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 --report time.json -o dose.vdb"},
-          {"The dose of an aborted print, here a dry run:",
-           "vam-sinogram part.vdb --angles 90 --filter ram-lak --negative clip | vam-resample -o short.exr && timeout "
-           "15 vam-print short.exr --display null: --uncalibrated --set stage.device=sim: --set stage.speed_deg_s=85 "
-           "--max-missed 0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended --printer "
-           "ended/printer.toml --like part.vdb --report given.json -o given.vdb"}};
+  return {
+      {"Simulate the print of the disc grid and score it:",
+       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+       "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample | vam-dose --like part.vdb -o dose.vdb\n"
+       "vam-score dose.vdb --target part.vdb"},
+      {"Effect of a telecentric correction on a projector that is not telecentric:",
+       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+       "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample --set projector.telecentric=true | "
+       "vam-dose --like part.vdb -o wrong.vdb"},
+      {"Projections computed for a centred vial, shown to one that wobbles by 0.3 mm:",
+       "seq 0 89 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { t = $1 * 3.14159265 / 45; print 4 * $1 "
+       "\",\" 0.3 * cos(t) \",\" (-0.3 * sin(t)) \",0,vial\" }' >wobble.csv\n"
+       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+       "vam-optimize --angles 90 part.vdb | vam-dose --poses wobble.csv --like part.vdb -o wobbled.vdb"},
+      {"A handle printed around the shaft of a screwdriver:",
+       "vam-slice --shape handle --insert-shape screwdriver --voxel 0.8 -o handle.vdb\n"
+       "vam-optimize --angles 60 handle.vdb | vam-dose --like handle.vdb | vam-score --target handle.vdb"},
+      {"Duration of a print in an absorbing resin:",
+       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+       "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample -o projector.exr\n"
+       "vam-dose projector.exr --like part.vdb --set resin.absorption_per_mm=0.06 --set resin.critical_dose_mj_cm3=100 "
+       "--report time.json -o dose.vdb"},
+      {"The dose of an aborted print, here a dry run:",
+       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+       "vam-sinogram --filter ram-lak --negative clip --angles 90 part.vdb | vam-resample -o short.exr\n"
+       "timeout 15 vam-print short.exr --display null: --uncalibrated --set stage.device=sim: --set "
+       "stage.speed_deg_s=85 --max-missed 0.9 --run-up 0.1 --turns 20 --run ended || vam-dose short.exr --shown ended "
+       "--printer ended/printer.toml --like part.vdb --report given.json -o given.vdb"}};
 }
 
 std::vector<std::string> notes() {

@@ -115,35 +115,47 @@ std::vector<std::string> description() {
 std::vector<std::pair<std::string, std::string>> examples() {
   return {
       {"Projections of a gyroid for the default printer:",
-       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb && vam-optimize part.vdb -o "
-       "sinogram.exr"},
-      {"Will it print, for how long?", "vam-optimize --preview part.vdb"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-optimize part.vdb -o sinogram.exr"},
+      {"Will it print, for how long?",
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --preview"},
       {"Computed axial lithography, with the figures of merit of every iteration:",
-       "vam-optimize --method cal --iterations 20 --trace trace.csv part.vdb -o cal.exr"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --method cal --iterations 20 --trace "
+       "trace.csv -o cal.exr"},
       {"Continue from that result until part and void are separated:",
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
+       "vam-optimize --method cal --iterations 20 part.vdb -o cal.exr\n"
        "vam-optimize --method cal --init cal.exr --until 'ver=0,pw>=0.02' --iterations 40 part.vdb -o better.exr"},
       {"Quantised to the 16 grey levels of a 4-bit projector:",
-       "vam-optimize --bits 4 --dither 1 part.vdb -o coarse.exr"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --bits 4 --dither 1 -o coarse.exr"},
       {"Compensated for a beam 0.1 mm wide, and safe to interrupt:",
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
       {"Tolerant of errors of the axis and of the lamp:",
-       "vam-optimize --angles 90 --robust 'axis=0.5px,lamp=3%' --yield-printers 10 --report robust.json part.vdb -o "
-       "robust.exr"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 90 --robust "
+       "'axis=0.5px,lamp=3%' "
+       "--yield-printers 10 --report robust.json -o robust.exr"},
       {"A bound for any projections, and the regions of the part that determine it:",
-       "vam-optimize --angles 90 --certify proof.vdb --report proved.json part.vdb -o best.exr && vam-view proof.vdb "
-       "-o proof.png"},
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 90 --certify proof.vdb "
+       "--report proved.json -o best.exr\n"
+       "vam-view proof.vdb -o proof.png"},
       {"A part three times as tall as the image, in three turns:",
-       "printer='--set projector.rows=40 --set projector.axis_row=19.5 --set projector.pixel_mm=0.1 --set "
-       "projector.columns=240 --set projector.axis_column=119.5' && vam-slice --shape gyroid:diameter=8,height=11 "
-       "--voxel 0.25 $printer --any-height -o tall.vdb && vam-optimize --angles 60 --helix 5.2 $printer tall.vdb -o "
-       "helix.exr"},
+       "vam-slice --print-printer --set projector.rows=40 --set projector.pixel_mm=0.1 --set projector.columns=240 -o "
+       "low.toml\n"
+       "export VAM_PRINTER=low.toml\n"
+       "vam-slice --shape gyroid:diameter=8,height=11 --voxel 0.25 --any-height -o tall.vdb\n"
+       "vam-optimize --angles 60 --helix 5.2 tall.vdb -o helix.exr"},
       {"A part that sinks by 1 mm during the turn:",
        "seq 0 59 | awk 'BEGIN { print \"angle_deg,dx_mm,dy_mm,dz_mm,moves\" } { print 6 * $1 \",0,0,\" (-$1 / 59) "
-       "\",part\" }' >sinking.csv && vam-optimize --angles 60 --poses sinking.csv part.vdb -o sinking.exr"},
+       "\",part\" }' >sinking.csv\n"
+       "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 60 --poses sinking.csv -o "
+       "sinking.exr"},
       {"Graded stiffness: a bar whose dose rises from one grey image to the next, each met within 0.25:",
        "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
-       "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
-       "--grey-target --resin-response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o graded.exr"}};
+       "projector.telecentric=true -o ramp/\n"
+       "vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb\n"
+       "vam-optimize --grey-target --resin-response linear --band 0.25 --angles 120 --iterations 20 graded.vdb -o "
+       "graded.exr"}};
 }
 
 std::vector<std::string> notes() {

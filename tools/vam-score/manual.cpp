@@ -41,22 +41,26 @@ std::vector<std::string> description() {
 }
 
 std::vector<std::pair<std::string, std::string>> examples() {
-  return {
-      {"Score a simulated print:",
-       "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-optimize part.vdb | vam-dose --like part.vdb -o "
-       "dose.vdb && vam-score dose.vdb --target part.vdb"},
-      {"Reject a dose that will not print:", "vam-score dose.vdb --target part.vdb --require 'ver<=0.01,iou>=0.95'"},
-      {"Graded stiffness, met within 0.25 of the dose prescribed, where the void may have any dose up to 0.4:",
-       "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
-       "projector.telecentric=true -o ramp/ && vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb && vam-optimize "
-       "--grey-target --void below --dose-low 0.4 --band 0.25 --angles 120 --iterations 20 graded.vdb | vam-dose "
-       "--like "
-       "graded.vdb -o graded-dose.vdb && vam-score --grey-target --void below --dose-low 0.4 --band 0.25 "
-       "graded-dose.vdb "
-       "--target graded.vdb"},
-      {"Write the print as a mesh and as points coloured by dose:",
-       "vam-score dose.vdb --target part.vdb --mesh print.ply && vam-score dose.vdb --target part.vdb --mesh "
-       "points.ply --ply-as points"}};
+  return {{"Score a simulated print:",
+           "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+           "vam-optimize part.vdb | vam-dose --like part.vdb -o dose.vdb\n"
+           "vam-score dose.vdb --target part.vdb"},
+          {"Reject a dose that will not print:",
+           "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+           "vam-optimize part.vdb | vam-dose --like part.vdb | vam-score --target part.vdb --require "
+           "'ver<=0.01,iou>=0.95'"},
+          {"Graded stiffness, met within 0.25 of the dose prescribed, where the void may have any dose up to 0.4:",
+           "vam-project --pattern ramp --steps 6 --set projector.columns=40 --set projector.rows=40 --set "
+           "projector.telecentric=true -o ramp/\n"
+           "vam-slice ramp --voxel 0.2 --stretch-z 1 -o graded.vdb\n"
+           "vam-optimize --grey-target --void below --dose-low 0.4 --band 0.25 --angles 120 --iterations 20 graded.vdb "
+           "| vam-dose --like graded.vdb -o dose.vdb\n"
+           "vam-score --grey-target --void below --dose-low 0.4 --band 0.25 dose.vdb --target graded.vdb"},
+          {"Write the print as a mesh and as points coloured by dose:",
+           "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb\n"
+           "vam-optimize part.vdb | vam-dose --like part.vdb -o dose.vdb\n"
+           "vam-score dose.vdb --target part.vdb --mesh print.ply\n"
+           "vam-score dose.vdb --target part.vdb --mesh points.ply --ply-as points"}};
 }
 
 std::vector<std::string> notes() {

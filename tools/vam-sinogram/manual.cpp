@@ -19,13 +19,15 @@ cli::Manual manual() {
        "exponential Radon transform. With a filter the result is its exact inverse, so that beams attenuated by e^(-MU "
        "u) sum to the part. The values are those at the plane through the axis; --at-wall gives those at the entry "
        "into the resin, larger by e^(MU sqrt(R^2 - t^2))."},
-      {{"The Radon transform of a disc grid:",
-        "vam-slice --shape disc-grid --voxel 0.2 -o part.vdb && vam-sinogram part.vdb -o radon.exr"},
+      {{"The Radon transform of a disc grid:", "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram -o radon.exr"},
        {"Projections to print, through a pipe:",
-        "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample -o projector.exr"},
-       {"A smoother filter, 500 angles:", "vam-sinogram --filter hann --cutoff 0.5 --angles 500 part.vdb -o soft.exr"},
+        "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip | vam-resample -o "
+        "projector.exr"},
+       {"A smoother filter, 500 angles:",
+        "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter hann --cutoff 0.5 --angles 500 -o soft.exr"},
        {"For a resin with an absorption coefficient of 0.1 per mm:",
-        "vam-sinogram --filter ram-lak --negative clip --absorption 0.1 --at-wall part.vdb -o absorbing.exr"}},
+        "vam-slice --shape disc-grid --voxel 0.2 | vam-sinogram --filter ram-lak --negative clip --absorption 0.1 "
+        "--at-wall -o absorbing.exr"}},
       {"Accuracy: every voxel is a square of uniform density, and a bin is the exact area of its intersection with a "
        "strip one voxel wide, so that every row has the total mass of the slice. Back-projection in all tools is the "
        "exact transpose.",

@@ -32,17 +32,19 @@ cli::Manual manual() {
        "--export writes the values as NRRD for "
        "ParaView, 3D Slicer or numpy."},
       {{"Side view of a part, and a contact sheet of nine slices:",
-        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb && vam-view part.vdb --plane coronal -o side.png && vam-view "
-        "part.vdb --sheet 9 -o sheet.png"},
+        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
+        "vam-view part.vdb --plane coronal -o side.png\n"
+        "vam-view part.vdb --sheet 9 -o sheet.png"},
        {"Its filtered sinogram:",
-        "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-view sino.exr -o sino.png"},
+        "vam-slice --shape gyroid --voxel 0.2 | vam-sinogram --filter ram-lak | vam-view -o sino.png"},
        {"What a dose prints, in a section and in three dimensions:",
-        "vam-sinogram part.vdb --filter ram-lak -o sino.exr && vam-dose sino.exr --like part.vdb -o dose.vdb && "
-        "vam-view "
-        "dose.vdb --target part.vdb --cure-map -o cure.png && vam-view dose.vdb --target part.vdb --render -o "
-        "print.png"},
-       {"A section for a paper:", "vam-view part.vdb --title '' --image-size 320 -o part.pdf"},
-       {"Values for ParaView:", "vam-view part.vdb --export part.nrrd"}},
+        "vam-slice --shape gyroid --voxel 0.2 -o part.vdb\n"
+        "vam-sinogram part.vdb --filter ram-lak | vam-dose --like part.vdb -o dose.vdb\n"
+        "vam-view dose.vdb --target part.vdb --cure-map -o cure.png\n"
+        "vam-view dose.vdb --target part.vdb --render -o print.png"},
+       {"A section for a paper:",
+        "vam-slice --shape gyroid --voxel 0.2 | vam-view --title '' --image-size 320 -o part.pdf"},
+       {"Values for ParaView:", "vam-slice --shape gyroid --voxel 0.2 | vam-view --export part.nrrd"}},
       {"Memory: the volume as stored in its file and the images shown; stacks are read one image at a time.",
        "Pixels are enlarged by integer factors at 96 pixels per inch, so that each voxel is a square of the same size; "
        "reduced images are averaged after colour mapping.",
