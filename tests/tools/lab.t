@@ -1,5 +1,5 @@
 #!/bin/sh
-# scripts/lab: every command of vam-tutorial(7), in order, on the simulated bench; and what Control-C leaves.
+# scripts/lab: every command of vam-lab(7), in order, on the simulated bench; and what Control-C leaves.
 [ -w /dev/shm ] && TMPDIR=/dev/shm && export TMPDIR
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 lab=$VAM_SOURCE/scripts/lab
@@ -44,7 +44,7 @@ took=$(($(date +%s) - began))
 echo "# in $took s"
 holds 'in five minutes at most' "$took <= 300"
 is 'every section was run' "$(grep -c '^== ' err)" 8
-page=$VAM_SOURCE/man/vam-tutorial.7
+page=$VAM_SOURCE/man/vam-lab.7
 is 'and every command of the page was shown' "$(grep -c '^\$ ' err)" \
   "$(awk '/^\.Ed/{code = 0} code{++lines} /^\.Bd/{code = 1} END{print lines}' "$page")"
 is 'the print is done' "$(json lab/print/summary.json outcome)" 'done'

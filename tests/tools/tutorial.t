@@ -1,0 +1,25 @@
+# Every command of vam-tutorial(7) and vam(7), in order, in one shell and an empty folder each. They write .mkv, by vam-project.
+. "$VAM_SOURCE/tests/tools/testlib.sh"
+
+commands() {  # commands PAGE: all blocks but those of the theory
+  sed -e 's/^\\&//' -e 's/\\e/\\/g' "$VAM_SOURCE/man/$1.7" |
+    awk '/^\.Sh /{theory = /THEORY/} /^\.Ed/{code = 0} code && !theory{print} /^\.Bd/{code = 1}'
+}
+
+mkdir tutorial entry
+began=$(date +%s)
+commands vam-tutorial >tutorial.sh
+(cd tutorial && sh -e ../tutorial.sh) >out 2>err; status=$?
+is 'the tutorial' $status 0
+[ $status -eq 0 ] || tail -n 5 err | sed 's/^/# /'
+echo "# in $(($(date +%s) - began)) s"
+is 'without warnings but those that it explains' "$(grep -v 'climbing rays blur\|of the light is above or below' err)" ''
+holds 'its first print prints' "$(json tutorial/score.json pw) > 0"
+is 'its lens is where it was put' "$(grep -c '^119\.8' out)" 1
+
+box 6 6 4 >entry/part.off
+vam-slice --print-printer --set projector.pixel_mm=0.26 --set projector.columns=256 --set projector.rows=192 -o coarse.toml
+commands vam | sed 's/part\.stl/part.off/' >entry.sh
+ok 'the lines of the entry page, with another mesh' env VAM_PRINTER="$PWD/coarse.toml" sh -ec 'cd entry; . ../entry.sh'
+ok 'write a video' test -s entry/print.mkv
+done_testing
