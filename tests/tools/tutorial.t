@@ -1,4 +1,5 @@
-# Every command of vam-tutorial(7) and vam(7), in order, in one shell and an empty folder each. They write .mkv, by vam-project.
+# Every command of vam-tutorial(7), vam(7) and the tour of README.md, in order, in one shell and an empty folder each. They
+# write .mkv, by vam-project.
 . "$VAM_SOURCE/tests/tools/testlib.sh"
 
 commands() {  # commands PAGE: all blocks but those of the theory
@@ -22,4 +23,10 @@ vam-slice --print-printer --set projector.pixel_mm=0.26 --set projector.columns=
 commands vam | sed 's/part\.stl/part.off/' >entry.sh
 ok 'the lines of the entry page, with another mesh' env VAM_PRINTER="$PWD/coarse.toml" sh -ec 'cd entry; . ../entry.sh'
 ok 'write a video' test -s entry/print.mkv
+
+mkdir tour
+awk '/^```$/{code = 0} code{print} /^```sh$/{code = 1}' "$VAM_SOURCE/README.md" | sed 's/--voxel 0.13/--voxel 0.2/' >tour.sh
+ok 'the tour of README.md' sh -ec 'cd tour; . ../tour.sh'
+is 'it writes what it names' "$(ls tour | tr '\n' ' ')" \
+  'dose.png dose.vdb part.vdb print.mkv print.png projector.exr report.html '
 done_testing
