@@ -10,7 +10,7 @@
 #include "model/coarser.hpp"
 #include "optimize/run/volume.hpp"
 #include "vam-optimize/coarser.hpp"
-#include "vam-optimize/countdown.hpp"
+#include "vam-optimize/deadline.hpp"
 #include "vam-optimize/task.hpp"
 
 namespace vam::optimize_tool {

@@ -12,7 +12,7 @@
 #include "optimize/methods/automatic.hpp"
 #include "optimize/run/slice_figures.hpp"
 #include "plot/save.hpp"
-#include "vam-optimize/countdown.hpp"
+#include "vam-optimize/deadline.hpp"
 #include "vam-optimize/options.hpp"
 
 namespace vam::optimize_tool {

@@ -87,7 +87,7 @@ double within_percent(std::span<const float> distances_mm, double tolerance_mm) 
 std::array<double, 3> axis_shrinkage_percent(std::span<const solid::SurfaceSample> design,
                                              std::span<const float> distances_mm) {
   constexpr std::size_t unknowns = 6;  // growth and shift along each axis
-  constexpr int rounds = 30;           // of reweighted least squares, to the least sum of absolute misses
+  constexpr int rounds = 15;           // of reweighted least squares, to the least sum of absolute misses
   constexpr double least_mm = 1e-5;    // what a miss is divided by at least
   Vector3 middle{};
   for (const auto& s : design) middle = middle + (1.0 / static_cast<double>(design.size())) * s.point;

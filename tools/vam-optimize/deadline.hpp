@@ -6,7 +6,7 @@
 
 namespace vam::optimize_tool {
 
-/// Begins now; each reading is shown on a terminal, with the time left.
+/// Begins now.
 [[nodiscard]] optimize::Deadline deadline_of(const Options& options);
 
 /// So much of the time that is left, and little to be done after it.
