@@ -53,7 +53,7 @@ WobbleRecord read_wobble(const std::string& path, const model::Printer& printer,
   WobbleRecord wobble;
   try {
     wobble = {record.value("wobble_mm"), record.value("wobble_phase")};
-  } catch (const Json::exception&) {
+  } catch (const Error&) {
     throw refuse("lacks wobble_mm and wobble_phase; give a record of axis, or of edges at several stage angles");
   }
   if (!(wobble.radius_mm >= 0)) throw refuse("has a wobble of " + format_number(wobble.radius_mm) + " mm");
