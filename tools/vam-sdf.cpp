@@ -59,11 +59,13 @@ cli::Manual manual() {
         "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
         "vam-slice --shape box:x=6.2,y=6.2,z=6.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --require 'rms<=0.2' --histogram sdf.csv"},
-       {"Measure the flatness of the upper face (the box is larger than the face) and the thickness of the part, with "
-        "uncertainties:",
-        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,5.9,2,2,6.1 --region "
-        "body=wall:-2,-2,-1,2,2,7 --require 'top.flatness<=0.1,body.thickness>=6' --report regions.json"},
+       {"Measure the flatness of the upper face of a plate and its thickness, with uncertainties:",
+        "vam-slice --shape box:x=6,y=6,z=2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --stretch-z 1 -o print.vdb\n"
+        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,0.9,2,2,1.3 --region "
+        "body=wall:-2,-2,-2,2,2,2 --require 'top.flatness<=0.1,body.thickness>=2' --report regions.json"},
        {"Compare repeated prints:",
+        "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
         "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --stretch-z 1 -o print.vdb; vam-sdf print.vdb "
         "design.vdb --isovalue 0.5 --report run$n.json; done\nvam-sdf trend run1.json run2.json run3.json run4.json "
         "--plot trend.png"},

@@ -82,12 +82,26 @@ void detach(int socket) {
 volatile std::sig_atomic_t bereft = 0;  // NOLINT: set by a signal, of which there is one in the process
 
 // The thread that the guardian was forked from has ended. Its socket is closed only when the last thread has: on a busy
-// machine those of libraries, which have no priority, take a tenth of a second to end.
-void hear_of_the_end() {
+// machine those of libraries, which have no priority, take a tenth of a second to end. The signal is heard only while
+// the guardian waits (the mask that is returned): it must not interrupt a device's write.
+sigset_t hear_of_the_end() {
   struct sigaction action {};
   action.sa_handler = [](int) { bereft = 1; };
   sigaction(SIGUSR1, &action, nullptr);
+  sigset_t end;
+  sigemptyset(&end);
+  sigaddset(&end, SIGUSR1);
+  sigset_t waiting;
+  sigprocmask(SIG_BLOCK, &end, &waiting);
+  sigdelset(&waiting, SIGUSR1);
   prctl(PR_SET_PDEATHSIG, SIGUSR1);
+  return waiting;
+}
+
+int wait_for(pollfd& readable, double seconds, const sigset_t& waiting) {  // < 0: for ever
+  const auto whole = static_cast<time_t>(std::max(0.0, seconds));
+  const timespec limit{whole, static_cast<long>((std::max(0.0, seconds) - static_cast<double>(whole)) * 1e9)};
+  return ppoll(&readable, 1, seconds < 0 ? nullptr : &limit, &waiting);
 }
 
 std::string carry_all_out(const std::map<int, Action>& actions) {
@@ -109,19 +123,19 @@ std::string carry_all_out(const std::map<int, Action>& actions) {
 
 void guard(int socket, int parent, double stall_s) {
   detach(socket);
-  hear_of_the_end();
+  const sigset_t waiting = hear_of_the_end();
   hurry(Urgency::guardian);
   std::map<int, Action> actions;
   double last_beat_s = real_clock().now_s();
   const char* reason = "ended unexpectedly";
   bool quietly = false;
   for (;;) {
-    int wait_ms = bereft != 0 ? 0 : -1;  // then what it still asked for
+    double wait_s = bereft != 0 ? 0 : -1;  // then what it still asked for
     if (bereft == 0 && !actions.empty()) {
-      wait_ms = static_cast<int>(std::max(0.0, last_beat_s + stall_s - real_clock().now_s()) * 1000) + 1;
+      wait_s = std::max(0.0, last_beat_s + stall_s - real_clock().now_s()) + 0.001;
     }
     pollfd readable{socket, POLLIN, 0};
-    const int ready = poll(&readable, 1, wait_ms);
+    const int ready = wait_for(readable, wait_s, waiting);
     if (bereft != 0 && ready <= 0) break;
     if (ready < 0 && errno == EINTR) continue;
     if (ready == 0) {
