@@ -206,7 +206,11 @@ void Canvas::hatch(const std::vector<SpotPair>& boxes) {
   fill(low, high, paint::light_grey);
   std::vector<SpotPair> strokes;
   const double rise = high.y - low.y;
-  for (double x = low.x - rise; x < high.x; x += pitch) strokes.push_back({{x, high.y}, {x + rise, low.y}});
+  const int count = ceil_int((high.x - low.x + rise) / pitch);
+  for (int i = 0; i < count; ++i) {
+    const double x = low.x - rise + pitch * i;
+    strokes.push_back({{x, high.y}, {x + rise, low.y}});
+  }
   cairo().cairo_set_antialias(state_->context.get(), CAIRO_ANTIALIAS_DEFAULT);
   lines(strokes, paint::black, 2);
   cairo().cairo_restore(state_->context.get());

@@ -100,7 +100,7 @@ std::vector<GreyImage> all_levels(const CorrectOptions& options, const Job& job,
   GreyImage slice(job.part.columns().width(), job.part.columns().height(), job.print.printer.projector.bits);
   Progress progress("correcting", job.slices);
   const auto times = time_stamps(job);
-  std::vector<GreyImage> batch(2 * threads());  // encoded together
+  std::vector<GreyImage> batch(product(2, threads()));  // encoded together
   for (int end = job.slices; end > 0;) {
     const int count = std::min(end, count_of(batch));
     for (int i = 0; i < count; ++i) {

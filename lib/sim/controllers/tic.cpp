@@ -68,7 +68,7 @@ class SimTic final : public device::UsbLink {
     if (request != 0xA1) throw Error{Fault::protocol, name_ + ": stalled request " + std::to_string(request)};
     refuse_if_spoilt();
     heard_s_ = clock_.now_s();
-    const std::string answer = packed(variable(index), length);
+    std::string answer = packed(variable(index), length);
     if (spoils("garbage")) return std::string(answer.size(), '\x5A');
     if (spoils("truncated")) {  // as the link to a real one says
       throw Error{Fault::protocol,

@@ -117,7 +117,9 @@ Candidate best_shift(const std::vector<Vector3d>& print, const Matrix3d& rotatio
   Candidate best;
   best.pose.rotation = rotation;
   for (int n = 0; n < steps[0] * steps[1] * steps[2]; ++n) {
-    const Vector3d shift = first + pitch * Vector3d(n % steps[0], n / steps[0] % steps[1], n / steps[0] / steps[1]);
+    const int row = n / steps[0];
+    const int layer = row / steps[1];
+    const Vector3d shift = first + pitch * Vector3d(n % steps[0], row % steps[1], layer);
     float sum = 0;
     for (const Vector3d& p : some) sum += distance(p + shift);
     const float mean = sum / static_cast<float>(some.size());
