@@ -226,9 +226,10 @@ void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<floa
   }
   std::normal_distribution<double> normal(0, 1);
   for (auto& view : views) {
+    const double light = dirt.flicker > 0 ? std::max(0.1, 1 + dirt.flicker * normal(random)) : 1.0;
     for (std::size_t i = 0; i < view.size(); ++i) {
       const double noise = dirt.noise > 0 ? dirt.noise * peak * normal(random) : 0.0;
-      view[i] = static_cast<float>(gain[i] * static_cast<double>(view[i]) + plus[i] + noise);
+      view[i] = static_cast<float>(light * gain[i] * static_cast<double>(view[i]) + plus[i] + noise);
     }
   }
 }

@@ -51,10 +51,11 @@ struct ViewBench {
 std::vector<std::vector<float>> bench_views(const ViewBench& bench, const std::vector<Body>& bodies,
                                             const std::vector<Bubble>& bubbles, int count);
 
-/// Shares of the brightest pixel, added to every view.
+/// Shares of the brightest pixel, added to every view but for flicker.
 struct Dirt {
   double noise = 0;       // deviation
   double background = 0;  // everywhere
+  double flicker = 0;     // deviation of each view's light, of the view itself
   int specks = 0;         // bright or dark spots of 1 to 3 pixels that stay where they are
 };
 void soil(const ViewBench& bench, const Dirt& dirt, std::vector<std::vector<float>>& views);

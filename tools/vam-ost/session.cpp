@@ -8,6 +8,7 @@
 #include "base/log.hpp"
 #include "base/text.hpp"
 #include "io/image/image_file.hpp"
+#include "metrology/ost/flicker.hpp"
 #include "optics/chief_ray.hpp"
 #include "printer.hpp"
 
@@ -114,6 +115,10 @@ void Session::say_dirt() const {
   };
   add(dirt_.speck_percent, "specks");
   if (!dirt_.bubbles_exceed_limit) add(dirt_.bubble_percent, "bubbles");
+  if (dirt_.flicker_percent >= metrology::removed_flicker_percent) {
+    note("views divided by their relative intensities, which vary by " + format_number(dirt_.flicker_percent, 2) +
+         " % (RMS)");
+  }
   if (!words.empty()) note("rays replaced by their reverse, half a turn later: " + words);
   if (dirt_.bubbles_exceed_limit) {
     note("views are inconsistent in " + format_number(dirt_.bubble_percent, 2) +

@@ -16,6 +16,15 @@ std::vector<Image> level_views(std::span<const CameraView> views, const AxisPose
   return level;
 }
 
+void make_steady(std::vector<Image>& level, double background, std::span<const double> intensity) {
+  if (background == 0 && intensity.empty()) return;
+  const auto ground = static_cast<float>(background);
+  parallel_for(count_of(level), [&](int i) {
+    const float factor = intensity.empty() ? 1.0F : static_cast<float>(1 / intensity[i]);
+    for (float& v : level[i].values) v = (v - ground) * factor;
+  });
+}
+
 void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion, double axis_column) {
   struct ColumnTaps {
     int first;

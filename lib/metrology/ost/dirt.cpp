@@ -235,7 +235,8 @@ double remove_bubbles(std::vector<Image>& sinograms, std::span<const int> rows) 
 }
 
 Json to_json(const Dirt& dirt) {
-  Json json{{"speck_percent", dirt.speck_percent},
+  Json json{{"flicker_percent", dirt.flicker_percent},
+            {"speck_percent", dirt.speck_percent},
             {"bubble_percent", dirt.bubble_percent},
             {"bubbles_exceed_limit", dirt.bubbles_exceed_limit}};
   json["background"] = dirt.has_background ? Json(dirt.background) : Json();

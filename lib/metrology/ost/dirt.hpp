@@ -1,6 +1,6 @@
-// What a real bench adds to the views of a print: an even background, specks that stay where they are, bubbles that
-// pass. All are distinguished from the print by consistency over the angles: a line is seen twice a turn, from either
-// end.
+// What a real bench adds to the views of a print: an even background, light that flickers, specks that stay where they
+// are, bubbles that pass. Specks and bubbles are distinguished from the print by consistency over the angles: a line is
+// seen twice a turn, from either end.
 #pragma once
 
 #include <span>
@@ -15,6 +15,7 @@ namespace vam::metrology {
 struct Dirt {
   double background = 0;        // even, in view units
   bool has_background = false;  // false: no part of the image is empty, nothing was subtracted
+  double flicker_percent = 0;   // RMS of the views' intensities; removed where it exceeds 0.5
   double speck_percent = 0;     // of the rays that the volume needs, seen through specks and taken from the other end
   double bubble_percent = 0;    // of them, brighter than the same line from the other end and taken from there
   bool bubbles_exceed_limit = false;  // so many rays differ that it is no dirt, and none was replaced for it

@@ -96,4 +96,25 @@ Image LevelRows::of(const Image& image, const AxisPose& axis) const {
   return out;
 }
 
+std::vector<double> print_heights(const Image& mean_view, const RowOfHeight& map, const Eye& eye,
+                                  const model::Grid& grid, std::size_t most) {
+  constexpr double dim = 0.2;  // of the brightest row: nothing to see there
+  std::vector<double> bright(mean_view.height);
+  for (int y = 0; y < mean_view.height; ++y) {
+    const auto [low, high] = std::minmax_element(mean_view.row(y), mean_view.row(y) + mean_view.width);
+    bright[y] = static_cast<double>(*high - *low);
+  }
+  const double least = dim * *std::max_element(bright.begin(), bright.end());
+  const int middle = std::clamp(round_int(eye.camera.axis_column), 0, eye.camera.columns - 1);
+  std::vector<double> heights;
+  for (int k = 0; k < grid.nz; ++k) {
+    const int row = round_int(map.row(middle, grid.z_mm(k)));
+    if (row >= 2 && row + 2 < mean_view.height && bright[row] >= least) heights.push_back(grid.z_mm(k));
+  }
+  std::sort(heights.begin(), heights.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  heights.resize(std::min(heights.size(), most));
+  std::sort(heights.begin(), heights.end());
+  return heights;
+}
+
 }  // namespace vam::metrology

@@ -11,6 +11,7 @@
 #include "base/per_slice.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "metrology/ost/flicker.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
 #include "metrology/ost/private/mlem.hpp"
@@ -38,13 +39,6 @@ void rescale_columns(const Image& in, const optics::Detector& camera, const opti
     const auto f = static_cast<float>(at - low);
     for (int a = 0; a < in.height; ++a) out(c, a) = (1 - f) * in(low, a) + f * in(low + 1, a);
   }
-}
-
-void subtract(std::vector<Image>& images, double level) {
-  const auto value = static_cast<float>(level);
-  parallel_for(count_of(images), [&](int i) {
-    for (float& v : images[i].values) v -= value;
-  });
 }
 
 void scale(std::vector<Slab>& slabs, float factor) {
@@ -183,7 +177,12 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   const tomo::Filter filter(s.detector.columns, {.window = tomo::window_from_name(s.options.window),
                                                  .alpha_per_px = s.absorption_per_mm * s.grid.voxel_mm});
   Dirt dirt;
-  if (s.options.clean) dirt = even_background(mean_view(views));
+  Flicker light;
+  if (s.options.clean) {
+    dirt = even_background(mean_view(views));
+    light = s.flicker(views, angles_deg, dirt.background);
+    dirt.flicker_percent = light.percent;
+  }
   model::Volume volume{s.grid, std::vector<float>(s.grid.size())};
   Progress progress("reconstructing", s.grid.nz);
   for (int first = 0; first < s.grid.nz; first += slices_a_pass) {
@@ -191,10 +190,10 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     const auto heights_mm = s.heights_mm(first - beyond, count + 2 * beyond);
     const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
     auto level = level_views(views, s.axis, rows);
+    make_steady(level, dirt.background, light.intensity);
     undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
     auto seen = camera_sinograms(level, turn);
     level.clear();
-    if (dirt.has_background) subtract(seen, dirt.background);
     auto sinograms = s.virtual_sinograms(seen, heights_mm);
     seen.clear();
     if (s.options.clean) s.clean(sinograms, heights_mm, static_cast<double>(count) / s.grid.nz, dirt);

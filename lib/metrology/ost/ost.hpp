@@ -21,7 +21,7 @@ struct OstOptions {
   double voxel_mm = 0;             // 0: the binned camera pixel
   std::string window = "cosine";   // of the ramp filter: struts 3 voxels apart keep a contrast of 29 %, with hann 14 %
   bool refraction = true;          // false: columns taken as parallel rays (for comparison)
-  bool clean = true;               // take out background, specks and bubbles
+  bool clean = true;               // take out background, flicker, specks and bubbles
   bool non_negative = true;        // negative densities become 0
   int mlem_iterations = 0;         // iterations of MLEM [SV82] after FBP, for noisy views
   std::optional<double> axis_row;  // binned row level with the lens, z = 0; the middle one by default
@@ -49,7 +49,7 @@ class OstReconstructor {
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
   /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.
-  /// An even background, specks and bubbles are taken out; `found` says what.
+  /// An even background, flicker, specks and bubbles are taken out; `found` says what.
   [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views, Dirt* found = nullptr) const;
 
   /// Standard deviation of each voxel of that volume by the noise of the views, their angles counted: the RMS of two

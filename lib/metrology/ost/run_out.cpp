@@ -9,6 +9,7 @@
 #include "base/constants.hpp"
 #include "base/index.hpp"
 #include "base/json.hpp"
+#include "metrology/ost/flicker.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/angle_grid.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
@@ -19,28 +20,6 @@
 namespace vam::metrology {
 
 namespace {
-
-// Heights of the grid that see the print, nearest to the lens' own first: there a line is the same from either end.
-std::vector<double> level_heights(const Image& mean, const RowOfHeight& map, const Eye& eye, const model::Grid& grid) {
-  constexpr std::size_t most = 32;
-  constexpr double dim = 0.2;  // of the brightest row: nothing to see there
-  std::vector<double> bright(mean.height);
-  for (int y = 0; y < mean.height; ++y) {
-    const auto [low, high] = std::minmax_element(mean.row(y), mean.row(y) + mean.width);
-    bright[y] = static_cast<double>(*high - *low);
-  }
-  const double least = dim * *std::max_element(bright.begin(), bright.end());
-  const int middle = std::clamp(round_int(eye.camera.axis_column), 0, eye.camera.columns - 1);
-  std::vector<double> heights;
-  for (int k = 0; k < grid.nz; ++k) {
-    const int row = round_int(map.row(middle, grid.z_mm(k)));
-    if (row >= 2 && row + 2 < mean.height && bright[row] >= least) heights.push_back(grid.z_mm(k));
-  }
-  std::sort(heights.begin(), heights.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  heights.resize(std::min(heights.size(), most));
-  std::sort(heights.begin(), heights.end());
-  return heights;
-}
 
 std::vector<double> angles_of(std::span<const CameraView> views) {
   std::vector<double> angles_deg;
@@ -73,10 +52,14 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   const std::vector<double> angles_deg = angles_of(views);
   const AngleGrid turn(angles_deg, 0);
   const RowOfHeight map(s.eye);
-  const auto heights_mm = level_heights(mean_view(views), map, s.eye, s.grid);
+  const Image mean = mean_view(views);
+  constexpr std::size_t most_heights = 32;
+  const auto heights_mm = print_heights(mean, map, s.eye, s.grid, most_heights);
   if (heights_mm.empty()) return found;
   const LevelRows rows(map, s.eye.camera.columns, s.eye.rows, heights_mm);
   auto level = level_views(views, s.axis, rows);
+  const double background = even_background(mean).background;
+  make_steady(level, background, s.flicker(views, angles_deg, background).intensity);
   undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
   const double unit_mm = s.eye.camera.pixel_mm;
   const PairBasis basis{{std::vector<ColumnMotion>(views.size(), {1, 0}), s.motion(angles_deg, unit_mm, 0),

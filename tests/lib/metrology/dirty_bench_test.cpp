@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/stats/median.hpp"
 #include "lib/metrology/bench_printer.hpp"
 #include "metrology/ost/bodies.hpp"
 #include "metrology/ost/ost.hpp"
@@ -143,7 +144,7 @@ TEST_CASE("heights behind the window of a bath") {
   CHECK(f.rms <= 10 * micrometres);
 }
 
-TEST_CASE("noise, background, specks and bubbles") {
+TEST_CASE("noise, background, flicker, specks and bubbles") {
   const auto bodies = post();
   const oracle::ViewBench bench;
   const auto clean = oracle::bench_views(bench, bodies, {}, 180);
@@ -161,12 +162,61 @@ TEST_CASE("noise, background, specks and bubbles") {
   judge("background of 5 %", soiled({.background = 0.05}), 0.014);
   judge("background of 20 %", soiled({.background = 0.2}), 0.014);
   judge("25 specks", soiled({.specks = 25}), 0.05);
+  judge("light that flickers by 20 %", soiled({.flicker = 0.2}), 0.004);
+  const auto dimmed = [&](double light, int first, int count) {
+    auto views = clean;
+    for (int i = first; i < first + count; ++i) {
+      for (float& v : views[i]) v *= static_cast<float>(light);
+    }
+    return reconstructed(bench, views_of(bench, views), bodies);
+  };
+  judge("a quarter of a turn at 60 % of the light", dimmed(0.6, 20, 45), 0.004);
+  judge("three views at 20 %", dimmed(0.2, 77, 3), 0.005);
+  judge("noise, background and flicker of 5 %", soiled({.noise = 0.05, .background = 0.05, .flicker = 0.05}), 0.037);
   // Where a line passes one bubble from either end neither is known, and a streak of it stays: 0.02 to 0.09 mm in five
   // draws, 1 mm where nothing is removed.
   for (const unsigned draw : {1U, 7U}) {
     const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, draw), 180);
     judge("15 bubbles", reconstructed(bench, views_of(bench, bubbly), bodies), 0.1);
   }
+}
+
+TEST_CASE("flicker is measured; steady light, bubbles and a print that leaves the image are none") {
+  const auto bodies = post();
+  oracle::ViewBench bench;
+  bench.columns = 120;
+  bench.rows = 76;
+  bench.pixel_mm = 0.2;
+  bench.axis_column = 59.5;
+  bench.axis_row = 37.5;
+  const auto measured = [&](const std::vector<std::vector<float>>& pixels) {
+    const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
+                               {.axis_row = bench.axis_row});
+    Dirt dirt;
+    (void)rig.reconstruct(views_of(bench, pixels), &dirt);
+    return dirt.flicker_percent;
+  };
+  const auto flickering = [](std::vector<std::vector<float>> pixels, double strength) {
+    std::vector<double> light;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      light.push_back(1 + strength * std::sin(0.7 * static_cast<double>(i * i)) + (i < 45 ? 0.2 : 0));
+      for (float& v : pixels[i]) v *= static_cast<float>(light.back());
+    }
+    const double usual = stats::median(light);
+    double squares = 0;
+    for (const double value : light) squares += std::pow(value / usual - 1, 2);
+    return std::pair(std::move(pixels), 100 * std::sqrt(squares / static_cast<double>(light.size())));
+  };
+  const auto steady = oracle::bench_views(bench, bodies, {}, 180);
+  CHECK(measured(steady) < 0.2);  // of rays that climb
+  CHECK(measured(oracle::bench_views(bench, bodies, oracle::bubbles(6, 8, 3), 180)) < 0.4);
+  for (const double strength : {0.02, 0.1, 0.4}) {
+    const auto [pixels, percent] = flickering(steady, strength);
+    CHECK(measured(pixels) == doctest::Approx(percent).epsilon(0.03));
+  }
+  bench.columns = 40;  // 8 mm of the 12 that the print is wide
+  bench.axis_column = 19.5;
+  CHECK(measured(oracle::bench_views(bench, bodies, {}, 180)) == 0);
 }
 
 TEST_CASE("scattered light that the resin absorbs is restored when its absorption is known") {

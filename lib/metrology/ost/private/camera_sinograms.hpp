@@ -14,6 +14,10 @@ namespace vam::metrology {
 [[nodiscard]] std::vector<Image> level_views(std::span<const CameraView> views, const AxisPose& axis,
                                              const LevelRows& rows);
 
+/// Takes an even background out of each view, then divides what is left by its relative intensity; an empty span means
+/// steady light.
+void make_steady(std::vector<Image>& level, double background, std::span<const double> intensity);
+
 /// How the vial's place moves the columns of one view: what is at column x for a vial in its place is seen at
 /// x + shift + stretch (x - axis column).
 struct ColumnMotion {

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "metrology/ost/views.hpp"
+#include "model/grid.hpp"
 #include "optics/resample.hpp"
 
 namespace vam::metrology {
@@ -37,6 +39,11 @@ class RowOfHeight {
   Eye eye_;
   std::vector<ColumnHeights> columns_;
 };
+
+/// At most so many heights of the grid that see the print, in order, those nearest to the lens' own: there a line is
+/// the same from either end.
+[[nodiscard]] std::vector<double> print_heights(const Image& mean_view, const RowOfHeight& map, const Eye& eye,
+                                                const model::Grid& grid, std::size_t most);
 
 /// Share of its height that a ray of offset x_v gains per mm along the light; 0 where rays stay level.
 [[nodiscard]] double climb_rate_per_mm(const Eye& eye, double x_v_mm);

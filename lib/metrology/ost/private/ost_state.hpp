@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "metrology/ost/flicker.hpp"
 #include "metrology/ost/ost.hpp"
 #include "metrology/ost/private/back_projection.hpp"
 #include "metrology/ost/private/camera_sinograms.hpp"
@@ -39,6 +40,10 @@ struct OstReconstructor::State {
   [[nodiscard]] std::vector<double> heights_mm(int first, int count) const;
   [[nodiscard]] std::vector<Image> virtual_sinograms(std::span<const Image> sinograms,
                                                      std::span<const double> heights_mm) const;
+  /// The light of the views over that of the median view. Not determined in absorbing resin, without refraction, and
+  /// where the print leaves the image.
+  [[nodiscard]] Flicker flicker(std::span<const CameraView> views, std::span<const double> angles_deg,
+                                double background) const;
   /// What a run-out of (x, y) mm in the frame of the part does to the columns of views at these stage angles.
   [[nodiscard]] std::vector<ColumnMotion> motion(std::span<const double> angles_deg, double x_mm, double y_mm) const;
   [[nodiscard]] ClimbingRays rays(int angles) const;
