@@ -34,12 +34,12 @@ using optimize_tool::Scene;
 /// pass.
 void require_memory_for(const Scene& scene, const optimize::VolumeTask& task, const light::Operator& light,
                         const std::string& subject) {
-  const bool tolerant = task.scenarios != nullptr;
+  const bool robust = task.scenarios != nullptr;
   const bool whole = optimize::takes_whole(task, light);
   const int count = whole ? scene.grid.nz : std::min(scene.grid.nz, slices_per_pass);
   const int slices = (count + lanes - 1) / lanes * lanes;
   const double arrays = 3.0 * static_cast<double>(scene.grid.slice_size()) +
-                        (tolerant ? 6.0 : 3.0) * light.sinogram().width * light.sinogram().height;
+                        (robust ? 6.0 : 3.0) * light.sinogram().width * light.sinogram().height;
   const double bytes = sizeof(float) * slices * arrays;
   const std::string what = subject + ": " + model::size_text(scene.grid);
   if (whole) return warn_of_scratch_files(bytes, what);

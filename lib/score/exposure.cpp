@@ -13,8 +13,6 @@ namespace vam::score {
 
 namespace {
 
-constexpr double mm_per_cm = 10;
-
 // Turns of this dose until the critical dose, and their time; null when no turn adds anything.
 void add_exposure(Json& figures, const std::string& of, double dose, const model::Printer& printer) {
   const double turns = std::ceil(*printer.resin.critical_dose_mj_cm3 / dose);
@@ -25,13 +23,6 @@ void add_exposure(Json& figures, const std::string& of, double dose, const model
 }
 
 }  // namespace
-
-std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer) {
-  const double mu_per_cm = printer.resin.absorption_per_mm * mm_per_cm;
-  if (!printer.resin.critical_dose_mj_cm3 || !(mu_per_cm > 0)) return std::nullopt;
-  const double omega_rad_s = printer.stage.speed_deg_s * rad_per_deg;
-  return mu_per_cm / omega_rad_s * printer.projector.max_intensity_mw_cm2;
-}
 
 void TurnDoses::add(const Image& dose, const Image& target) {
   if (target.size() != 0 && target.size() != dose.size()) {

@@ -12,10 +12,6 @@
 
 namespace vam::score {
 
-/// Dose in mJ/cm3 of one turn in full light from everywhere, per radian: (mu / Omega) I, mu in 1/cm, I in mW/cm2, Omega
-/// in rad/s. Empty unless the resin has a critical dose and absorbs: then doses stay relative.
-[[nodiscard]] std::optional<double> dose_per_radian_mj_cm3(const model::Printer& printer);
-
 /// Doses of one turn, gathered slice by slice: of everything, and of the voxels that are wholly inside the part.
 class TurnDoses {
  public:

@@ -9,7 +9,7 @@
 #include "base/json_fwd.hpp"
 #include "cli/app.hpp"
 #include "cli/common.hpp"
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 #include "resin/response.hpp"
 
 namespace vam::curethrough {

@@ -2,7 +2,7 @@
 
 #include "base/constants.hpp"
 #include "base/error.hpp"
-#include "score/exposure.hpp"
+#include "resin/absolute_dose.hpp"
 
 namespace vam::dose_tool {
 
@@ -80,7 +80,7 @@ void declare(cli::App& app, Options& options) {
 }
 
 void settle(Options& options, const model::Printer& printer) {
-  if (options.exposure_plan && !score::dose_per_radian_mj_cm3(printer)) {
+  if (options.exposure_plan && !resin::dose_per_radian_mj_cm3(printer)) {
     throw Error{Fault::usage,
                 "--exposure-plan: requires resin.critical_dose_mj_cm3 and resin.absorption_per_mm; without them doses "
                 "are relative"};

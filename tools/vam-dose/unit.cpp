@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "facts.hpp"
 #include "optics/projector_frames.hpp"
+#include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 #include "vam-dose/sink.hpp"
 
@@ -34,7 +35,7 @@ score::ExposurePlan planned(const model::DoseMetrics& doses, double scale, const
 
 Unit unit_of(const Exposed& exposed, const Options& options, const model::Printer& printer,
              const model::StackInfo& light) {
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   const double full = options.full_scale ? 1.0 : exposed.light.peak;
   Unit unit{per_radian.has_value(), per_radian && full > 0 ? *per_radian / full : 1.0, exposed.shown_turns, {}};
   if (options.exposure_plan) unit.plan = planned(exposed.metrics, unit.turn, printer, light, options);

@@ -1,6 +1,7 @@
 #include "vam-optimize/exposure.hpp"
 
 #include "optics/projector_frames.hpp"
+#include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 
 namespace vam::optimize_tool {
@@ -8,7 +9,7 @@ namespace vam::optimize_tool {
 std::optional<score::ExposurePlan> exposure_of(const model::DoseMetrics& doses, double peak,
                                                const model::Printer& printer, const model::StackInfo& info,
                                                const Options& options) {
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   const double full_scale = options.full_scale.value_or(peak);
   if (!per_radian || !model::repeat(info.poses)) return std::nullopt;
   if (!(full_scale > 0) || !(score::window_middle(doses) > 0)) return std::nullopt;

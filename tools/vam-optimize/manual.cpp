@@ -131,7 +131,7 @@ std::vector<std::pair<std::string, std::string>> examples() {
       {"Compensated for a beam 0.1 mm wide, and safe to interrupt:",
        "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 -o part.vdb\n"
        "vam-optimize --set resin.psf_mm=0.1 --checkpoint part.state part.vdb -o sharp.exr"},
-      {"Tolerant of errors of the axis and of the lamp:",
+      {"Robust to errors of the axis and of the lamp:",
        "vam-slice --shape gyroid:diameter=7,height=5 --voxel 0.25 | vam-optimize --angles 90 --robust "
        "'axis=0.5px,lamp=3%' "
        "--yield-printers 10 --report robust.json -o robust.exr"},

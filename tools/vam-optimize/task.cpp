@@ -7,7 +7,7 @@
 #include "io/settings/printer_file.hpp"
 #include "io/vdb/covered.hpp"
 #include "optimize/target/void_rule.hpp"
-#include "score/exposure.hpp"
+#include "resin/absolute_dose.hpp"
 #include "vam-optimize/front.hpp"
 
 namespace vam::optimize_tool {
@@ -87,7 +87,7 @@ optimize::IntensityLimit limit(const Scene& scene, const Options& options) {
     throw Error{Fault::usage,
                 "--turns: the poses do not return to the first one, so the frames are shown once; omit it"};
   }
-  const auto per_radian = score::dose_per_radian_mj_cm3(scene.printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(scene.printer);
   if (!per_radian) {
     throw Error{Fault::usage,
                 "--turns: the duration is determined by the resin; set resin.critical_dose_mj_cm3 and "
@@ -116,7 +116,7 @@ optimize::VolumeTask make_task(const Scene& scene, const Inputs& in, const Optio
     optimize::MethodOptions how = options.how;
     how.max_intensity = max_intensity;
     const optimize::MethodEntry& method = optimize::method_entry(options.method);
-    return (options.printer_tolerances ? method.make_tolerant : method.make)(how);
+    return (options.printer_tolerances ? method.make_robust : method.make)(how);
   };
   task.around = [&](std::span<const Slab> inserts) { return make_light(scene, options, inserts); };
   task.certify = options.certify.empty() ? 0 : optimize::certify_iterations;

@@ -15,6 +15,7 @@
 #include "model/magnification.hpp"
 #include "model/outside.hpp"
 #include "optics/writable_radius.hpp"
+#include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 #include "solid/voxel/part.hpp"
 #include "solid/voxel/size_doubt.hpp"
@@ -183,7 +184,7 @@ Plan plan(const Options& options, const model::Printer& printer) {
   made.coarseness = coarseness_for(made.grid);
   made.preview = preview_of(part, printer, made.coarseness);
   const optimize::VolumeOutcome& outcome = made.preview->outcome;
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   made.resin_known = per_radian.has_value();
   if (per_radian && outcome.peak_intensity > 0 && score::window_middle(outcome.metrics) > 0) {
     made.exposure = score::plan_exposure(outcome.metrics, *per_radian / outcome.peak_intensity, printer, 1,

@@ -13,7 +13,7 @@
 #include "device/os/clock.hpp"
 #include "device/port/lines.hpp"
 #include "io/exr/stack.hpp"
-#include "score/exposure.hpp"
+#include "resin/absolute_dose.hpp"
 #include "vam-project/match.hpp"
 #include "vam-project/print.hpp"
 #include "vam-project/slices.hpp"
@@ -39,7 +39,7 @@ std::string dose_text(const model::StackInfo& info, const model::Printer& printe
   const auto stated = info.extra.find("vam:threshold_dose");
   const auto threshold = stated == info.extra.end() ? std::nullopt : parse_number(stated->second);
   if (!threshold) return "unknown: the sinogram states no threshold; see vam-dose --exposure-plan";
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   if (!per_radian) return "unknown; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm";
   const double dose = turns * *per_radian / full_scale * *threshold;
   const double critical = *printer.resin.critical_dose_mj_cm3;

@@ -6,7 +6,7 @@
 #include "base/index.hpp"
 #include "io/exr/stack.hpp"
 #include "model/grid.hpp"
-#include "score/exposure.hpp"
+#include "resin/absolute_dose.hpp"
 
 namespace vam::status_tool {
 
@@ -47,7 +47,7 @@ LightView::LightView(const std::string& sinogram, const model::Printer& printer)
   one.row_mm = 2 * resin_mm() / across;  // level rays know one slice only
   const model::Grid grid = model::centred_grid(across, across, 1, one.row_mm, middle_mm());
   simulation_ = std::make_unique<light::Simulation>(printer_, optics::AxisAlignment{}, one, grid, light::Climb::flat);
-  const auto per_radian = score::dose_per_radian_mj_cm3(printer);
+  const auto per_radian = resin::dose_per_radian_mj_cm3(printer);
   absolute_ = per_radian.has_value();
   if (absolute_ && peak_ > 0) per_unit_ = *per_radian / static_cast<double>(peak_);
   const Image turn = expose(std::vector<double>(info_.height, 1.0));

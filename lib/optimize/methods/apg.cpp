@@ -8,9 +8,9 @@
 #include "optimize/methods/method.hpp"
 #include "optimize/methods/metrics.hpp"
 #include "optimize/methods/private/loss.hpp"
+#include "optimize/methods/private/robust.hpp"
 #include "optimize/methods/private/safeguard.hpp"
 #include "optimize/methods/private/surface_points.hpp"
-#include "optimize/methods/private/tolerant.hpp"
 #include "optimize/methods/private/two_metric.hpp"
 #include "optimize/methods/step_length.hpp"
 
@@ -227,7 +227,7 @@ MethodEntry apg_method() {
           true,
           {"--max-intensity", "--robust", "--free-surface"},
           make<Apg>,
-          make_tolerant};
+          make_robust};
 }
 
 }  // namespace vam::optimize

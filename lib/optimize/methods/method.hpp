@@ -83,7 +83,7 @@ struct MethodEntry {
   bool grey;                         // supports grey targets
   std::vector<std::string> options;  // of vam-optimize that not every method reads
   std::unique_ptr<Method> (*make)(const MethodOptions&);
-  std::unique_ptr<Method> (*make_tolerant)(const MethodOptions&) = nullptr;  // that faces scenarios, where it can
+  std::unique_ptr<Method> (*make_robust)(const MethodOptions&) = nullptr;  // that faces scenarios, where it can
 };
 
 [[nodiscard]] bool reads(const MethodEntry& method, const std::string& option);

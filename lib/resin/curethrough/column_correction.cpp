@@ -89,7 +89,7 @@ CorrectedColumn correct_column(std::span<const std::uint8_t> part, const CureLim
   for (std::size_t n = column.phi.size(); n-- > 0;) {
     const double carried = limits.q * column.omega[n + 1];
     column.phi[n] = std::clamp((target[n] - carried) / limits.gain, limits.phi_min, limits.phi_max);
-    column.omega[n] = limits.gain * column.phi[n] + carried;  // [CURE19 eq 5]
+    column.omega[n] = limits.next(column.phi[n], column.omega[n + 1]);
   }
   column.worst_excess = excess(runs, column.omega, limit);
   column.fused_gaps = limits.exposure == ExposureMode::continuous ? single_slice_gaps(part) : 0;

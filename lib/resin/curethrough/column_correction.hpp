@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 #include "resin/curethrough/target_dose.hpp"
 
 namespace vam::resin {

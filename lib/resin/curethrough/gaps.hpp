@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "base/image.hpp"
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 #include "resin/curethrough/part_columns.hpp"
 
 namespace vam::resin {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 
 namespace vam::resin {
 

@@ -149,7 +149,7 @@ void LevelCorrection::previous(std::vector<std::uint16_t>& slice) {
     for (int x = 0; x < part_.width(); ++x) {
       const int level = level_for(static_cast<double>(wanted[x]));
       slice[start + x] = static_cast<std::uint16_t>(level);
-      omega[x] = limits_.gain * phi_[level] + limits_.q * omega[x];
+      omega[x] = limits_.next(phi_[level], omega[x]);
     }
   });
 }

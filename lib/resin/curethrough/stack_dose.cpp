@@ -57,14 +57,13 @@ void StackDose::replay_row(int first, std::span<const Image> block, int y, float
   if (!turned_ || next >= at_start_.size()) throw Error{Fault::bug, "stack dose: replayed too early or too far"};
   const Image& end = at_start_[next];
   const auto width = static_cast<std::size_t>(end.width);
-  const double factor = limits_.gain * full_;
   std::vector<double> omega(end.row(y), end.row(y) + width);
   for (std::size_t i = block.size(); i-- > 0;) {
     const float* phi = block[i].row(y);
     float* out = below + i * width;
     for (std::size_t x = 0; x < width; ++x) {
       out[x] = static_cast<float>(omega[x]);
-      omega[x] = factor * static_cast<double>(phi[x]) + limits_.q * omega[x];  // [CURE19 eq 5]
+      omega[x] = limits_.next(full_ * static_cast<double>(phi[x]), omega[x]);
     }
   }
 }

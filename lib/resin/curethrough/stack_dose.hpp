@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/image.hpp"
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 
 namespace vam::resin {
 

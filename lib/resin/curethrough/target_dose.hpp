@@ -13,7 +13,7 @@
 #include <limits>
 #include <vector>
 
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 
 namespace vam::resin {
 

@@ -13,6 +13,7 @@
 #include "light/simulation/display_range.hpp"
 #include "model/magnification.hpp"
 #include "optics/writable_radius.hpp"
+#include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;
@@ -152,13 +153,13 @@ TEST_CASE("sinogram values become intensity") {
 
 TEST_CASE("absolute dose: mu / Omega times the light of one turn [CAL19 eq 1]") {
   model::Printer printer;
-  CHECK_FALSE(dose_per_radian_mj_cm3(printer).has_value());
+  CHECK_FALSE(resin::dose_per_radian_mj_cm3(printer).has_value());
   printer.resin.critical_dose_mj_cm3 = 100;
-  CHECK_FALSE(dose_per_radian_mj_cm3(printer).has_value());  // resin that absorbs nothing takes no dose
+  CHECK_FALSE(resin::dose_per_radian_mj_cm3(printer).has_value());  // resin that absorbs nothing takes no dose
   printer.resin.absorption_per_mm = 0.05;
   // A point in even light of 3.8 mW/cm2 for the 36 s of a turn takes 3.8 * 36 * 0.5/cm = 68.4 mJ/cm3.
-  REQUIRE(dose_per_radian_mj_cm3(printer).has_value());
-  CHECK(*dose_per_radian_mj_cm3(printer) * turn_rad == doctest::Approx(68.4));
+  REQUIRE(resin::dose_per_radian_mj_cm3(printer).has_value());
+  CHECK(*resin::dose_per_radian_mj_cm3(printer) * turn_rad == doctest::Approx(68.4));
 }
 
 TEST_CASE("turns and seconds to the critical dose") {

@@ -218,7 +218,7 @@ TEST_CASE("offset projections keep the shape of the filtered ones") {
 TEST_CASE("the methods that read --robust are those that face other printers") {
   for (const MethodEntry& entry : method_table()) {
     CAPTURE(entry.name);
-    CHECK(reads(entry, "--robust") == (entry.make_tolerant != nullptr));
+    CHECK(reads(entry, "--robust") == (entry.make_robust != nullptr));
   }
 }
 

@@ -1,4 +1,6 @@
 // Projections for printers off their settings: scenarios are what those printers do, and the prints hold.
+#include "optimize/methods/private/robust.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,7 +12,6 @@
 #include "light/operators/make_operator.hpp"
 #include "light/simulation/simulation.hpp"
 #include "model/tolerances.hpp"
-#include "optimize/methods/private/tolerant.hpp"
 #include "optimize/run/yield.hpp"
 
 using namespace vam;
@@ -64,7 +65,7 @@ VolumeTask make_task(std::vector<Image>& frames, bool robust) {
   task.source.target = target;
   task.circle = circle;
   task.limits = {.iterations = 24, .until = {}, .patience = 0};
-  task.make = [robust](double) { return robust ? make_tolerant({}) : make_method("apg", {}); };
+  task.make = [robust](double) { return robust ? make_robust({}) : make_method("apg", {}); };
   if (robust) task.scenarios = [](std::span<const Slab>) { return bank(coarse); };
   task.write = [&frames](int, const Image& image) { frames.push_back(image); };
   return task;

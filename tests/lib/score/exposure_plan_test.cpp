@@ -8,6 +8,7 @@
 
 #include "fault_of.hpp"
 #include "light/simulation/simulation.hpp"
+#include "resin/absolute_dose.hpp"
 #include "score/exposure.hpp"
 
 using namespace vam;
@@ -48,7 +49,7 @@ ExposurePlan rod(const model::Printer& printer) {
       statistics.add(dose[0](x, y), std::hypot(x - 10, y - 10) < 3 ? model::Label::part : model::Label::void_);
     }
   }
-  return plan_exposure(statistics.metrics(false), *dose_per_radian_mj_cm3(printer), printer);
+  return plan_exposure(statistics.metrics(false), *resin::dose_per_radian_mj_cm3(printer), printer);
 }
 
 model::DoseMetrics window(double low, double high) {

@@ -1,4 +1,4 @@
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 
 #include <doctest/doctest.h>
 

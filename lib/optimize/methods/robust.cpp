@@ -1,4 +1,4 @@
-#include "optimize/methods/private/tolerant.hpp"
+#include "optimize/methods/private/robust.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +31,9 @@ double constrained_voxels(const Problem& problem) {
   return std::max(count, 1.0);
 }
 
-class Tolerant final : public Method {
+class Robust final : public Method {
  public:
-  explicit Tolerant(const MethodOptions& options) : Method(options), nominal_(make_method("apg", options)) {}
+  explicit Robust(const MethodOptions& options) : Method(options), nominal_(make_method("apg", options)) {}
 
   void start(const Problem& problem, const light::Operator& light, Iterate& iterate) override {
     nominal_->start(problem, light, iterate);
@@ -189,6 +189,6 @@ class Tolerant final : public Method {
 
 }  // namespace
 
-std::unique_ptr<Method> make_tolerant(const MethodOptions& options) { return std::make_unique<Tolerant>(options); }
+std::unique_ptr<Method> make_robust(const MethodOptions& options) { return std::make_unique<Robust>(options); }
 
 }  // namespace vam::optimize

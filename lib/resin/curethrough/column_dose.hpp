@@ -48,6 +48,8 @@ struct CureLimits {
   [[nodiscard]] double settled(double phi) const { return gain * phi / (1 - q); }
   /// The constant Phi that keeps a dose of 1: 1 when continuous [CURE19, "Phi_n = Omega_c"].
   [[nodiscard]] double hold() const { return (1 - q) / gain; }
+  /// Omega(node) from the Phi of its slice and Omega(node + 1) [CURE19 eq 5].
+  [[nodiscard]] double next(double phi, double omega) const { return gain * phi + q * omega; }
 };
 
 /// I_f. Continuous: s * D_f [CURE19 below eq 4]. Layered: the intensity whose exposure of h_s / s brings D_f to the

@@ -1,4 +1,4 @@
-#include "resin/curethrough/curethrough.hpp"
+#include "resin/curethrough/column_dose.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -54,8 +54,7 @@ CureLimits limits_of(const Process& process) {
 
 std::vector<double> dose_at_nodes(std::span<const double> phi, const CureLimits& limits) {
   std::vector<double> omega(phi.size() + 1, 0.0);
-  for (std::size_t n = phi.size(); n-- > 0;)
-    omega[n] = limits.gain * phi[n] + limits.q * omega[n + 1];  // [CURE19 eq 5]
+  for (std::size_t n = phi.size(); n-- > 0;) omega[n] = limits.next(phi[n], omega[n + 1]);
   return omega;
 }
 
