@@ -29,7 +29,9 @@ std::vector<std::string> description() {
       "view units per mm.",
       "VIEWS is an EXR frame stack of a camera, a folder of numbered images, or a video; frames without recorded "
       "angles require --view-step. Each view is used at its own angle: missing, repeated and unevenly spaced views are "
-      "weighted accordingly, and a gap of more than 15 degrees is an error. A uniform background is fitted and "
+      "weighted accordingly, and a gap of more than 15 degrees is an error. Views of three turns or more, in the order "
+      "of time, are "
+      "combined by their median. A uniform background is fitted and "
       "subtracted, and views are divided by the intensity of their light where it varies by more than 0.5 % (RMS). "
       "Specks on window or lens, which stay in place, and bubbles, which drift through the field of "
       "view, are distinguished from the print because the values of a ray and of its reverse, half a turn later, "

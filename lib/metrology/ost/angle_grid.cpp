@@ -90,4 +90,26 @@ AngleGrid::AngleGrid(std::span<const double> angles_deg, int angles, double max_
   }
 }
 
+Turns::Turns(std::span<const double> angles_deg) {
+  constexpr std::size_t fewest = 3;  // that a median distinguishes
+  std::vector<std::size_t> first{0};
+  double turned_deg = 0;
+  for (std::size_t i = 1; i < angles_deg.size(); ++i) {
+    turned_deg += std::abs(std::remainder(angles_deg[i] - angles_deg[i - 1], 360.0));
+    if (turned_deg + 1e-6 < 360 * static_cast<double>(first.size())) continue;
+    first.push_back(i);
+  }
+  first.push_back(angles_deg.size());
+  try {
+    for (std::size_t t = 0; t + 1 < first.size(); ++t) {
+      const auto frames = angles_deg.subspan(first[t], first[t + 1] - first[t]);
+      turns_.push_back({static_cast<int>(first[t]), AngleGrid(frames, t == 0 ? 0 : angles())});
+    }
+  } catch (const Error&) {  // the last one, or no turns at all
+  }
+  if (turns_.size() >= fewest && turns_.size() + 2 >= first.size()) return;
+  turns_.clear();
+  turns_.push_back({0, AngleGrid(angles_deg, 0)});
+}
+
 }  // namespace vam::metrology

@@ -53,18 +53,44 @@ void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion
   });
 }
 
-std::vector<Image> camera_sinograms(std::span<const Image> level, const AngleGrid& turn) {
+namespace {
+
+void add_angle(std::span<const Image> level, const Turns::Turn& turn, int angle, int height, float* out) {
+  for (const auto& tap : turn.grid.taps(angle)) {
+    const float* in = level[turn.first + tap.frame].row(height);
+    for (int x = 0; x < level.front().width; ++x) out[x] += tap.weight * in[x];
+  }
+}
+
+// Of an even number the mean of the two in the middle: the upper one would be too bright by a part of the noise.
+float middle(std::vector<float>& values) {
+  const auto upper = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), upper, values.end());
+  if (values.size() % 2 != 0) return *upper;
+  return 0.5F * (*upper + *std::max_element(values.begin(), upper));
+}
+
+}  // namespace
+
+std::vector<Image> camera_sinograms(std::span<const Image> level, const Turns& turns) {
   const int columns = level.front().width;
-  const int angles = turn.summary().angles;
+  const std::size_t count = turns.all().size();
   std::vector<Image> sinograms(level.front().height);
   parallel_for(count_of(sinograms), [&](int k) {
     Image& sinogram = sinograms[k];
-    sinogram = Image(columns, angles);
-    for (int a = 0; a < angles; ++a) {
-      float* out = sinogram.row(a);
-      for (const auto& tap : turn.taps(a)) {
-        const float* in = level[tap.frame].row(k);
-        for (int x = 0; x < columns; ++x) out[x] += tap.weight * in[x];
+    sinogram = Image(columns, turns.angles());
+    if (count == 1) {
+      for (int a = 0; a < sinogram.height; ++a) add_angle(level, turns.all().front(), a, k, sinogram.row(a));
+      return;
+    }
+    Image of_turns(columns, count_of(turns.all()));
+    std::vector<float> values(count);
+    for (int a = 0; a < sinogram.height; ++a) {
+      std::fill(of_turns.values.begin(), of_turns.values.end(), 0.0F);
+      for (int t = 0; t < of_turns.height; ++t) add_angle(level, turns.all()[t], a, k, of_turns.row(t));
+      for (int x = 0; x < columns; ++x) {
+        for (int t = 0; t < of_turns.height; ++t) values[t] = of_turns(x, t);
+        sinogram(x, a) = middle(values);
       }
     }
   });

@@ -133,11 +133,11 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std:
   if (!(*std::min_element(intensity.begin(), intensity.end()) > 0)) return {};
 
   make_steady(level, 0, intensity);
-  const AngleGrid turn(angles_deg, 0);
-  const auto totals = parallel_totals(virtual_sinograms(camera_sinograms(level, turn), heights_mm));
+  const Turns turns(angles_deg);
+  const auto totals = parallel_totals(virtual_sinograms(camera_sinograms(level, turns), heights_mm));
   if (totals.empty()) return {};
   std::vector<double> even_rad;
-  for (int a = 0; a < turn.summary().angles; ++a) even_rad.push_back(2 * std::numbers::pi * a / turn.summary().angles);
+  for (int a = 0; a < turns.angles(); ++a) even_rad.push_back(2 * std::numbers::pi * a / turns.angles());
   const auto course =
       sum_of(harmonics_at(directions_rad), stats::linear_fit(harmonics_at(even_rad), terms, median_of(totals)));
   for (std::size_t i = 0; i < intensity.size(); ++i) intensity[i] *= course[i];

@@ -169,8 +169,8 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
   const State& s = *state_;
   std::vector<double> angles_deg;
   for (const CameraView& view : views) angles_deg.push_back(view.angle_deg);
-  const AngleGrid turn(angles_deg, 0);
-  const int angles = turn.summary().angles;
+  const Turns turns(angles_deg);
+  const int angles = turns.angles();
   const ClimbingRays rays = s.rays(angles);
   const int beyond = heights_beyond(rays, s.grid);
   const RowOfHeight map(s.eye);
@@ -192,7 +192,7 @@ model::Volume OstReconstructor::reconstruct(std::span<const CameraView> views, D
     auto level = level_views(views, s.axis, rows);
     make_steady(level, dirt.background, light.intensity);
     undo_motion(level, s.motion(angles_deg, s.options.run_out_mm[0], s.options.run_out_mm[1]), s.axis.column);
-    auto seen = camera_sinograms(level, turn);
+    auto seen = camera_sinograms(level, turns);
     level.clear();
     auto sinograms = s.virtual_sinograms(seen, heights_mm);
     seen.clear();

@@ -48,8 +48,9 @@ class OstReconstructor {
   [[nodiscard]] RunOut find_run_out(std::span<const CameraView> views) const;
 
   /// One volume from the views of one turn, in any order, with their own angles: scattering density in view units per
-  /// mm. Frames missing, repeated or uneven are weighted (AngleGrid). Throws Fault::data when the turn is incomplete.
-  /// An even background, flicker, specks and bubbles are taken out; `found` says what.
+  /// mm. Frames missing, repeated or uneven are weighted; three turns or more, frames in the order of time, are
+  /// combined by their median (Turns). Throws Fault::data when the turn is incomplete. An even background, flicker,
+  /// specks and bubbles are taken out; `found` says what.
   [[nodiscard]] model::Volume reconstruct(std::span<const CameraView> views, Dirt* found = nullptr) const;
 
   /// Standard deviation of each voxel of that volume by the noise of the views, their angles counted: the RMS of two

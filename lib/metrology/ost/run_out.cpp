@@ -50,7 +50,7 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
   RunOut found;
   if (s.absorption_per_mm > 0 || !s.options.refraction) return found;
   const std::vector<double> angles_deg = angles_of(views);
-  const AngleGrid turn(angles_deg, 0);
+  const Turns turns(angles_deg);
   const RowOfHeight map(s.eye);
   const Image mean = mean_view(views);
   constexpr std::size_t most_heights = 32;
@@ -66,7 +66,7 @@ RunOut OstReconstructor::find_run_out(std::span<const CameraView> views) const {
                          s.motion(angles_deg, 0, unit_mm)},
                         s.axis.column};
   const PairFit fit = fit_line_pairs(level, basis, [&](const std::vector<Image>& moved) {
-    return s.virtual_sinograms(camera_sinograms(moved, turn), heights_mm);
+    return s.virtual_sinograms(camera_sinograms(moved, turns), heights_mm);
   });
   found.determined = fit.converged;
   found.mm = {s.options.run_out_mm[0] + fit.value[1] * unit_mm, s.options.run_out_mm[1] + fit.value[2] * unit_mm};

@@ -1,6 +1,7 @@
 // A dirty bench, seen by an independent renderer: every row has the figure that is right as its bar.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -179,6 +180,31 @@ TEST_CASE("noise, background, flicker, specks and bubbles") {
     const auto bubbly = oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, draw), 180);
     judge("15 bubbles", reconstructed(bench, views_of(bench, bubbly), bodies), 0.1);
   }
+}
+
+TEST_CASE("of several turns the median counts: bubbles pass in one of them") {
+  const auto bodies = post();
+  const oracle::ViewBench bench;
+  const auto turns_of = [&](int count) {
+    std::vector<CameraView> all;
+    for (int turn = 0; turn < count; ++turn) {
+      const auto seed = static_cast<unsigned>(7 + turn);
+      auto views = views_of(bench, oracle::bench_views(bench, bodies, oracle::bubbles(15, 8, seed), 120));
+      for (auto& view : views) all.push_back(std::move(view));
+    }
+    return all;
+  };
+  const Figures one = reconstructed(bench, turns_of(1), bodies);
+  say(1, one);
+  const auto views = turns_of(3);
+  const Figures three = reconstructed(bench, views, bodies);
+  say(3, three);
+  CHECK(three.rms <= 0.05);  // the bar of 15 bubbles
+  CHECK(three.rms < 0.5 * one.rms);
+  // Frames in another order are no turns: their mean counts.
+  std::vector<CameraView> sorted = views;
+  std::stable_sort(sorted.begin(), sorted.end(), [](auto& a, auto& b) { return a.angle_deg < b.angle_deg; });
+  CHECK(reconstructed(bench, sorted, bodies).rms > three.rms);
 }
 
 TEST_CASE("flicker is measured; steady light, bubbles and a print that leaves the image are none") {

@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "base/constants.hpp"
@@ -106,6 +108,27 @@ TEST_CASE("uniform angles from non-uniform ones reproduce a sinusoid") {
     CHECK(weight == doctest::Approx(1));
     CHECK(std::abs(sum - std::cos(2 * a * rad_per_deg)) < 0.0015);  // gap^2/8 in radians: 5.0 deg at most
   }
+}
+
+TEST_CASE("views are of several turns when they come in the order of time") {
+  const auto turned = [](double turns, double step_deg) {
+    std::vector<double> angles;
+    for (int i = 0; step_deg * i < 360 * turns - 1e-9; ++i) angles.push_back(std::fmod(20 + step_deg * i, 360.0));
+    return angles;
+  };
+  CHECK(Turns(turned(1, 2)).all().size() == 1);
+  CHECK(Turns(turned(2, 2)).all().size() == 1);
+  const Turns three(turned(3, 2));
+  CHECK(three.all().size() == 3);
+  CHECK(three.angles() == 180);
+  CHECK(three.all()[2].first == 360);
+  CHECK(Turns(turned(4.4, 2)).all().size() == 4);    // the last one is incomplete
+  CHECK(Turns(turned(5, 2.03)).all().size() == 5);   // each turn at angles of its own
+  CHECK(Turns(turned(5, -2.03)).all().size() == 5);  // and the other way round
+  std::vector<double> sorted = turned(3, 2);
+  std::sort(sorted.begin(), sorted.end());
+  CHECK(Turns(sorted).all().size() == 1);
+  CHECK_THROWS_AS(Turns(turned(0.8, 2)), Error);
 }
 
 TEST_CASE("an incomplete turn is an error that states the gap") {

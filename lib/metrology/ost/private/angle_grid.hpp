@@ -35,4 +35,24 @@ class AngleGrid {
   std::vector<std::vector<Tap>> taps_;
 };
 
+/// Frames in the order in which they were taken, over one turn or several. From three turns on, each has even angles of
+/// its own and what they show is combined by the median; a last turn that is incomplete is left out. One or two are one
+/// AngleGrid, as are frames in another order.
+class Turns {
+ public:
+  /// Throws Fault::data as AngleGrid does.
+  explicit Turns(std::span<const double> angles_deg);
+
+  [[nodiscard]] int angles() const { return turns_.front().grid.summary().angles; }
+
+  struct Turn {
+    int first;  // frame of the turn; the grid counts from it
+    AngleGrid grid;
+  };
+  [[nodiscard]] const std::vector<Turn>& all() const { return turns_; }
+
+ private:
+  std::vector<Turn> turns_;
+};
+
 }  // namespace vam::metrology

@@ -30,7 +30,8 @@ struct ColumnMotion {
 /// Undoes the motion of each view (cubic [KEYS81]); beyond the image its last column. Nothing where there is none.
 void undo_motion(std::vector<Image>& level, std::span<const ColumnMotion> motion, double axis_column);
 
-/// Sinograms in camera columns x even angles, one for each row of the level views.
-[[nodiscard]] std::vector<Image> camera_sinograms(std::span<const Image> level, const AngleGrid& turn);
+/// Sinograms in camera columns x even angles, one for each row of the level views: of three turns or more their median,
+/// so that what passes in less than half of them does not count.
+[[nodiscard]] std::vector<Image> camera_sinograms(std::span<const Image> level, const Turns& turns);
 
 }  // namespace vam::metrology
