@@ -1,36 +1,63 @@
-// A NumPy array, bare or the only one of an archive, image by image to its end, as the child reads it.
+// An array, bare or the only one of an archive, image by image to its end, as the child reads it.
 #include <algorithm>
 #include <cstring>
 
 #include "fuzz/fuzz.hpp"
-#include "io/array/private/npy_parser.hpp"
+#include "io/array/private/array_parser.hpp"
+#include "io/array/private/mrc_head.hpp"
+#include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
+#include "io/array/private/nrrd_head.hpp"
+#include "io/image/tiff_pages.hpp"
 
 namespace {
 
 using namespace vam;
+using io::arrays::Bytes;
 
-void read_all(io::npy::Parser parser) {
+void read_all(io::arrays::Parser parser) {
   Image image;
   for (std::size_t k = 0; k < parser.size()[0]; ++k) parser.next(image);
+}
+
+void read_bare(const std::string& file) {
+  std::size_t at = 0;
+  const auto read = [&](void* to, std::size_t count) {
+    const std::size_t step = std::min(count, file.size() - at);
+    if (step > 0) std::memcpy(to, file.data() + at, step);
+    at += step;
+    return step;
+  };
+  Bytes bytes(read, "array");
+  const auto head = file.starts_with(io::arrays::nrrd_magic)  ? take_nrrd_head(bytes)
+                    : file.starts_with(io::arrays::npy_magic) ? take_npy_head(bytes)
+                                                              : take_mrc_head(bytes);
+  read_all({head, std::move(bytes), {2, 0, 1}});
+}
+
+void read_archive(const std::string& file) {
+  io::arrays::PackedArray array(file, "", "archive");
+  Bytes bytes([&](void* to, std::size_t count) { return array.read(to, count); }, "array");
+  const auto head = take_npy_head(bytes);
+  read_all({head, std::move(bytes), {0, 1, 2}});
+}
+
+void read_pages(const std::string& file) {
+  io::TiffPages pages(file, "pages");
+  std::string row(4096, ' ');
+  while (pages.read(row.data(), row.size()) == row.size()) {
+  }
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   const std::string file = fuzz::text_of(bytes, size);
-  std::size_t at = 0;
-  const auto bare = [&](void* to, std::size_t count) {
-    const std::size_t step = std::min(count, file.size() - at);
-    std::memcpy(to, file.data() + at, step);
-    at += step;
-    return step;
-  };
   try {
-    if (!file.starts_with("PK")) return fuzz::attempt([&] { read_all({bare, "array", {2, 0, 1}}); });
     return fuzz::attempt([&] {
-      io::npy::PackedArray array(file, "", "archive");
-      read_all({[&](void* to, std::size_t count) { return array.read(to, count); }, "array", {0, 1, 2}});
+      if (file.starts_with("PK")) return read_archive(file);
+      if (file.starts_with("II") || file.starts_with("MM")) return read_pages(file);
+      read_bare(file);
     });
   } catch (const std::bad_alloc&) {  // the child has bounds for that
     return 0;

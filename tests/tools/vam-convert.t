@@ -89,9 +89,16 @@ data = open("a.npy", "rb").read().replace(b"<f4", b"<f8")
 open("huge.npy", "wb").write(data[:128] + struct.pack("<24d", *[1e300] * 24))'
 fails 65 'huge.npy: column 0, row 0 of image 0 is not a finite number' vam-convert huge.npy --voxel 1 -o x.vdb
 printf 'solid' >mesh.stl
-fails 65 'mesh.stl: is not a NumPy array' vam-convert mesh.stl --voxel 1 -o x.vdb
+fails 65 'mesh.stl: is not an array \(NumPy, NRRD, MRC, TIFF\)' vam-convert mesh.stl --voxel 1 -o x.vdb
 : >empty.npy
 fails 65 'empty.npy: is empty' vam-convert empty.npy --voxel 1 -o x.vdb
+
+# A volume goes out as NRRD and comes back.
+vam-slice --shape disc-grid --voxel 0.5 -o part.vdb
+vam-view part.vdb --export part.nrrd
+vam-convert part.vdb -o part.npy
+vam-convert part.nrrd --voxel 0.5 | vam-convert >back.npy
+same 'a volume by way of NRRD' part.npy back.npy
 
 # No beginning of a file is taken for the file, and none crashes.
 statuses() {  # statuses FILE: of all its beginnings

@@ -57,7 +57,7 @@ std::unique_ptr<Images> open_source(const Options& options, std::optional<io::Fi
                                     const std::string& letters) {
   if (!type) return std::make_unique<Array>(options, letters);
   if (!options.axes.empty() || !options.array.empty()) {
-    throw Error{Fault::usage, options.input + ": --axes and --array are for arrays (.npy, .npz), not for images"};
+    throw Error{Fault::usage, options.input + ": --axes and --array are for arrays, not for images"};
   }
   return std::make_unique<Frames>(options, *type);
 }

@@ -7,8 +7,9 @@ cli::Manual manual() {
       "vam-convert",
       "exchange volumes and projections with other programs",
       {"vam-convert reads data of other programs and writes files of these tools, or the reverse; the content of the "
-       "input decides. A volume (VDB) or a stack (EXR) becomes a NumPy array (.npy). An array of 2 or 3 axes (.npy, "
-       ".npz) becomes a volume with --voxel, or a stack of sinograms with --geometry, so that vam-dose computes the "
+       "input decides. A volume (VDB) or a stack (EXR) becomes a NumPy array (.npy). An array of 2 or 3 axes "
+       "(NumPy .npy and .npz, NRRD, MRC, TIFF of several pages) becomes a volume with --voxel, or a stack of sinograms "
+       "with --geometry, so that vam-dose computes the "
        "dose of projections made by any program. A folder of numbered images (PNG, TIFF) or a video (MKV, MP4) is read "
        "as projections, one for each stage angle; with --voxel a folder is read as the slices of a volume.",
        "Arrays have the order [z][y][x] for volumes, z upwards; [slice][angle][column] for sinograms, slices upwards; "
@@ -16,7 +17,9 @@ cli::Manual manual() {
        "Input may be integers of 1 to 8 bytes, floats of 2, 4 or 8 bytes, or booleans, in either byte order and in C "
        "or "
        "Fortran order. --axes gives another order of the axes: projections of VAMToolbox, [column][angle][z], have the "
-       "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused.",
+       "order xaz. Values are unchanged unless --full-scale is given. Python objects (pickles) are refused. "
+       "Of NRRD, MRC and TIFF files the values are read (x the fastest axis, pages as z) and voxel size and place are "
+       "given by options; NRRD values must be in the same file, raw or gzip, TIFF pages grey and in strips.",
        "Projections of other programs do not state their geometry, which is therefore given by options: the column "
        "pitch at the axis (--pixel), the stage angle between projections (--view-step), the column of the axis "
        "(--axis-column), the row of z = 0 (--axis-row) and the orientation of the images (--orientation). With "
@@ -45,7 +48,8 @@ cli::Manual manual() {
         "vam-slice --shape disc-grid --voxel 0.5 -o part.vdb\n"
         "vam-sinogram --filter ram-lak --negative clip part.vdb | vam-resample | vam-project --turns 1 -o frames\n"
         "vam-convert frames --geometry vial --like part.vdb | vam-dose --like part.vdb | vam-score --target part.vdb"}},
-      {"Memory: one image of an array in C order; the whole of an array in another order, whose first values are "
+      {"Memory: one image of an array in C order, and the file for .npz and TIFF; the whole of an array in another "
+       "order, whose first values are "
        "needed "
        "last; 4 bytes for each lit pixel of frames that become sinograms; a volume as it is stored.",
        "An array is parsed in a process of its own (vam-formats(7), DESCRIPTION). Sizes are up to 65536 along an axis "

@@ -4,12 +4,17 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "base/memory.hpp"
-#include "io/array/private/npy_parser.hpp"
+#include "io/array/private/array_parser.hpp"
+#include "io/array/private/mrc_head.hpp"
+#include "io/array/private/npy_head.hpp"
 #include "io/array/private/npz.hpp"
+#include "io/array/private/nrrd_head.hpp"
+#include "io/image/tiff_pages.hpp"
 #include "io/stream/apart.hpp"
 #include "io/stream/signature.hpp"
 #include "io/stream/stream.hpp"
@@ -18,16 +23,32 @@ namespace vam::io {
 
 namespace {
 
-constexpr std::uint64_t most_packed = std::uint64_t{16} << 30;  // bytes of a .npz
-constexpr std::uint64_t most_ratio = 1032;                      // bytes of which deflate makes one
-constexpr std::string_view zip_magic = "PK\3\4";
+constexpr std::uint64_t most_held = std::uint64_t{16} << 30;  // bytes of a file that is not read front to back
+constexpr std::uint64_t most_ratio = 1032;                    // bytes of which deflate makes one
 
-// All of an archive, as its list is at its end.
+enum class Format { npy, npz, nrrd, mrc, tiff };
+
+std::optional<Format> format_of(std::string_view head) {
+  using namespace std::string_view_literals;
+  const auto begins = [&](std::string_view magic) {  // a pipe may show less of it
+    const std::string_view start = head.substr(0, magic.size());
+    return !start.empty() && magic.starts_with(start);
+  };
+  if (begins(arrays::npy_magic)) return Format::npy;
+  if (begins("PK\3\4"sv)) return Format::npz;
+  if (begins(arrays::nrrd_magic)) return Format::nrrd;
+  if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv)) return Format::tiff;
+  const bool mrc =
+      head.size() > arrays::mrc_magic_at && head.substr(arrays::mrc_magic_at).starts_with(arrays::mrc_magic);
+  return mrc ? std::optional(Format::mrc) : std::nullopt;
+}
+
+// All of a file whose list of contents may be at its end.
 std::string whole(InputFile& file) {
   std::string bytes;
   for (auto piece = file.peek(); !piece.empty(); piece = file.peek()) {
-    if (bytes.size() + piece.size() > most_packed) {
-      throw Error{Fault::data, file.name() + ": is larger than 16 GiB; unpack it and give the .npy"};
+    if (bytes.size() + piece.size() > most_held) {
+      throw Error{Fault::data, file.name() + ": is larger than 16 GiB; save its array as .npy"};
     }
     bytes.append(piece.data(), piece.size());
     file.skip(piece.size());
@@ -35,7 +56,7 @@ std::string whole(InputFile& file) {
   return bytes;
 }
 
-void send(npy::Parser parser, Sender& out) {
+void send(arrays::Parser parser, Sender& out) {
   for (const std::size_t size : parser.size()) out.put(std::uint64_t{size});
   out.flush();
   Image image;
@@ -50,49 +71,70 @@ void send(npy::Parser parser, Sender& out) {
 
 struct ArrayReader::State {
   State(const std::string& path, const ArrayOptions& options) : file(path) {
-    require_known();
-    if (packed) bytes = whole(file);
+    const auto start = file.peek();
+    const std::string_view head(start.data(), start.size());
+    const auto known = format_of(head);
+    if (!known) refuse(head);
+    format = *known;
+    const bool held = format == Format::npz || format == Format::tiff;
+    if (held) bytes = whole(file);
     // What repeats packs well: an array may unpack to as much as its bytes can hold, and as there is memory for.
-    const std::uint64_t unpacked = packed ? std::min(most_ratio * bytes.size(), memory_left() / 2) : 0;
-    apart.emplace(Foreign{file.name(), packed ? bytes.size() : file.size(), file.descriptor(), unpacked},
+    const std::uint64_t length = held ? bytes.size() : file.size();
+    const bool packed = held || format == Format::nrrd;
+    const std::uint64_t unpacked = packed ? std::min(most_ratio * length, memory_left() / 2) : 0;
+    apart.emplace(Foreign{file.name(), length, file.descriptor(), unpacked},
                   [this, &options](Sender& out) { parse(options, out); });
     apart->take([this](Receiver& in) { take_size(in); });
   }
 
-  void require_known() {
-    const auto head = file.peek();
-    const std::string_view text(head.data(), head.size());
-    packed = text.starts_with(zip_magic);
-    const std::string_view start = text.substr(0, npy::magic.size());
-    if (packed || (!start.empty() && npy::magic.starts_with(start))) return;
-    const std::string foreign = foreign_format(text);
+  [[noreturn]] void refuse(std::string_view head) const {
+    const std::string foreign = foreign_format(head);
     throw Error{Fault::data, file.name() + ": " +
-                                 (text.empty()      ? "is empty"
-                                  : foreign.empty() ? "is not a NumPy array"
-                                                    : "is " + foreign + ", not a NumPy array")};
+                                 (head.empty()      ? "is empty"
+                                  : foreign.empty() ? "is not an array (NumPy, NRRD, MRC, TIFF)"
+                                                    : "is " + foreign + ", not an array (NumPy, NRRD, MRC, TIFF)")};
   }
 
   void parse(const ArrayOptions& options, Sender& out) {
-    if (!packed) {
-      return send({[this](void* to, std::size_t count) { return file.read(to, count); }, file.name(), options.axes},
-                  out);
+    using arrays::Bytes;
+    if (format == Format::npz) {
+      arrays::PackedArray array(bytes, options.name, file.name());
+      Bytes unpacked([&](void* to, std::size_t wanted) { return array.read(to, wanted); }, file.name());
+      const arrays::Head head = take_npy_head(unpacked);
+      return send({head, std::move(unpacked), options.axes}, out);
     }
-    npy::PackedArray array(bytes, options.name, file.name());
-    send({[&](void* to, std::size_t count) { return array.read(to, count); }, file.name(), options.axes}, out);
+    if (format == Format::tiff) {
+      TiffPages pages(std::move(bytes), file.name());
+      const arrays::Head head{pages.kind(),
+                              pages.value_bytes(),
+                              false,
+                              false,
+                              {count(pages.pages()), count(pages.rows()), count(pages.columns())}};
+      return send(
+          {head, {[&](void* to, std::size_t wanted) { return pages.read(to, wanted); }, file.name()}, options.axes},
+          out);
+    }
+    Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
+    const arrays::Head head = format == Format::npy    ? take_npy_head(front)
+                              : format == Format::nrrd ? take_nrrd_head(front)
+                                                       : take_mrc_head(front);
+    send({head, std::move(front), options.axes}, out);
   }
+
+  static std::uint64_t count(int number) { return static_cast<std::uint64_t>(number); }
 
   // What a child sends is not believed.
   void take_size(Receiver& in) {
-    size.images = static_cast<int>(in.get_count(npy::most_side));
-    size.rows = static_cast<int>(in.get_count(npy::most_side));
-    size.columns = static_cast<int>(in.get_count(npy::most_side));
-    if (product(size.rows, size.columns) > npy::most_image) {
+    size.images = static_cast<int>(in.get_count(arrays::most_side));
+    size.rows = static_cast<int>(in.get_count(arrays::most_side));
+    size.columns = static_cast<int>(in.get_count(arrays::most_side));
+    if (product(size.rows, size.columns) > arrays::most_image) {
       throw Error{Fault::data, file.name() + ": is damaged: its reader failed"};
     }
   }
 
   InputFile file;
-  bool packed = false;
+  Format format = Format::npy;
   std::string bytes;
   std::optional<Apart> apart;
   ArraySize size;

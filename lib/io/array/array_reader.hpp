@@ -1,4 +1,5 @@
-// Arrays of other programs, NumPy's .npy and .npz, as images one after the other.
+// Arrays of other programs as images one after the other: NumPy's .npy and .npz, NRRD and MRC volumes, TIFF of several
+// pages.
 #pragma once
 
 #include <array>
@@ -22,9 +23,9 @@ struct ArrayOptions {
 };
 
 /// Reads an array of 2 or 3 axes front to back, parsed in a child; what is not finite as float is refused. Where
-/// images, rows and columns are the array's own order, in constant memory; else all of it is held. "-" is stdin. Throws
-/// Error: no_input, io, data (neither .npy nor .npz, truncated, damaged, objects, another number of axes, too large,
-/// not finite), usage (no array of that name).
+/// images, rows and columns are the array's own order, in constant memory (.npz and TIFF: that of the file); else all
+/// of it is held. "-" is stdin. Throws Error: no_input, io, data (none of these, truncated, damaged, objects, another
+/// number of axes, too large, not finite), usage (no array of that name).
 class ArrayReader {
  public:
   ArrayReader(const std::string& path, const ArrayOptions& options);

@@ -9,7 +9,7 @@ namespace vam::io {
 static_assert(std::endian::native == std::endian::little, "the header states little-endian");
 
 ArrayWriter::ArrayWriter(const std::string& path, const ArraySize& size) : file_(path) {
-  file_.write(npy::head_of_floats({size.images, size.rows, size.columns}));
+  file_.write(arrays::head_of_floats({size.images, size.rows, size.columns}));
 }
 
 void ArrayWriter::write(const float* values, std::size_t count) { file_.write(values, count * sizeof *values); }

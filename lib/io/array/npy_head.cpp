@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 namespace {
 
@@ -88,33 +88,31 @@ std::vector<std::uint64_t> taken_shape(Literals& text) {
   return shape;
 }
 
-std::string shape_text(const std::vector<std::uint64_t>& shape) {
-  std::string text;
-  for (const std::uint64_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
-  return text;
-}
-
-void set_shape(const std::vector<std::uint64_t>& shape, Head& head) {
-  if (shape.size() != 2 && shape.size() != 3) {
-    throw std::runtime_error("has " + std::to_string(shape.size()) + " axes" +
-                             (shape.empty() ? "" : " (" + shape_text(shape) + ")") + "; arrays of 2 or 3 are read");
-  }
-  head.shape = {1, shape[shape.size() - 2], shape.back()};
-  if (shape.size() == 3) head.shape[0] = shape[0];
-  for (const std::uint64_t size : shape) {
-    if (size == 0) throw std::runtime_error("is an empty array (" + shape_text(shape) + ")");
-    if (size > most_side) {
-      throw std::runtime_error("has " + shape_text(shape) + " values; up to 65536 along an axis are read");
-    }
-  }
-  if (head.values() > most_values) {
-    throw std::runtime_error("has " + shape_text(shape) + " values; up to 2^40 are read");
-  }
-}
-
 }  // namespace
 
-Head parse_head(std::string_view text) {
+Head take_npy_head(Bytes& bytes) {
+  constexpr std::size_t start_bytes = 8;  // magic and version; the length of the header text follows
+  constexpr std::uint64_t most_text = 1 << 16;
+  std::array<unsigned char, start_bytes> start{};
+  bytes.take(start.data(), start.size());
+  std::array<unsigned char, 4> length{};
+  bytes.take(length.data(), start[6] == 1 ? 2 : 4);
+  if (start[6] < 1 || start[6] > 3 ||
+      std::string_view(reinterpret_cast<const char*>(start.data()), npy_magic.size()) != npy_magic) {
+    bytes.fail("is not a NumPy array of version 1 to 3");
+  }
+  const std::size_t size = length[0] | length[1] << 8 | length[2] << 16 | std::size_t{length[3]} << 24;
+  if (size > most_text) bytes.fail("its NumPy header is damaged; save the array again with numpy.save()");
+  std::string text(size, '\0');
+  bytes.take(text.data(), text.size());
+  try {
+    return parse_npy_head(text);
+  } catch (const std::runtime_error& problem) {
+    bytes.fail(problem.what());
+  }
+}
+
+Head parse_npy_head(std::string_view text) {
   Head head;
   Literals literals(text);
   int known = 0;
@@ -146,11 +144,11 @@ Head parse_head(std::string_view text) {
 std::string head_of_floats(const std::array<int, 3>& shape) {
   std::string text = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(shape[0]) + ", " +
                      std::to_string(shape[1]) + ", " + std::to_string(shape[2]) + "), }";
-  const std::size_t before = magic.size() + 4;
+  const std::size_t before = npy_magic.size() + 4;
   text.append(63 - (before + text.size()) % 64, ' ');
   text += '\n';
   const auto size = static_cast<std::uint16_t>(text.size());
-  return std::string(magic) + '\1' + '\0' + static_cast<char>(size & 255) + static_cast<char>(size >> 8) + text;
+  return std::string(npy_magic) + '\1' + '\0' + static_cast<char>(size & 255) + static_cast<char>(size >> 8) + text;
 }
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

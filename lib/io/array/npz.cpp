@@ -9,7 +9,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 namespace {
 
@@ -71,4 +71,4 @@ std::size_t PackedArray::read(void* to, std::size_t size) {
   return done;
 }
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 namespace {
 
@@ -69,4 +69,4 @@ void to_floats(const Head& head, const char* bytes, std::size_t count, float* to
   whole_to_floats<std::uint64_t, std::int64_t>(head, bytes, count, to);
 }
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

@@ -1,14 +1,11 @@
-#include <tiffio.h>
-
 #include <algorithm>
-#include <cstring>
-#include <memory>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/index.hpp"
 #include "io/image/image_file.hpp"
 #include "io/image/private/decoders.hpp"
+#include "io/image/private/tiff_memory.hpp"
 #include "io/stream/stream.hpp"
 
 namespace vam::io {
@@ -17,70 +14,18 @@ namespace {
 
 constexpr std::uint16_t most_samples = 8;  // a pixel: colours, transparency and what else a camera adds
 
-/// A file in memory, as libtiff wants it.
-struct Memory {
-  std::string bytes;
-  std::size_t at = 0;
-};
-
-Memory& memory(thandle_t handle) { return *static_cast<Memory*>(handle); }
-
-tmsize_t read(thandle_t handle, void* to, tmsize_t size) {
-  Memory& file = memory(handle);
-  const std::size_t left = file.bytes.size() - std::min(file.at, file.bytes.size());
-  const std::size_t count = std::min(static_cast<std::size_t>(size), left);
-  if (count > 0) std::memcpy(to, file.bytes.data() + file.at, count);
-  file.at += count;
-  return static_cast<tmsize_t>(count);
-}
-
-tmsize_t write(thandle_t handle, void* from, tmsize_t size) {
-  Memory& file = memory(handle);
-  const auto count = static_cast<std::size_t>(size);
-  if (file.bytes.size() < file.at + count) file.bytes.resize(file.at + count);
-  std::memcpy(file.bytes.data() + file.at, from, count);
-  file.at += count;
-  return size;
-}
-
-toff_t seek(thandle_t handle, toff_t offset, int whence) {
-  Memory& file = memory(handle);
-  const toff_t from = whence == SEEK_SET ? 0 : whence == SEEK_CUR ? file.at : file.bytes.size();
-  file.at = from + offset;
-  return file.at;
-}
-
-int close(thandle_t /*handle*/) { return 0; }
-
-toff_t size(thandle_t handle) { return memory(handle).bytes.size(); }
-
-using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
-
-Tiff open(Memory& file, const char* mode) {
-  TIFFSetErrorHandler(nullptr);
-  TIFFSetWarningHandler(nullptr);
-  return {TIFFClientOpen("", mode, &file, read, write, seek, close, size, nullptr, nullptr), TIFFClose};
-}
-
-template <class Value = std::uint16_t>
-Value field(TIFF* tiff, std::uint32_t tag) {
-  Value value{};
-  TIFFGetFieldDefaulted(tiff, tag, &value);
-  return value;
-}
-
 [[noreturn]] void refuse(const std::string& name, const std::string& why) {
   throw Error{Fault::data, name + ": cannot be decoded as 8 or 16 grey bits; " + why};
 }
 
 /// 16 bits a sample, grey or colours, in strips.
 void decode_wide(TIFF* tiff, const std::string& name, GreyImage& image) {
-  const auto samples = field(tiff, TIFFTAG_SAMPLESPERPIXEL);
-  const auto photometric = field(tiff, TIFFTAG_PHOTOMETRIC);
+  const auto samples = tiff_field(tiff, TIFFTAG_SAMPLESPERPIXEL);
+  const auto photometric = tiff_field(tiff, TIFFTAG_PHOTOMETRIC);
   const bool colours = photometric == PHOTOMETRIC_RGB && samples >= 3;
   const bool grey = photometric == PHOTOMETRIC_MINISBLACK || photometric == PHOTOMETRIC_MINISWHITE;
-  if (!(colours || grey) || field(tiff, TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT || TIFFIsTiled(tiff) != 0 ||
-      (samples > 1 && field(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)) {
+  if (!(colours || grey) || tiff_field(tiff, TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT || TIFFIsTiled(tiff) != 0 ||
+      (samples > 1 && tiff_field(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)) {
     refuse(name, "16-bit TIFF is read as grey or RGB of whole numbers in strips; convert it first");
   }
   std::vector<std::uint16_t> row(static_cast<std::size_t>(TIFFScanlineSize(tiff)) / 2);
@@ -111,15 +56,15 @@ void decode_narrow(TIFF* tiff, const std::string& name, GreyImage& image) {
 }  // namespace
 
 GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
-  Memory file{bytes, 0};
-  const Tiff tiff = open(file, "rm");
+  TiffMemory file{bytes};
+  const Tiff tiff = open_tiff(file, "rm");
   if (tiff == nullptr) refuse(name, "it is truncated or damaged");
-  const auto width = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH);
-  const auto height = field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH);
+  const auto width = tiff_field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGEWIDTH);
+  const auto height = tiff_field<std::uint32_t>(tiff.get(), TIFFTAG_IMAGELENGTH);
   if (width == 0 || height == 0) refuse(name, "it is truncated or damaged");
   if (std::uint64_t{width} * height > max_pixels) throw Error{Fault::data, too_large(name, width, height)};
-  const auto bits = field(tiff.get(), TIFFTAG_BITSPERSAMPLE);
-  const auto samples = field(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
+  const auto bits = tiff_field(tiff.get(), TIFFTAG_BITSPERSAMPLE);
+  const auto samples = tiff_field(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
   if (samples > most_samples) refuse(name, "it has " + std::to_string(samples) + " samples a pixel");
   if (bits > 16) refuse(name, "it has " + std::to_string(bits) + " bits a sample; convert it first");
   GreyImage image(static_cast<int>(width), static_cast<int>(height), bits == 16 ? 16 : 8);
@@ -129,9 +74,9 @@ GreyImage decode_tiff(const std::string& bytes, const std::string& name) {
 
 void write_tiff(const std::string& path, const GreyImage& image) {
   const bool wide = image.bits > 8;
-  Memory memory;
+  TiffMemory memory;
   {
-    const Tiff tiff = open(memory, "wm");
+    const Tiff tiff = open_tiff(memory, "wm");
     TIFFSetField(tiff.get(), TIFFTAG_IMAGEWIDTH, image.width);
     TIFFSetField(tiff.get(), TIFFTAG_IMAGELENGTH, image.height);
     TIFFSetField(tiff.get(), TIFFTAG_BITSPERSAMPLE, wide ? 16 : 8);

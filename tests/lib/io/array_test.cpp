@@ -9,8 +9,8 @@
 #include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
 #include "io/array/array_writer.hpp"
+#include "io/array/private/array_parser.hpp"
 #include "io/array/private/npy_head.hpp"
-#include "io/array/private/npy_parser.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 
@@ -169,7 +169,7 @@ TEST_CASE("headers that are none, or of what cannot be read, are refused") {
   CHECK(has(head_refusal(dictionary("<f4", "False", "1, 99999999999999999999, 1")), "exceed all memory"));
   CHECK(has(head_refusal(dictionary("<f4", "False", "65536, 65536, 257")), "up to 2^40"));
   CHECK(has(head_refusal(dictionary("<f4", "False", "1, 16385, 16384")), "images of more than 2^28 values"));
-  CHECK(npy::parse_head(dictionary("<f4", "False", "65536, 4096, 4096")).values() == npy::most_values);
+  CHECK(arrays::parse_npy_head(dictionary("<f4", "False", "65536, 4096, 4096")).values() == arrays::most_values);
 }
 
 TEST_CASE("files that are cut, too long or of another kind are refused") {
@@ -182,7 +182,7 @@ TEST_CASE("files that are cut, too long or of another kind are refused") {
   CHECK(has(refusal(whole + "x"), "has bytes behind its 4 values"));
   CHECK(has(refusal(array_of(dictionary("<f4", "True", "2, 1, 2"), std::string(17, '\0'))), "has bytes behind"));
   CHECK(has(refusal(""), "is empty"));
-  CHECK(has(refusal("hello"), "is not a NumPy array"));
+  CHECK(has(refusal("hello"), "is not an array (NumPy, NRRD, MRC, TIFF)"));
   for (const int version : {0, 4}) {
     std::string other = whole;
     other[6] = static_cast<char>(version);
@@ -228,7 +228,7 @@ TEST_CASE("what is written is what is read, behind a header of whole lines of 64
   CHECK((bytes.size() - 24) % 64 == 0);
   CHECK(bytes.find('\n') == bytes.size() - 25);
   for (const int images : {1, 10, 100, 1000, 10000, 65536}) {  // digits that shift the padding
-    CHECK((npy::head_of_floats({images, 65536, 65536}).size()) % 64 == 0);
-    CHECK((npy::head_of_floats({images, 10, 1}).size()) == 128);
+    CHECK((arrays::head_of_floats({images, 65536, 65536}).size()) % 64 == 0);
+    CHECK((arrays::head_of_floats({images, 10, 1}).size()) == 128);
   }
 }

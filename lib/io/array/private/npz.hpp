@@ -9,7 +9,7 @@
 struct zip;
 struct zip_file;
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 /// One array of an archive in memory, unpacked as it is read.
 class PackedArray {
@@ -31,4 +31,4 @@ class PackedArray {
   std::unique_ptr<zip_file, Close> array_;
 };
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

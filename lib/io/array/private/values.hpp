@@ -3,11 +3,11 @@
 
 #include <cstddef>
 
-#include "io/array/private/npy_head.hpp"
+#include "io/array/private/array_head.hpp"
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 /// `count` values of the head's type as floats; what is too large for a float becomes infinite.
 void to_floats(const Head& head, const char* bytes, std::size_t count, float* to);
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

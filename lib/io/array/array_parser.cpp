@@ -1,4 +1,4 @@
-#include "io/array/private/npy_parser.hpp"
+#include "io/array/private/array_parser.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "io/array/private/values.hpp"
 #include "io/stream/finite.hpp"
 
-namespace vam::io::npy {
+namespace vam::io::arrays {
 
 namespace {
 
@@ -24,39 +24,14 @@ std::array<std::size_t, 3> strides(const Head& head) {
 
 }  // namespace
 
-Parser::Parser(Read read, std::string name, std::array<int, 3> axes) : read_(std::move(read)), name_(std::move(name)) {
-  std::array<unsigned char, start_bytes> start{};
-  take(start.data(), start.size());
-  std::array<unsigned char, 4> length{};
-  take(length.data(), start[6] == 1 ? 2 : 4);
-  if (start[6] < 1 || start[6] > 3 || std::string_view(reinterpret_cast<const char*>(start.data()), 6) != magic) {
-    fail("is not a NumPy array of version 1 to 3");
-  }
-  const std::size_t size = length[0] | length[1] << 8 | length[2] << 16 | std::size_t{length[3]} << 24;
-  if (size > most_text) fail("its NumPy header is damaged; save the array again with numpy.save()");
-  std::string text(size, '\0');
-  take(text.data(), text.size());
-  try {
-    head_ = parse_head(text);
-  } catch (const std::runtime_error& problem) {
-    fail(problem.what());
-  }
+Parser::Parser(const Head& head, Bytes values, std::array<int, 3> axes) : head_(head), bytes_(std::move(values)) {
   const std::array<std::size_t, 3> own = strides(head_);
   for (std::size_t i = 0; i < 3; ++i) {
     size_[i] = head_.shape[axes[i]];
     stride_[i] = own[axes[i]];
   }
-  if (size_[1] * size_[2] > most_image) fail("has images of more than 2^28 values");
+  if (size_[1] * size_[2] > most_image) bytes_.fail("has images of more than 2^28 values");
   streams_ = stride_[2] == 1 && stride_[1] == size_[2] && (stride_[0] == size_[1] * size_[2] || size_[0] == 1);
-}
-
-void Parser::fail(const std::string& why) const { throw Error{Fault::data, name_ + ": " + why}; }
-
-void Parser::take(void* to, std::size_t bytes) {
-  const std::size_t got = read_(to, bytes);
-  taken_ += got;
-  if (got == bytes) return;
-  fail("is cut off after " + std::to_string(taken_) + " bytes; the program that wrote it did not finish");
 }
 
 void Parser::take_floats(float* to, std::size_t count) {
@@ -64,7 +39,7 @@ void Parser::take_floats(float* to, std::size_t count) {
   raw_.resize(piece * bytes);
   for (std::size_t done = 0; done < count; done += piece) {
     const std::size_t step = std::min(piece, count - done);
-    take(raw_.data(), step * bytes);
+    bytes_.take(raw_.data(), step * bytes);
     to_floats(head_, raw_.data(), step, to + done);
   }
 }
@@ -90,14 +65,15 @@ void Parser::check(const Image& image) const {
   if (all_finite(image.values.data(), image.size())) return;
   const auto bad = std::find_if(image.values.begin(), image.values.end(), [](float v) { return !std::isfinite(v); });
   const auto at = bad - image.values.begin();
-  fail("column " + std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) + " of image " +
-       std::to_string(done_) + " is not a finite number; numpy.nan_to_num() replaces such values");
+  bytes_.fail("column " + std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) +
+              " of image " + std::to_string(done_) +
+              " is not a finite number; numpy.nan_to_num() replaces such values");
 }
 
 void Parser::require_end() {
-  char more = 0;
-  if (read_(&more, 1) == 0) return;
-  fail("has bytes behind its " + std::to_string(head_.values()) + " values; it is damaged, or several arrays in one");
+  if (bytes_.ended()) return;
+  bytes_.fail("has bytes behind its " + std::to_string(head_.values()) +
+              " values; it is damaged, or several arrays in one");
 }
 
 void Parser::next(Image& image) {
@@ -114,4 +90,4 @@ void Parser::next(Image& image) {
   ++done_;
 }
 
-}  // namespace vam::io::npy
+}  // namespace vam::io::arrays

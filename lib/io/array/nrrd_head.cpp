@@ -1,0 +1,152 @@
+#include "io/array/private/nrrd_head.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "base/printable.hpp"
+
+namespace vam::io::arrays {
+
+namespace {
+
+using Fields = std::map<std::string, std::string>;
+
+constexpr const char* remedy = "; write it with: unu save -f nrrd -e raw";
+
+/// "field: value", and neither comments nor "key:=value", up to an empty line.
+Fields take_fields(Bytes& bytes) {
+  constexpr int most = 4096;
+  Fields fields;
+  for (int count = 0; count < most; ++count) {
+    const std::string line = bytes.line();
+    if (line.empty()) return fields;
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
+    if (colon == std::string::npos) bytes.fail("its header is damaged: '" + printable(line) + "' is no field");
+    std::string value = line.substr(colon + 2);
+    value.erase(0, std::min(value.find_first_not_of(' '), value.size()));
+    value.erase(value.find_last_not_of(' ') + 1);
+    fields[line.substr(0, colon)] = value;
+  }
+  bytes.fail("its header does not end");
+}
+
+const std::string& field(const Bytes& bytes, const Fields& fields, const std::string& name) {
+  const auto found = fields.find(name);
+  if (found == fields.end()) bytes.fail("its header has no '" + name + "'");
+  return found->second;
+}
+
+struct TypeName {
+  const char* name;
+  char kind;
+  int bytes;
+};
+
+constexpr TypeName types[] = {
+    {"signed char", 'i', 1},
+    {"int8", 'i', 1},
+    {"int8_t", 'i', 1},
+    {"uchar", 'u', 1},
+    {"unsigned char", 'u', 1},
+    {"uint8", 'u', 1},
+    {"uint8_t", 'u', 1},
+    {"short", 'i', 2},
+    {"short int", 'i', 2},
+    {"signed short", 'i', 2},
+    {"signed short int", 'i', 2},
+    {"int16", 'i', 2},
+    {"int16_t", 'i', 2},
+    {"ushort", 'u', 2},
+    {"unsigned short", 'u', 2},
+    {"unsigned short int", 'u', 2},
+    {"uint16", 'u', 2},
+    {"uint16_t", 'u', 2},
+    {"int", 'i', 4},
+    {"signed int", 'i', 4},
+    {"int32", 'i', 4},
+    {"int32_t", 'i', 4},
+    {"uint", 'u', 4},
+    {"unsigned int", 'u', 4},
+    {"uint32", 'u', 4},
+    {"uint32_t", 'u', 4},
+    {"longlong", 'i', 8},
+    {"long long", 'i', 8},
+    {"long long int", 'i', 8},
+    {"signed long long", 'i', 8},
+    {"signed long long int", 'i', 8},
+    {"int64", 'i', 8},
+    {"int64_t", 'i', 8},
+    {"ulonglong", 'u', 8},
+    {"unsigned long long", 'u', 8},
+    {"unsigned long long int", 'u', 8},
+    {"uint64", 'u', 8},
+    {"uint64_t", 'u', 8},
+    {"float", 'f', 4},
+    {"double", 'f', 8},
+};
+
+void set_type(const Bytes& bytes, const std::string& name, Head& head) {
+  const auto* type =
+      std::find_if(std::begin(types), std::end(types), [&](const TypeName& t) { return name == t.name; });
+  if (type == std::end(types)) bytes.fail("has values of type '" + printable(name) + "', which are no numbers");
+  head.kind = type->kind;
+  head.bytes = type->bytes;
+}
+
+/// The fastest first in the file.
+std::vector<std::uint64_t> shape_of(const Bytes& bytes, const std::string& text) {
+  std::vector<std::uint64_t> shape;
+  const char* at = text.data();
+  const char* end = at + text.size();
+  while (at < end && shape.size() < 33) {
+    std::uint64_t size = 0;
+    const auto [next, problem] = std::from_chars(at, end, size);
+    if (problem != std::errc{}) bytes.fail("its header is damaged: sizes '" + printable(text) + "'");
+    shape.push_back(size);
+    at = std::find_if(next, end, [](char c) { return c != ' '; });
+  }
+  std::reverse(shape.begin(), shape.end());
+  return shape;
+}
+
+void require_plain(const Bytes& bytes, const Fields& fields) {
+  for (const char* name : {"data file", "datafile"}) {
+    if (fields.count(name) != 0) bytes.fail("has its values in another file (a detached header)" + std::string(remedy));
+  }
+  for (const char* name : {"line skip", "lineskip", "byte skip", "byteskip"}) {
+    const auto found = fields.find(name);
+    if (found != fields.end() && found->second != "0") {
+      bytes.fail("skips bytes before its values (" + std::string(name) + ")" + remedy);
+    }
+  }
+}
+
+}  // namespace
+
+Head take_nrrd_head(Bytes& bytes) {
+  if (!bytes.line().starts_with(nrrd_magic)) bytes.fail("is no NRRD volume");
+  const Fields fields = take_fields(bytes);
+  require_plain(bytes, fields);
+  Head head;
+  set_type(bytes, field(bytes, fields, "type"), head);
+  try {
+    set_shape(shape_of(bytes, field(bytes, fields, "sizes")), head);
+  } catch (const std::runtime_error& problem) {
+    bytes.fail(problem.what());
+  }
+  head.big_endian = head.bytes > 1 && field(bytes, fields, "endian") == "big";
+  const std::string& encoding = field(bytes, fields, "encoding");
+  if (encoding == "gzip" || encoding == "gz") {
+    bytes.unpack();
+  } else if (encoding != "raw") {
+    bytes.fail("has values encoded as '" + printable(encoding) + "'; raw and gzip are read" + remedy);
+  }
+  return head;
+}
+
+}  // namespace vam::io::arrays

@@ -1,0 +1,34 @@
+// Private to the array files: the bytes of an array, front to back, in the process that parses it.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace vam::io::arrays {
+
+class Bytes {
+ public:
+  /// `read(to, size)` returns fewer only at the end; `name` begins messages.
+  using Read = std::function<std::size_t(void*, std::size_t)>;
+  Bytes(Read read, std::string name);
+
+  /// Throws Fault::data where fewer are left.
+  void take(void* to, std::size_t size);
+  /// Up to and without the next line feed, and without a carriage return before it. Throws Fault::data for a line of
+  /// more than 64 KiB.
+  [[nodiscard]] std::string line();
+  void skip(std::size_t size);
+  /// What follows is packed by gzip.
+  void unpack();
+  [[nodiscard]] bool ended();
+  /// Throws Fault::data: the name, then why.
+  [[noreturn]] void fail(const std::string& why) const;
+
+ private:
+  Read read_;
+  std::string name_;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace vam::io::arrays

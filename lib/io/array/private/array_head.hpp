@@ -1,0 +1,28 @@
+// Private to the array files: what every format comes down to, the type of its numbers and how they lie.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vam::io::arrays {
+
+inline constexpr std::uint64_t most_side = 1 << 16;       // values along an axis
+inline constexpr std::uint64_t most_image = 1ULL << 28;   // values of a slice
+inline constexpr std::uint64_t most_values = 1ULL << 40;  // of all
+
+/// The type of its values and their order.
+struct Head {
+  char kind = 'f';  // b, i, u or f
+  int bytes = 4;    // of a value: 1, 2, 4 or 8
+  bool big_endian = false;
+  bool fortran = false;                  // the first axis is the fastest
+  std::array<std::uint64_t, 3> shape{};  // a plane is one slice
+  [[nodiscard]] std::uint64_t values() const { return shape[0] * shape[1] * shape[2]; }
+};
+
+/// Two axes or three, the slowest first. Throws std::runtime_error, to stand behind the file's name: another number of
+/// axes, an empty axis, sizes beyond the limits.
+void set_shape(const std::vector<std::uint64_t>& shape, Head& head);
+
+}  // namespace vam::io::arrays

@@ -1,0 +1,30 @@
+// Private to the image files: libtiff on bytes in memory.
+#pragma once
+
+#include <tiffio.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace vam::io {
+
+struct TiffMemory {
+  std::string bytes;
+  std::size_t at = 0;
+};
+
+using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
+
+/// mode "rm" or "wm"; `file` must outlive it. Null where libtiff finds no TIFF. It prints nothing.
+[[nodiscard]] Tiff open_tiff(TiffMemory& file, const char* mode);
+
+template <class Value = std::uint16_t>
+Value tiff_field(TIFF* tiff, std::uint32_t tag) {
+  Value value{};
+  TIFFGetFieldDefaulted(tiff, tag, &value);
+  return value;
+}
+
+}  // namespace vam::io
