@@ -114,7 +114,8 @@ void declare(cli::App& app, Options& o) {
   app.group("Frame selection");
   app.option("--frames", "N", o.frames, {1, 1e6},
              "Number of frames. Required for a stack unless --live or --view-step is given.")
-      .default_is("until a signal or the end of a recording, for a folder or with --live");
+      .default_is("until a signal or the end of a recording, for a folder or with --live")
+      .form();
   app.option("--view-step", "DEG", o.every_deg, cli::positive,
              "Angle between the frames to keep: those nearest to its multiples.")
       .default_is("every frame is kept")
@@ -133,7 +134,7 @@ void declare(cli::App& app, Options& o) {
   app.group("Output and performance");
   app.flag("--live", o.live, "Send every frame immediately as a stack of its own.").form();
   app.option("--latest", "FILE", o.latest, "Also write the newest frame to FILE (PNG), at most once a second.")
-      .writes();
+      .writes_as({".png"});
   app.option("--pixel", "MM", o.pixel_mm, cli::positive,
              "Pixel pitch of the frames at the axis, after the camera's binning.")
       .default_is("camera.pixel_mm times the binning");

@@ -189,7 +189,7 @@ void declare_live(cli::App& app, Options& o) {
 
 void declare(cli::App& app, Options& o) {
   app.positional("VIEWS", o.views, "EXR frame stack, folder of images or video; - is standard input.").reads();
-  cli::add_output(app, o.output);
+  cli::add_output(app, o.output).writes_as({".vdb", ".toml"});
   declare_camera(app, o);
   declare_reconstruction(app, o);
   declare_print(app, o);
@@ -230,6 +230,11 @@ void run(const cli::App& app, const Options& options) {
   if (tool::print_printer(options.printer)) return;
   if (options.step_deg == 0.0) {
     throw Error{Fault::usage, "--view-step: is 0; give the angle between views"};
+  }
+  if (options.live && options.output == "-" && options.log.empty() && options.page.empty() && options.until.empty()) {
+    throw Error{Fault::usage,
+                "--live: gives no result; name a folder for the volumes by -o, or use --log, --page or "
+                "--until"};
   }
   if (options.live && app.given("--report")) {
     throw Error{Fault::usage, "--report: describes one volume; with --live the figures of each are written to --log"};

@@ -68,7 +68,7 @@ void declare(cli::App& app, Options& o) {
   app.flag("--watch", o.watch, "Repeat until the print has ended.").was("--follow");
   app.option("--interval", "S", o.period_s, {0.2, 3600}, "Time between two lines or updates of the page.")
       .was("--every");
-  app.option("--page", "FILE", o.page, "Write a page that refreshes itself (HTML).").writes();
+  app.option("--page", "FILE", o.page, "Write a page that refreshes itself (HTML).").writes_as({".html"});
   app.option("--sinogram", "FILE", o.sinogram, "Sinogram of the print, for the images of projections and dose.")
       .default_is("RUN/sinogram.exr, a link that vam-print creates");
   app.flag("--die-with-parent", o.with_parent, "Exit when the parent process exits.");

@@ -69,7 +69,11 @@ App& App::positional(const std::string& value_name, std::vector<std::string>& ta
 
 App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
   return declare(
-      {flag, value_name, help, target, "", {}}, [&target](const std::string& text) { target = text; },
+      {flag, value_name, help, target, "", {}},
+      [&target, flag](const std::string& text) {  // as of a shell variable that is not set
+        if (text.empty()) throw Error{Fault::usage, split(flag, ',').back() + ": is empty; give a value, or omit it"};
+        target = text;
+      },
       [&target] { return target; });
 }
 
@@ -180,7 +184,9 @@ App& App::usual(const std::vector<std::string>& flags) {
 }
 
 App& App::required() {
-  state_->current_group().options.back().required = true;
+  Option& option = state_->current_group().options.back();
+  option.required = true;
+  option.default_text.clear();
   return *this;
 }
 
@@ -207,6 +213,11 @@ App& App::reads(const std::vector<std::string>& unless) {
 App& App::writes(const std::vector<std::string>& endings) {
   state_->current_group().options.back().writes = true;
   state_->current_group().options.back().endings = endings;
+  return *this;
+}
+
+App& App::writes_as(const std::vector<std::string>& endings) {
+  writes(endings).state_->current_group().options.back().any_name = true;
   return *this;
 }
 

@@ -94,6 +94,8 @@ class App {
   /// The option declared last names a file that the tool writes: no two of them may name the same one. Of what kind it
   /// is: its name must end in one of `endings`, if any; "-" and devices may be called anything.
   App& writes(const std::vector<std::string>& endings = {});
+  /// And writes it in these formats, whatever it is called: a name with the ending of another one is refused.
+  App& writes_as(const std::vector<std::string>& endings);
   /// The operand or option declared last names a file that the tool reads; - is standard input. At most one input is
   /// standard input, and no output is an input. `unless`: options that stand for the operand.
   App& reads(const std::vector<std::string>& unless = {});

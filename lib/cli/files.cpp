@@ -4,8 +4,10 @@
 
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "base/error.hpp"
 #include "base/sha256.hpp"
@@ -26,10 +28,22 @@ bool is_one_file(const std::string& a, const std::string& b) {
   return fs::weakly_canonical(fs::absolute(a), ignored) == fs::weakly_canonical(fs::absolute(b), ignored);
 }
 
+// Endings that say a format.
+bool says_format(const std::string& path) {
+  static const std::set<std::string> known{".3mf", ".amf",  ".avi",  ".bmp",  ".csv",  ".exr", ".gif", ".glb",  ".gz",
+                                           ".h5",  ".html", ".jpeg", ".jpg",  ".json", ".mkv", ".mov", ".mp4",  ".mrc",
+                                           ".npy", ".npz",  ".nrrd", ".obj",  ".off",  ".pdf", ".ply", ".png",  ".step",
+                                           ".stl", ".svg",  ".tif",  ".tiff", ".toml", ".txt", ".vdb", ".xlsx", ".zip"};
+  std::string ending = fs::path(path).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return known.count(ending) != 0;
+}
+
 // A name that says another format than the file's would mislead whoever opens it.
 void require_ending(const Option& option) {
   const std::string path = option.value();
   if (option.endings.empty() || path == "-" || path.starts_with("/dev/")) return;
+  if (option.any_name && !says_format(path)) return;
   const auto ends = [&](const std::string& ending) { return path.ends_with(ending); };
   if (std::any_of(option.endings.begin(), option.endings.end(), ends)) return;
   throw Error{Fault::usage, long_flag(option) + ": '" + path + "' must end in " + join(option.endings, " or ")};

@@ -81,8 +81,8 @@ void App::fail_on_count(const std::vector<std::string>& reversed_words) const {
   std::set<std::string> seen;
   std::string last;
   for (auto word = reversed_words.rbegin(); word != reversed_words.rend(); ++word) {
-    if (word->rfind("--", 0) != 0) continue;
-    last = split(*word, '=').front();
+    if (!is_option(*word)) continue;
+    last = flag_of(*word);
     if (!seen.insert(last).second) throw Error{Fault::usage, last + ": given twice"};
   }
   throw Error{Fault::usage, last + ": needs a value"};
@@ -98,7 +98,11 @@ void App::require_present() const {
     throw Error{Fault::usage, name + ": missing" + (unless.empty() ? "" : ", as is " + unless) + "; see --help"};
   };
   for (const auto& positional : state_->tool.positionals) {
-    if (positional.default_text.empty()) require(split(positional.value_name, ' ').front());
+    const std::string name = split(positional.value_name, ' ').front();
+    if (positional.default_text.empty()) require(name);
+    const auto values = positional.values();
+    if (!given(name) || std::find(values.begin(), values.end(), "") == values.end()) continue;
+    throw Error{Fault::usage, name + ": is empty; give its name"};
   }
   for (const auto& group : state_->tool.groups) {
     for (const auto& option : group.options) {

@@ -11,8 +11,6 @@ namespace vam::cli {
 
 namespace {
 
-bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
-
 // Null when it is none.
 const Former* former_name(const Option& option, const std::string& flag) {
   const auto found = std::find_if(option.former.begin(), option.former.end(),
@@ -127,6 +125,8 @@ const Option* find_option(const Declaration& tool, const std::string& flag) {
   return found;
 }
 
+bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-'; }
+
 std::string flag_of(const std::string& word) { return word.substr(0, word.find('=')); }
 
 std::vector<std::string> command_names(const Declaration& tool) {
@@ -170,7 +170,7 @@ std::string unknown_word(const Declaration& tool, const std::vector<std::string>
   const Declaration& form = form_of(tool, words);
   const bool plain = &form == &tool;
   const std::string name = plain ? tool.manual.name : tool.manual.name + " " + form.manual.name;
-  const std::string where = " (" + name + " --help lists all)";
+  const std::string where = " (" + name + (has_usual(form) ? " --help=all" : " --help") + " lists all)";
   if (!is_option(unknown)) {
     const auto known = plain ? command_names(tool) : std::vector<std::string>{};
     return unknown + ": unexpected argument" + did_you_mean(unknown, known) + where;

@@ -131,4 +131,5 @@ near 'it is in force' "$(value cal/current-edges.json axis_column)" 251.3 0.1
 echo malformed >cal/current-beam.json
 fails 65 'is not a vam-calibration/1 record' vam-project --print-printer
 fails 73 'cannot make the folder' vam-calibrate axis turn --view-step 10 --set calibration.folder=printer.toml/cal
+fails 66 'nowhere: no such folder of calibration records' vam-calibrate check --set calibration.folder=nowhere
 done_testing

@@ -143,4 +143,5 @@ vam-capture --device 'sim:?speed=90' --binning 12 --frames 500 -o stopped.exr --
 tries=0; until [ -s begun ] || [ $tries -gt 500 ]; do tries=$((tries + 1)); sleep 0.02; done
 kill -TERM $tool; wait $tool 2>/dev/null
 is 'a signal ends the capture, which leaves no file' "$? $(ls | grep -c stopped)" '143 0'
+ok 'its forms have the option that a stack needs' sh -c "vam-capture --help | grep -q 'vam-capture .OPTIONS. --frames N'"
 done_testing

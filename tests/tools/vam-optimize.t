@@ -228,6 +228,8 @@ holds "no light is better than the bound" "$(value proved.json certificate.least
   $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.unlimited_void_over_part) &&
   $(value proved.json certificate.least_void_over_part) <= $(value proved.json certificate.void_over_part)"
 ok "its weights are a volume to look at" vam-view proof.vdb -o proof.png
+fails 65 "certificate" vam-optimize --weights proof.vdb part.vdb -o out.exr
+fails 64 "vam-optimize --help=all lists all" vam-optimize --threshold 3 part.vdb
 fails 64 'certify: does not apply to --grey-target' vam-optimize --grey-target --certify p.vdb part.vdb -o out.exr
 fails 64 'p.exr' vam-optimize --certify p.exr part.vdb -o out.exr
 
@@ -310,6 +312,7 @@ quiet "a measured response" vam-optimize --method bclp --resin-response cure.csv
 holds "its window's middle is the threshold" "$(value cure.json threshold_dose) > 0.79 && $(value cure.json threshold_dose) < 0.81"
 quiet "a step" vam-optimize --method bclp --resin-response step --angles 90 --iterations 5 part.vdb -o step.exr
 quiet "a grey target" vam-optimize --grey-target --band 0.45 --angles 90 --iterations 20 --report grey.json part.vdb -o grey.exr
+is "no doses of part and void" "$(grep -c min_part grey.json)" 0
 holds "most are within their band" "$(value grey.json ver) < 0.05"
 printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --resin-response falls.csv part.vdb -o out.exr

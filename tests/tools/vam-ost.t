@@ -119,15 +119,16 @@ vam-ost gap.exr --live $glass --isovalue 0.5 -o gap --log gap.jsonl 2>errors
 report $? 'a gap costs a live print no more than its turn'
 is 'with a warning' "$(grep -c 'warning: no volume after .* turns: views: the turn is incomplete' errors)" 1
 is 'which is reported' "$(grep -c '"waiting":"views: the turn is incomplete, no frame for 54 deg' gap.jsonl) $(ls gap | wc -l)" '1 2'
-fails 65 'no volume' vam-ost views --view-step 2 $rig --live
-fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --view-step 20 $rig --live
+: >live.jsonl
+fails 65 'no volume' vam-ost views --view-step 2 $rig --live --log live.jsonl
+fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --view-step 20 $rig --live --log live.jsonl
 
 fails 64 'have no angles; give their angular step' vam-ost views -o x.vdb
 fails 64 'mesh: requires --isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
 fails 64 "'p.obj' must end in .ply or .stl" vam-ost views --view-step 6 --isovalue 1 --mesh p.obj -o x.vdb
 fails 64 'volume-step: requires --live' vam-ost views --view-step 6 --volume-step 90 -o x.vdb
 fails 64 'until: requires --target' vam-ost views --view-step 6 --live --isovalue 1 --until 'iou>=0.5'
-fails 64 'report: describes one volume' vam-ost views --view-step 6 --live --report x.json
+fails 64 'report: describes one volume' vam-ost views --view-step 6 --live -o x --report x.json
 fails 64 'view-step: is 0' vam-ost views --view-step 0 -o x.vdb
 fails 64 'requires --projections' vam-ost views --view-step 6 --live --page p.html
 fails 64 '--diameter: missing, as is --profile' vam-calibrate resin scatter.vdb
@@ -157,4 +158,5 @@ fails 65 'saturated, 49.8 % of the pixels are at 1;' vam-ost saturated --view-st
 fails 65 'has 300 x 40 pixels, but those before have 333 x 40' vam-ost sizes --view-step 6 $rig -o x.vdb
 fails 65 'dark, every pixel' vam-ost dark --view-step 6 $rig -o x.vdb
 
+fails 64 'live: gives no result; name a folder' vam-ost --live --view-step 6 dark $rig
 done_testing

@@ -15,6 +15,8 @@ ok 'which can be accepted' print --set vial.radius_mm=6 --accept-printer --run a
 is 'and is reported' "$(grep -c 'vial.radius_mm 12.7, now 6; accepted' .log/err) $(json accepted/summary.json project.printer_differences)" "1 ['vial.radius_mm 12.7, now 6']"
 is 'progress at the end' "$(json accepted/summary.json reached.turns | cut -c1-3) $(json accepted/summary.json reached.lit_flips)" "$(json accepted/summary.json reached.turns | grep -E '^(0.9|1.0)' | cut -c1-3) $(json accepted/summary.json project.lit_flips)"
 
+fails 64 'vam-print: stage.device: no device is set; .*--set stage.device=DEVICE' print --set stage.device= --run none
+
 # The plan: the figures, every problem, and no file left.
 plan() { print --plan "$@"; }
 sed 's/sim:?/sim:?log=moved\&/' printer.toml >watched.toml

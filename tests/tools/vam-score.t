@@ -65,7 +65,7 @@ fails 64 "has no relation" vam-score --grid target part.vdb --require 'ver'
 fails 64 'isovalue' vam-score --grid target part.vdb --isovalue -1
 fails 64 'is also the input' vam-score --grid target part.vdb --mesh part.vdb
 fails 64 'standard output holds the figures' vam-score --grid target part.vdb --mesh -
-fails 64 'as --lit-fraction does; name another file' vam-score --grid target part.vdb --lit-fraction one.ply --mesh ./one.ply
+fails 64 'as --lit-fraction does; name another file' vam-score --grid target part.vdb --lit-fraction one --mesh ./one
 fails 65 "no grid 'dose'" vam-score part.vdb
 fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
 fails 65 'nothing prints at a dose of 7 .*; choose an --isovalue below' vam-score --grid target part.vdb --mesh none.ply --isovalue 7
@@ -77,4 +77,6 @@ fails 73 'nowhere' vam-score --grid target part.vdb --mesh nowhere/print.ply
 fails 74 'full' vam-score --grid target part.vdb --mesh /dev/full
 fails 65 'part.vdb' vam-score --grid target part.vdb --sinogram part.vdb
 
+fails 64 'require: is empty' vam-score part.vdb --target part.vdb --require ''
+fails 64 "'print.stl' must end in .ply" vam-score part.vdb --target part.vdb --mesh print.stl
 done_testing

@@ -197,4 +197,11 @@ fails 66 'none.toml: cannot open' vam-slice cube.stl --printer none.toml -o x.vd
 fails 64 'cube.stl' vam-slice cube.stl -o cube.stl
 fails 73 'no/such' vam-slice cube.stl -o no/such/x.vdb
 fails 74 'full' vam-slice cube.stl -o /dev/full
+# A name that says another format is refused, and what has it is kept.
+fails 64 "'cube.stl' must end in .vdb or .toml" vam-slice --shape sphere --voxel 2 -o cube.stl
+fails 64 "'x.PNG' must end in .vdb" vam-slice cube.stl -o x.PNG
+ok 'another name is a name' vam-slice cube.stl -o part.v2
+fails 64 '^vam-slice: --output: is empty; give a value' vam-slice cube.stl -o ''
+fails 64 'PART: is empty' vam-slice ''
+fails 64 '^vam-slice: -o: needs a value' vam-slice cube.stl -o
 done_testing

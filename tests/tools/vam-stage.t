@@ -207,4 +207,5 @@ spoilt 76 'is blocked' block@POS?:2
 
 # A full disk as output.
 fails 74 'write failed' sh -c 'vam-stage follow --device sim: --duration 1 >/dev/full'
+fails 64 'device: names no serial port' vam-stage status --device gcs:
 done_testing

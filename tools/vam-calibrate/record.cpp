@@ -150,6 +150,9 @@ void check_records(const ScanOptions& options, const model::Calibration& calibra
       throw Error{Fault::usage, "--need " + name + ": expected one of " + join(scans, ", ")};
     }
   }
+  if (needed.empty() && !fs::is_directory(calibration.folder)) {
+    throw Error{Fault::no_input, calibration.folder + ": no such folder of calibration records (calibration.folder)"};
+  }
   const Json devices = options.devices.empty() ? Json::object() : read_devices(options.devices);
   Json report = Json::object();
   std::string first;

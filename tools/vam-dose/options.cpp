@@ -69,7 +69,7 @@ void declare_alignment(cli::App& app, Options& options) {
 
 void declare(cli::App& app, Options& options) {
   app.positional("SINOGRAM", options.input, "Sinogram stack (EXR) of a projector, or a virtual one.").reads();
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".vdb", ".toml"});
   cli::add_report(app, options.report);
   declare_volume(app, options);
   declare_beam(app, options);

@@ -117,7 +117,8 @@ void declare_stopping(cli::App& app, Options& options) {
              "it with bit-identical results; target, printer and all options that affect the result must be the same. "
              "Removed on completion.");
   app.not_in_job().writes();
-  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.").writes();
+  app.option("--trace", "FILE", options.trace, "Write the figures of merit after every iteration as CSV.")
+      .writes_as({".csv"});
   app.not_in_job();  // whether there is one is part of the state
 }
 
@@ -233,7 +234,7 @@ void declare_grey_levels(cli::App& app, Options& options) {
 
 void declare(cli::App& app, Options& options) {
   app.positional("TARGET", options.input, "Volume (VDB) with a grid 'target' of coverage 0...1.").reads();
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".exr", ".toml"});
   std::vector<std::string> methods = optimize::method_names();
   methods.insert(methods.begin(), "auto");
   app.choice("--method", options.method, methods,

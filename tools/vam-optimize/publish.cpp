@@ -42,7 +42,7 @@ void warn_of(const optimize::VolumeOutcome& outcome, const Options& options) {
 void write_proof(const optimize::Certificate& proof, const Scene& scene, const io::SparseVolume& target,
                  const model::StackInfo& info, const std::string& path) {
   const model::Grid& grid = scene.grid;
-  io::SparseVolume volume("weight", grid);
+  io::SparseVolume volume("certificate", grid);
   volume.metadata = target.metadata;
   volume.history = info.history;
   float most = 0;
@@ -80,7 +80,10 @@ void publish(const optimize::VolumeOutcome& outcome, const std::optional<optimiz
   }
   const auto plan = exposure_of(outcome.metrics, outcome.peak_intensity, printer, info, options);
   if (plan) add_to(report, *plan);
-  if (!options.demands.grey) {
+  if (options.demands.grey) {  // no part and void, whose doses these would be
+    for (const char* key : {"threshold", "min_part", "max_part", "mean_part", "max_void", "max_dose"})
+      report.erase(key);
+  } else {
     const score::Verdict verdict{outcome.metrics, outcome.with_cut, plan ? std::optional(plan->seconds) : std::nullopt};
     add_to(report, verdict);
     note("vam-optimize: " + io::input_name(options.input) + " " + words(verdict));

@@ -1,7 +1,9 @@
 #include "vam-project/patterns.hpp"
 
 #include <span>
+#include <string>
 
+#include "base/error.hpp"
 #include "base/json.hpp"
 #include "device/open/display.hpp"
 #include "device/os/interrupt.hpp"
@@ -63,7 +65,20 @@ model::StackInfo stack_info(const model::Projector& projector, int count) {
 
 }  // namespace
 
+namespace {
+
+void refuse_options_of_prints(const cli::App& app) {
+  for (const char* flag :
+       {"--turns", "--speed", "--print-speed", "--full-scale", "--multiplier", "--dither", "--flatland",
+        "--column-offset", "--row-offset", "--frames-per-turn", "--from", "--accept-printer", "--freeze", "--report"}) {
+    if (app.given(flag)) throw Error{Fault::usage, std::string(flag) + ": does not apply to --pattern; omit it"};
+  }
+}
+
+}  // namespace
+
 void show_pattern(const cli::App& app, const Options& options, const model::Projector& projector) {
+  refuse_options_of_prints(app);
   const PatternOptions& pattern = options.pattern;
   const int count = optics::pattern_frames(pattern.plan, projector);
   if (device::names_display(options.output)) {

@@ -7,7 +7,7 @@ namespace vam::resample_tool {
 void declare(cli::App& app, Options& options) {
   app.positional("SINOGRAM", options.input, "Sinogram stack (EXR): virtual, or of a camera with --geometry parallel.")
       .reads({"--explain"});
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".exr", ".csv", ".toml"});
   app.choice(
          "--geometry", options.geometry, {"vial", "parallel"},
          "Output: columns of the projector, whose rays the vial refracts, or detector bins of an ideal parallel beam.")

@@ -24,7 +24,7 @@ void declare_grey(cli::App& app, Options& options) {
 
 void declare_print(cli::App& app, Options& options) {
   app.group("Print");
-  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print").writes();
+  app.option("--mesh", "FILE", options.print, "Write the print as PLY, in mm.").was("--print").writes_as({".ply"});
   app.choice("--ply-as", options.print_as, {"mesh", "points"},
              "Content of the PLY file: the surface of the print, or its voxels coloured by dose.")
       .needs({"--mesh"})
@@ -59,7 +59,7 @@ void declare(cli::App& app, Options& options) {
   app.option("--lit-fraction", "FILE", options.lit_fraction,
              "Write a volume (grid lit_fraction): the fraction of stage angles from which each voxel is lit.")
       .was("--reach")
-      .writes();
+      .writes_as({".vdb"});
   declare_grey(app, options);
   declare_print(app, options);
   cli::add_printer(app, options.printer);

@@ -7,7 +7,7 @@ namespace vam::sinogram_tool {
 
 void declare(cli::App& app, Options& options) {
   app.positional("TARGET", options.input, "Volume (VDB) with values 0...1 and the rotation axis at x = y = 0.").reads();
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".exr", ".toml"});
   app.option("--grid", "NAME", options.grid, "Grid to project.");
   app.option("--angles", "N", options.angles, {1, 1000000}, "Number of angles over 360 degrees, endpoint excluded.");
   app.option("--detector-bins", "N", options.bins, {1, 65536},

@@ -65,7 +65,7 @@ void declare_insert(cli::App& app, Options& options) {
 
 void declare(cli::App& app, Options& options) {
   app.positional("PART", options.input, "Mesh, or folder of numbered images.").reads({"--shape"});
-  cli::add_output(app, options.output);
+  cli::add_output(app, options.output).writes_as({".vdb", ".toml"});
   app.option("--shape", "NAME:KEY=VALUE,...", options.shape,
              "Test part by name instead of PART, e.g. gyroid:cell=5,sheet=0.6; listed in IMPLEMENTATION NOTES.")
       .form();

@@ -34,6 +34,7 @@ struct Option {
   bool reads = false;                                     // names a file that is read
   bool writes = false;                                    // names a file that is written
   std::vector<std::string> endings = {};                  // of which its name has one; empty: any
+  bool any_name = false;                                  // or it has none that says another format
   bool usual = false;                                     // --help shows it where others need --help=all
 };
 

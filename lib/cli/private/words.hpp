@@ -10,6 +10,8 @@
 
 namespace vam::cli {
 
+[[nodiscard]] bool is_option(const std::string& word);
+
 /// The flag of "--flag=value".
 [[nodiscard]] std::string flag_of(const std::string& word);
 

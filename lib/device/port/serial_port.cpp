@@ -39,6 +39,7 @@ std::string last_message() {
 }
 
 Error refused(const std::string& path, sp_return status, const std::string& doing) {
+  if (path.empty()) return {Fault::usage, "device: names no serial port; write for example gcs:/dev/ttyUSB0"};
   if (status == SP_ERR_ARG)
     return {Fault::absent, path + ": not a serial port of this machine (vam-stage ports lists them)"};
   return {Fault::absent, path + ": cannot " + doing + " (" + last_message() + ")"};
