@@ -176,8 +176,9 @@ void declare_proof(cli::App& app, Options& options) {
   app.option("--certify", "FILE", options.certify,
              "After the optimisation, compute a lower bound on the ratio of the largest void dose to the least part "
              "dose that holds for any projections (certificate in the report), and write the weights that prove it as "
-             "a volume (VDB); they are large in the regions that limit the process window. Takes " +
-                 std::to_string(optimize::certify_iterations) + " additional iterations.")
+             "a volume (VDB); they are large in the regions that limit the process window. Takes up to " +
+                 std::to_string(optimize::certify_iterations) +
+                 " additional iterations, until the bound is within 3 % of the least ratio reached.")
       .writes({".vdb"});
 }
 

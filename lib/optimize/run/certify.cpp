@@ -15,6 +15,8 @@ namespace vam::optimize {
 namespace {
 
 constexpr int look_every = 20;
+constexpr int prove_every = 100;
+constexpr int few_rounds = 4;
 constexpr int most_rounds = 12;
 
 constexpr std::array even_shares{0.003, 0.03, 0.3, 1.0};
@@ -53,22 +55,18 @@ class Prover {
   Prover(const Problem& problem, const light::Operator& light) : problem_(problem), light_(light) {
     const std::size_t count = problem.target.size();
     weights_ = more_ = slabs(count, light.object().width, light.object().height);
-    rays_ = even_rays_ = slabs(count, light.sinogram().width, light.sinogram().height);
+    rays_ = even_rays_ = short_ = slabs(count, light.sinogram().width, light.sinogram().height);
     weigh(weights_, [](Label label, std::size_t, std::size_t) { return label == Label::void_ ? 1.0F : 0.0F; });
     void_voxels_ = sum_of(weights_, 1);
     light.forward(weights_, even_rays_);
+    find_cheap_part();
   }
 
-  /// 1 for part, -1 for void; 0 also for part voxels that are reached by rays through almost no void: lighting them
-  /// costs nothing, so they cannot carry weight in the proof.
+  /// 1 for part, -1 for void.
   [[nodiscard]] std::vector<Slab> sign() {
-    constexpr float next_to_none = 0.02F;
-    least_void_ = next_to_none * largest_of_all(largest(even_rays_))[0][0];
-    fill(rays_, [&](std::size_t s, std::size_t i) { return even_rays_[s].values[i] < least_void_ ? 1.0F : 0.0F; });
-    light_.adjoint(rays_, more_);
-    weigh(weights_, [&](Label label, std::size_t s, std::size_t i) {
+    weigh(weights_, [&](Label label, std::size_t, std::size_t) {
       if (label == Label::void_) return -1.0F;
-      return label == Label::part && more_[s].values[i] <= 0 ? 1.0F : 0.0F;
+      return label == Label::part ? 1.0F : 0.0F;
     });
     return weights_;
   }
@@ -83,8 +81,10 @@ class Prover {
 
   /// Weight in the void along the rays that are short of it, in some rounds; then so much that no ray is.
   [[nodiscard]] Certificate prove(const SaddlePoint& point, int rounds) {
-    weigh(weights_, [&](Label, std::size_t s, std::size_t i) { return -point.weights[s].values[i]; });
-    short_ = point.balance;
+    weigh(weights_,
+          [&](Label, std::size_t s, std::size_t i) { return cheap_[s][i] != 0 ? 0.0F : -point.weights[s].values[i]; });
+    light_.forward(weights_, short_);
+    fill(short_, [&](std::size_t s, std::size_t i) { return -short_[s].values[i]; });
     for (int round = 0; round < rounds; ++round) fill_in();
     light_.forward(weights_, short_);
     fill(short_, [&](std::size_t s, std::size_t i) { return -short_[s].values[i]; });
@@ -105,6 +105,22 @@ class Prover {
   template <class Value>
   void weigh(std::span<Slab> volume, const Value& value) {
     fill(volume, [&](std::size_t s, std::size_t i) { return value(problem_.labels[s][i], s, i); });
+  }
+
+  /// Part that is reached by rays through almost no void: lighting it costs nothing, so that it cannot carry weight in
+  /// the proof.
+  void find_cheap_part() {
+    constexpr float next_to_none = 0.02F;
+    least_void_ = next_to_none * largest_of_all(largest(even_rays_))[0][0];
+    fill(rays_, [&](std::size_t s, std::size_t i) { return needs_void(s, i) ? 0.0F : 1.0F; });
+    light_.adjoint(rays_, more_);
+    for (std::size_t s = 0; s < more_.size(); ++s) {
+      std::vector<char> cheap(more_[s].values.size());
+      for (std::size_t i = 0; i < cheap.size(); ++i) {
+        cheap[i] = problem_.labels[s][i] == Label::part && more_[s].values[i] > 0 ? 1 : 0;
+      }
+      cheap_.push_back(std::move(cheap));
+    }
   }
 
   /// Of the values of that sign.
@@ -170,6 +186,7 @@ class Prover {
   const light::Operator& light_;
   std::vector<Slab> weights_, more_;            // z and -y; what is added to z
   std::vector<Slab> rays_, even_rays_, short_;  // A (y - z) in short_
+  std::vector<std::vector<char>> cheap_;        // [slab][voxel]
   float least_void_ = 0;                        // of all void in a ray that counts
   double void_voxels_ = 0;
 };
@@ -186,6 +203,8 @@ Certificate certify(const Problem& problem, const light::Operator& light, std::v
     if (i % look_every != 0 && i != iterations) continue;
     const double ratio = prover.ratio_of(saddle.point());
     if (ratio > 0 && (reached == 0 || ratio < reached)) reached = ratio;
+    if (i % prove_every != 0) continue;
+    if (prover.prove(saddle.point(), few_rounds).least >= (1 - proof_gap) * reached) break;
   }
   Certificate proof = prover.prove(saddle.point(), std::min(most_rounds, 1 + iterations / 20));
   proof.reached = reached;

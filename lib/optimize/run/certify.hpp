@@ -18,10 +18,11 @@ struct Certificate {
   std::vector<Slab> weights;  // z in the void, -y in the part; empty when nothing is proved
 };
 
-inline constexpr int certify_iterations = 240;  // of A and A*, as those of apg
+inline constexpr int certify_iterations = 1200;  // of A and A*, as those of apg; at most
+inline constexpr double proof_gap = 0.03;        // of the smallest ratio reached: nearer, the bound is not improved
 
 /// Tries to prove that the projections g, brought to the threshold, are nearly the best. All slices of the problem
-/// share the threshold. Not of grey targets.
+/// share the threshold. Ends when the bound is close enough to what was reached. Not of grey targets.
 [[nodiscard]] Certificate certify(const Problem& problem, const light::Operator& light, std::vector<Slab> g,
                                   int iterations = certify_iterations);
 
