@@ -42,9 +42,13 @@ std::vector<std::string> section_names() {
   return names;
 }
 
-// "; did you mean radius_mm?" within the section, else the same key in another section, else all that there is.
+// "; did you mean radius_mm?" within the section, else the same key in the section of the nearest name, else in another
+// section, else all that there is.
 std::string suggestion(std::string_view section, std::string_view key) {
   if (std::string instead = replacement(section, key); !instead.empty()) return instead;
+  if (const PrinterField* meant = find_field(nearest(section, section_names()), key); meant != nullptr) {
+    return "; did you mean " + dotted_name(*meant) + "?";
+  }
   std::vector<std::string> here;
   for (const auto& field : printer_fields()) {
     if (section == field.section) here.emplace_back(field.key);

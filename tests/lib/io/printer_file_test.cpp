@@ -117,6 +117,9 @@ TEST_CASE("--set overrides, takes text with or without quotes, and is a usage er
   CHECK(printer.resin.name == "acrylate 2");
   CHECK(printer.stage.device == "gcs:/dev/x");
   CHECK(has(set_refusal("vial.radius_m=10"), "did you mean radius_mm?"));
+  CHECK(has(set_refusal("vial.radius=10"), "did you mean radius_mm?"));
+  CHECK(has(set_refusal("rsin.index=1.5"), "did you mean resin.index?"));
+  CHECK(has(set_refusal("glass.index=1.5"), "did you mean bath.index?"));
   CHECK(has(set_refusal("vial.radius_mm"), "not section.key=value"));
   CHECK(has(set_refusal("vial.radius_mm=ten"), "is not a value"));
   CHECK(has(set_refusal("vial.radius_mm=1\nx=2"), "is not a value"));
