@@ -16,6 +16,7 @@
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
+#include "io/stream/signature.hpp"
 
 namespace vam::io {
 
@@ -170,6 +171,9 @@ void check_depth(std::string_view text, const std::string& subject) {
 
 // The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
 Printer read_settings(std::string_view text, const std::string& subject) {
+  if (const std::string foreign = foreign_format(text); !foreign.empty()) {
+    throw Error{Fault::data, subject + ": is " + foreign + ", not a printer file"};
+  }
   check_whole(text, subject);
   check_depth(text, subject);
   const toml::table root = [&] {

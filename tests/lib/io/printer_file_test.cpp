@@ -106,6 +106,7 @@ TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is not one of 1, 2, 4, 8, 10, 16"));
   CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "not one of normal"));
   CHECK(has(refusal("[vial\n"), "p.toml:1: not TOML"));
+  CHECK(refusal(" BDV") == "p.toml: is a volume (OpenVDB), not a printer file");
   CHECK(has(refusal("[vial]\nwall_mm = 13\n"), "leaves no room"));
   CHECK(has(refusal("[projector]\nlens_distance_mm = 5\n"), "is not outside vial.radius_mm"));
   CHECK(has(refusal("[bath]\nwindow_mm = 5\n"), "cuts into"));
