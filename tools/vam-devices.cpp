@@ -98,7 +98,7 @@ void run(const Options& options) {
   for (auto& one : found) {
     if (options.probe && one.kind == "stage") device::ask_stage(one);
   }
-  print(found);
+  if (options.report != "-") print(found);
   Json list = Json::array();
   for (const auto& one : found) {
     list.push_back({{"kind", one.kind}, {"device", one.device}, {"description", one.about}, {"problem", one.obstacle}});

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "io/mesh/file.hpp"
 #include "io/settings/report.hpp"
+#include "io/stream/input_name.hpp"
 #include "moved.hpp"
 #include "plot/save.hpp"
 #include "printer.hpp"
@@ -211,7 +212,9 @@ void once(const cli::App& app, const Options& options) {
     views.push_back(session.take(frame));
   }
   metrology::require_alike(views);
-  model::Volume volume = session.reconstruct(views, source.pixel_mm());
+  auto [made, problem] = session.attempt(views, source.pixel_mm());
+  if (!made) throw Error{Fault::data, io::input_name(options.views) + ": " + problem};
+  model::Volume& volume = *made;
   print.require_in(volume);
   session.write(volume, options.output, source.history());
   print.keep(volume);

@@ -30,6 +30,9 @@ void run(const cli::App& app, Options& options) {
   if (!options.freeze.empty()) return freeze(options, printer);
   const bool live = device::names_display(options.output);
   if (!live) project::refuse_live(app, options.output);
+  if (options.only_plan && !options.report.empty()) {
+    throw Error{Fault::usage, "--report: describes what was shown, and --plan shows nothing; omit one"};
+  }
   if (!options.pattern.plan.name.empty()) {
     if (options.input != "-")
       throw Error{Fault::usage, "--pattern: conflicts with SINOGRAM (" + options.input + "); omit one"};

@@ -32,7 +32,7 @@ cli::Manual manual() {
       "show a part, its projections, dose and figures on one page",
       {"vam-report writes one page (HTML) from the files of a print, for a laboratory notebook, the supplement of "
        "a publication, or a colleague. It needs neither network nor server: images, values and script are "
-       "embedded, and the page can load nothing else. It opens in any browser, including those of telephones, and "
+       "embedded, and the page can load nothing else. It opens in any browser, including mobile browsers, and "
        "can be printed to PDF.",
        "FILE is a volume (target, dose, scatter, insert), a mesh, a stack of sinograms or frames, a video, a report in "
        "JSON (--report of any tool), the trace of vam-optimize or a PNG image; of a folder, all such files are "

@@ -26,8 +26,8 @@ cli::Manual manual() {
        "--align full needs no initial pose: centroids and principal axes determine it, every symmetric variant is "
        "tried, and point-to-plane ICP refines it. --align icp refines the pose of the files; --align none keeps "
        "it. A print that covers less than 6/7 of the design is taken for a part of it: poses all over the design are "
-       "tried, cut faces do not pull, and where the part fits in two places, which are not the same by symmetry, it is "
-       "an error (status 65). With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
+       "tried, fracture faces are given no weight, and if two poses that no symmetry relates fit equally well, the "
+       "status is 65. With --fit-scale a uniform scale is also fitted and reported as shrinkage.",
        "A summary is printed on standard error if that is a terminal; --report writes the figures as JSON, -o the "
        "print with distances and blue-white-red colours. With --require the exit status is 1 unless all conditions "
        "hold.",
@@ -129,7 +129,7 @@ void declare(cli::App& app, Options& options) {
   app.group("Figures");
   app.option("--samples", "N", options.samples, {1000, 1e8}, "Number of points on each surface.");
   app.option("--histogram", "FILE", options.histogram,
-             "Histogram of the distances by area: a plot if FILE ends in .png, else CSV.");
+             "Histogram of the distances by area: a plot (.png, .pdf or .svg), else CSV.");
   app.option("--bins", "N", options.bins, {2, 10000}, "Number of histogram bins.");
   app.option("--limit", "MM", options.limit_mm, cli::positive,
              "Limit of the histogram and of the colours, on either side of 0.")

@@ -50,7 +50,10 @@ plot::ImageFigure sections(const Options& options, const io::SparseVolume& volum
   std::optional<io::SparseVolume> insert;
   if (!options.target.empty()) target.emplace(target_for(options));
   const std::string& with = options.target.empty() ? options.input : options.target;
-  if (volume.name() != "insert" && has_grid(with, "insert")) insert.emplace(io::read_volume(with, "insert"));
+  if (volume.name() != "insert" && has_grid(with, "insert")) {
+    insert.emplace(io::read_volume(with, "insert"));
+    insert->extend_to(volume.grid(), with);
+  }
   return plot::view_volume(volume, target ? &*target : nullptr, options.view, insert ? &*insert : nullptr);
 }
 
@@ -62,7 +65,7 @@ struct Judged {
 
 Judged judged(const Options& options, const io::SparseVolume& dose) {
   Judged made{target_for(options), {}};
-  made.target.extend_to(dose.grid());
+  made.target.extend_to(dose.grid(), options.target.empty() ? options.input : options.target);
   made.how.threshold = options.threshold;
   tool::settle_exposure(made.how, dose, made.target, tool::load_printer(options.printer));
   return made;

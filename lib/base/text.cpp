@@ -54,6 +54,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto begins = [&](const std::string& candidate) { return !word.empty() && candidate.starts_with(word); };
+  if (std::ranges::count_if(candidates, begins) == 1) return *std::ranges::find_if(candidates, begins);
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 3, 1) + 1;
   for (const auto& candidate : candidates) {

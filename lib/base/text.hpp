@@ -17,7 +17,8 @@ namespace vam {
 /// Without the blanks at either end.
 [[nodiscard]] std::string trimmed(std::string_view text, std::string_view blanks = " \t\r\n");
 
-/// The candidate with the smallest edit distance to `word`, empty when none is within a third of its length.
+/// The only candidate that begins with `word`, else the one with the smallest edit distance to it; empty when none is
+/// within a third of its length.
 [[nodiscard]] std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// "; did you mean --voxel?" or nothing.

@@ -49,8 +49,8 @@ const std::vector<Option>& options_of_all() {
        {}},
       {progress_flag, "WORD",
        "Progress of work that takes longer than half a second, on standard error. line: one line, on a terminal only, "
-       "with the share done and an estimate of the time left; the tools of a pipe take turns at it. json: one object "
-       "a line (vam-formats(7), Progress).",
+       "with the share done and an estimate of the time left; the tools of a pipeline share this line. json: one "
+       "object a line (vam-formats(7), Progress).",
        styles.front(), "", styles},
       {std::string("-q,") + quiet_flag, "", "Print errors only: no progress, summaries or warnings.", "", "", {}},
       {std::string("-v,") + verbose_flag,

@@ -16,7 +16,7 @@ inline constexpr Rgb black{0, 0, 0};
 inline constexpr Rgb white{255, 255, 255};
 inline constexpr Rgb grey{128, 128, 128};
 inline constexpr Rgb light_grey{220, 220, 220};
-// Distinct also for colour-blind eyes [OI08].
+// Distinct also for colour-blind eyes: the palette of Okabe and Ito.
 inline constexpr Rgb blue{0, 114, 178};
 inline constexpr Rgb orange{230, 159, 0};
 inline constexpr Rgb green{0, 158, 115};

@@ -7,7 +7,7 @@ namespace vam::plot {
 
 enum class ColourMap {
   grey,       // black to white: coverage, light
-  viridis,    // dark blue to yellow: dose and other amounts [SW15]
+  viridis,    // dark blue to yellow: dose and other amounts
   diverging,  // blue, white, red: signed values, white at the middle
 };
 

@@ -27,9 +27,9 @@ struct ViewOptions {
 };
 
 /// Sections of a volume: the middle one, the one at `at`, or a sheet. With a target its outline is drawn, and
-/// an insert is hatched, with its shadow. Throws Fault::data where the insert's voxels are others.
+/// an insert on the grid of the volume is hatched, with its shadow.
 [[nodiscard]] ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target,
-                                      const ViewOptions& options, io::SparseVolume* insert = nullptr);
+                                      const ViewOptions& options, const io::SparseVolume* insert = nullptr);
 
 /// Images of a stack: the middle slice of sinograms, the first frame of frames, the nearest to `at`, or a sheet. Throws
 /// Fault::data when `at` is given and the images have no such coordinate.

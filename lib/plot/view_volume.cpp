@@ -18,9 +18,7 @@ void add_outlines(ImageFigure& figure, const io::SparseVolume& target, const mod
   figure.outline_name = "surface of the target";
 }
 
-void add_insert(ImageFigure& figure, io::SparseVolume& insert, const model::Grid& grid, Plane plane,
-                const std::vector<int>& indices) {
-  insert.extend_to(grid);
+void add_insert(ImageFigure& figure, const io::SparseVolume& insert, Plane plane, const std::vector<int>& indices) {
   std::vector<InsertSection> hidden = insert_sections(insert, plane, indices);
   for (std::size_t n = 0; n < hidden.size(); ++n) {
     figure.panels[n].hatched = std::move(hidden[n].coverage);
@@ -32,7 +30,7 @@ void add_insert(ImageFigure& figure, io::SparseVolume& insert, const model::Grid
 }  // namespace
 
 ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* target, const ViewOptions& options,
-                        io::SparseVolume* insert) {
+                        const io::SparseVolume* insert) {
   const model::Grid& grid = volume.grid();
   const views::Sections sections = views::sections_of(grid, options);
   std::vector<Image> images = planes(volume, options.plane, sections.indices);
@@ -40,7 +38,7 @@ ImageFigure view_volume(const io::SparseVolume& volume, const io::SparseVolume* 
   for (std::size_t n = 0; n < images.size(); ++n)
     figure.panels.push_back({std::move(images[n]), sections.captions[n], {}});
   if (target != nullptr) add_outlines(figure, *target, grid, options.plane, sections.places_mm);
-  if (insert != nullptr) add_insert(figure, *insert, grid, options.plane, sections.indices);
+  if (insert != nullptr) add_insert(figure, *insert, options.plane, sections.indices);
   const bool coverage = is_coverage(volume.name());
   views::choose_colours(figure, options, coverage ? views::Content::coverage : views::Content::amount);
   views::set_section_axes(figure, grid, options);

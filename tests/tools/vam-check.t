@@ -78,6 +78,7 @@ fails 65 'empty.vdb: is empty' vam-check empty.vdb
 fails 64 -- vam-check --slow
 fails 74 'No space left' sh -c 'vam-check part.vdb >/dev/full'
 fails 65 'a.off' vam-check --seal a.off
+fails 65 'b.vdb: is a volume \(OpenVDB\), not a printer file' vam-check --seal b.vdb
 mkfifo fifo
 fails 66 'fifo: is not a regular file; give it on standard input' vam-check fifo
 

@@ -18,6 +18,8 @@ is 'the list of devices, without messages' "$status $(cat err)" '0 '
 holds 'in 3 s' "$best < 3e9"
 is 'every kind, also one without devices' "$(cut -c1-8 list | tr -d ' ' | sort -u | grep -c .)" 4
 is 'and in a report' "$(json found.json schema)" vam-devices/1
+list --report -
+is 'which replaces the list on standard output' "$(json list schema)" vam-devices/1
 fails 64 'unknown option|unexpected|not expected' vam-devices --aks
 fails 64 '' vam-devices ttyUSB0
 fails 73 'missing' vam-devices --report missing/x.json

@@ -317,10 +317,13 @@ holds "most are within their band" "$(value grey.json ver) < 0.05"
 printf 'dose,response\n0.2,0\n0.7,0.5\n0.6,0.95\n' >falls.csv
 fails 65 'falls.csv: .*falls back' vam-optimize --method bclp --resin-response falls.csv part.vdb -o out.exr
 fails 66 'none.csv' vam-optimize --method bclp --resin-response none.csv part.vdb -o out.exr
+fails 66 "'logstic' is none of linear, step, logistic and no file; did you mean logistic" \
+  vam-optimize --method bclp --resin-response logstic part.vdb -o out.exr
+fails 64 'choose one of bclp by --method, or give --grey-target' vam-optimize --band 0.2 part.vdb -o out.exr
 fails 64 'does not support grey targets; use one of pm, bclp, apg' vam-optimize --grey-target --method osmo part.vdb -o out.exr
 fails 64 'neglect the blur' vam-optimize --method osmo --set projector.telecentric=true --set resin.psf_mm=0.1 part.vdb -o out.exr
 vam-slice --shape cylinder:diameter=6,height=3 --voxel 0.2 -o other.vdb
-fails 65 "grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr
+fails 65 "other.vdb: the grid of 'target' differs" vam-optimize --weights other.vdb part.vdb -o out.exr
 vam-slice --shape handle --insert-shape cylinder:diameter=14,height=30 --voxel 0.4 -o overlap.vdb 2>/dev/null
 for geometry in vial parallel; do
   fails 65 'absorption is per mm and to base e' \

@@ -123,7 +123,7 @@ is 'which is reported' "$(grep -c '"waiting":"views: the turn is incomplete, no 
 fails 65 'no volume' vam-ost views --view-step 2 $rig --live --log live.jsonl
 fails 65 'turns were recorded; last: views: the turn is incomplete' vam-ost views --view-step 20 $rig --live --log live.jsonl
 
-fails 64 'have no angles; give their angular step' vam-ost views -o x.vdb
+fails 64 'have no angles; give their angular step by --view-step' vam-ost views -o x.vdb
 fails 64 'mesh: requires --isovalue or --resin' vam-ost views --view-step 6 --mesh p.ply -o x.vdb
 fails 64 "'p.obj' must end in .ply or .stl" vam-ost views --view-step 6 --isovalue 1 --mesh p.obj -o x.vdb
 fails 64 'volume-step: requires --live' vam-ost views --view-step 6 --volume-step 90 -o x.vdb
@@ -137,7 +137,7 @@ vam-ost threshold scatter.vdb --diameter 6 -o former.json 2>errors
 is 'the former command still works, with a warning' "$? $(cat errors)" '0 vam-ost: warning: vam-ost threshold is now vam-calibrate resin'
 same 'with the same record' resin.json former.json
 fails 65 'no print at this threshold' vam-ost views --view-step 6 $rig --isovalue 99 --mesh p.ply -o x.vdb
-fails 65 'the turn is incomplete' vam-ost views --view-step 2 $rig -o x.vdb
+fails 65 'views: views: the turn is incomplete' vam-ost views --view-step 2 $rig -o x.vdb
 fails 65 'frames \(camera\) is needed' vam-ost sino.exr -o x.vdb
 fails 65 'not a record' vam-ost views --view-step 6 $rig --resin ost.json --mesh p.ply -o x.vdb
 fails 66 'absent' vam-ost absent.exr -o x.vdb

@@ -70,6 +70,9 @@ vam-slice box.stl --voxel 0.26 $plain | vam-sinogram --angles 180 --filter ram-l
   vam-resample $plain -o frames.exr
 is 'frames of a mesh' $? 0
 vam-project frames.exr --speed 25 --fps 250 $plain -o frames.mkv  # the 3600 of a turn
+mkdir taken
+fails 73 'taken: exists; give another --run' vam-print frames.exr --display null: --run taken
+fails 73 'missing/run: cannot create the folder' vam-print frames.exr --display null: --run missing/run
 is 'a print needs its calibration' "$(vam-print frames.exr --display null: --run no 2>&1 | grep -c 'has no record of edges; run vam-calibrate')" 1
 [ ! -e no ]; report $? 'and leaves no folder when it is refused before a device is opened'
 for print in 1 2 3; do vam-print frames.exr --display null: --light sim: --uncalibrated --set stage.device=grbl:/nowhere 2>>errors & done; wait

@@ -32,6 +32,7 @@ fails 64 'out of range' vam-project --pattern grey --grey 2 -o grey/
 fails 64 '1.5 is not a whole number' vam-project part.exr -o null: --plan --turns 1.5
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --turns 2 --from 720
 fails 64 'from: 720 degrees is beyond the 2 turns' vam-project part.exr -o null: --plan --turns 2 --from 720
+fails 64 'report: describes what was shown' vam-project part.exr -o null: --plan --report -
 vam-project part.exr -o null: --plan --turns 2 --from 180 >plan
 ok "the plan of a print's rest has its turns" grep -q '^exposure   1.5 turns from 180 deg on at ' plan
 vam-project --pattern star --plan -o null: --light 'sim:?log=planned' >plan

@@ -67,7 +67,7 @@ fails 64 'is also the input' vam-score --grid target part.vdb --mesh part.vdb
 fails 64 'standard output holds the figures' vam-score --grid target part.vdb --mesh -
 fails 64 'as --lit-fraction does; name another file' vam-score --grid target part.vdb --lit-fraction one --mesh ./one
 fails 65 "no grid 'dose'" vam-score part.vdb
-fails 65 'make both from the same target' vam-score --grid target part.vdb --target other.vdb
+fails 65 "other.vdb: the grid 'target' has .*; make both from the same target" vam-score --grid target part.vdb --target other.vdb
 fails 65 'nothing prints at a dose of 7 .*; choose an --isovalue below' vam-score --grid target part.vdb --mesh none.ply --isovalue 7
 fails 66 'absent.vdb' vam-score absent.vdb
 fails 66 'absent.vdb' vam-score --grid target part.vdb --target absent.vdb

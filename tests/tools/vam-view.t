@@ -116,6 +116,8 @@ is "with its axes" "$(strings -n 6 sino.nrrd | grep -E '^(sizes|spacings|units)'
 fails 66 'none.vdb' vam-view none.vdb -o x.png
 echo hello >text.txt
 fails 65 'not a mesh of a known format' vam-view text.txt -o x.png
+echo '{"schema": "vam-score/1"}' >score.json
+fails 65 'score.json: is JSON \(vam-report shows reports\), not a mesh' vam-view score.json -o x.png
 : >empty
 fails 65 'is empty' vam-view empty -o x.png
 fails 65 'stdin: is empty' sh -c ': | vam-view -o x.png'

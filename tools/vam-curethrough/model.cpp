@@ -210,7 +210,7 @@ void declare(cli::App& app, ModelOptions& options) {
       .was("--slice");
   app.group("Figure");
   app.option("--section", "FILE", options.section,
-             "PNG of an x-z section: slices, cure map, and intensity and dose along one column.")
+             "Plot an x-z section: slices, cure map, and intensity and dose along one column (.png, .pdf or .svg).")
       .was("--plane");
   app.option("--row", "Y", options.row, {0, 1e6}, "Pixel row of the section.")
       .default_is("the middle")

@@ -20,7 +20,8 @@ void declare(cli::App& app, GreyResponseOptions& options) {
       .was("--dark");
   app.option("--irradiance-per-reading", "MW_CM2", options.scale, cli::positive, "Irradiance per unit of reading.")
       .was("--scale");
-  app.option("--plot", "FILE", options.plot, "PNG of the mean readings and the response curve.").writes();
+  app.option("--plot", "FILE", options.plot, "Plot the mean readings and the response curve (.png, .pdf or .svg).")
+      .writes();
   cli::add_report(app, options.report);
 }
 

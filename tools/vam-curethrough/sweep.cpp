@@ -128,7 +128,7 @@ void declare(cli::App& app, SweepOptions& options) {
   app.option("--gel-dose", "MJ_CM3", options.gel_dose_mj_cm3, cli::positive,
              "Gelation threshold D_c of the working curve.");
   app.default_is("resin.critical_dose_mj_cm3, else a fifth of the full-cure dose");
-  app.option("--plot", "FILE", options.plot, "PNG of the error ratios against df_over_dc.").writes();
+  app.option("--plot", "FILE", options.plot, "Plot the error ratios against df_over_dc (.png, .pdf or .svg).").writes();
   add_print(app, options.print);
   app.group("Report and performance");
   cli::add_report(app, options.report);

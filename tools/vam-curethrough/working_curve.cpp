@@ -79,7 +79,8 @@ void declare(cli::App& app, WorkingCurveOptions& options) {
   app.positional("DATA", options.input, "CSV with the columns exposure_mj_cm2,thickness_um; one line per measurement.")
       .reads();
   app.option("--confidence", "FRACTION", options.confidence, {0.5, 0.9999}, "Confidence level of the intervals.");
-  app.option("--plot", "FILE", options.plot, "PNG of the samples, the line and its interval.").writes();
+  app.option("--plot", "FILE", options.plot, "Plot the samples, the line and its interval (.png, .pdf or .svg).")
+      .writes();
   cli::add_report(app, options.report);
 }
 

@@ -55,7 +55,7 @@ Place place_of(const Options& options, const model::Printer& printer, const mode
     const model::Grid inner = place.grid;
     place.grid = light::extended(inner, light::lit_margin(printer, inner, place.judged_mm, info.poses));
     for (io::SparseVolume& volume : place.like) {
-      if (volume.grid() == inner) volume.extend_to(place.grid);
+      if (volume.grid() == inner) volume.extend_to(place.grid, options.like);
     }
   }
   return place;

@@ -38,13 +38,13 @@ Inputs read(const Options& options) {
   if (in.target.empty()) throw Error{Fault::data, options.input + ": has no grid 'target'; vam-slice writes one"};
   if (!options.weights.empty()) in.weight.push_back(read_own(options.weights, "weight"));
   if (!options.band_volume.empty()) in.tolerance.push_back(read_own(options.band_volume, "tolerance"));
-  if (!in.insert.empty()) in.insert.front().extend_to(in.grid());  // other programs leave the void around it out
-  for (const auto* volumes : {&in.weight, &in.tolerance}) {
+  if (!in.insert.empty())
+    in.insert.front().extend_to(in.grid(), options.input);  // other programs leave the void around it out
+  for (const auto& [volumes, file] :
+       {std::pair{&in.weight, &options.weights}, std::pair{&in.tolerance, &options.band_volume}}) {
     if (volumes->empty() || volumes->front().grid() == in.grid()) continue;
-    throw Error{
-        Fault::data,
-        options.input + ": the grid of '" + volumes->front().name() +
-            "' differs from the target's; slice both together (vam-slice --insert) or with the same --voxel and size"};
+    throw Error{Fault::data, (file->empty() ? options.input : *file) + ": the grid of '" + volumes->front().name() +
+                                 "' differs from that of the target; make both from the same target"};
   }
   return in;
 }

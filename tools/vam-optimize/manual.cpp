@@ -59,10 +59,11 @@ std::vector<std::string> dose_and_intensity() {
 /// Numbers are those of preview.cpp.
 std::vector<std::string> verdict() {
   return {
-      "--preview optimises the part on coarser voxels, of four of the target's or, where walls or gaps of the part are "
-      "too thin for these and the part is small, of two or one, in 4 to 16 iterations. The answer is yes or no, or "
-      "unsure with the reason: the process window is narrower than 0.03, or more than 2 % of the part is too thin "
-      "to be seen. It includes a lower bound like that of --certify, of voxels of twice the size."};
+      "--preview optimises the part in 4 to 16 iterations on voxels four times as large as those of the target (twice "
+      "as large, or equal, where walls or gaps of the part are too thin for these and the part is small). The answer "
+      "is yes or no, or unsure with the reason: the process window is narrower than 0.03, or more than 2 % of the part "
+      "is too thin to be seen. It includes a lower bound like that of --certify, computed on voxels of twice that "
+      "size."};
 }
 
 std::vector<std::string> printer_and_poses() {

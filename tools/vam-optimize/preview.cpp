@@ -191,9 +191,10 @@ std::string table(const Seen& seen) {
   text += row("process window",
               format_number(seen.doses->pw, 2) + " of the largest dose, VER " + format_number(seen.doses->ver, 2) +
                   (least > 0 ? "; at most " + format_number(1 - least, 2) + " by any projections" : ""));
-  text += row("duration",
-              seen.plan ? format_number(seen.plan->seconds, 3) + " s in " + std::to_string(seen.plan->turns) + " turns"
-                        : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
+  text +=
+      row("duration", seen.plan ? format_number(seen.plan->seconds, 3) + " s in " + std::to_string(seen.plan->turns) +
+                                      (seen.plan->turns == 1 ? " turn" : " turns")
+                                : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
   if (seen.place) {
     text += row("wrong voxels", "z = " + mm(seen.place->low_mm) + " to " + mm(seen.place->high_mm) + ", most at " +
                                     mm(seen.place->worst_mm));

@@ -1,6 +1,7 @@
 // What follows from the options of vam-optimize, and what contradicts itself in them.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
@@ -70,11 +71,12 @@ void refuse_unread(const cli::App& app, const Options& options, const optimize::
   for (const std::string& other : optimize::method_names()) {
     for (const std::string& flag : optimize::method_entry(other).options) {
       if (optimize::reads(method, flag) || !app.given(flag)) continue;
-      if (options.demands.grey && (flag == "--band" || flag == "--resin-response" || flag == "--softness")) continue;
+      const bool of_grey = flag == "--band" || flag == "--resin-response" || flag == "--softness";
+      if (options.demands.grey && of_grey) continue;
       const auto readers =
           optimize::method_names([&](const optimize::MethodEntry& entry) { return optimize::reads(entry, flag); });
       throw Error{Fault::usage, flag + ": method " + method.name + " does not use it; omit it, or choose one of " +
-                                    join(readers, ", ") + " by --method"};
+                                    join(readers, ", ") + " by --method" + (of_grey ? ", or give --grey-target" : "")};
     }
   }
 }
@@ -262,6 +264,11 @@ void settle_response(const cli::App& app, Options& options) {
   } else if (options.response == "logistic") {
     demands.curve = optimize::CureCurve::logistic(window.threshold(), options.softness);
   } else {
+    const std::vector<std::string> names{"linear", "step", "logistic"};
+    if (options.response != "-" && !std::filesystem::exists(options.response)) {
+      throw Error{Fault::no_input, "--resin-response: '" + options.response + "' is none of " + join(names, ", ") +
+                                       " and no file" + did_you_mean(options.response, names)};
+    }
     demands.curve = read_curve(options.response);
     if (!demands.grey) settle_window(app, options.response, demands);
   }

@@ -31,8 +31,6 @@ class Session {
     std::string problem;  // why there is none
   };
   Attempt attempt(std::span<const metrology::CameraView> views, double stack_pixel_mm);
-  /// The first call finds the axis and sets up the rig.
-  model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   /// Standard deviations of its voxels.
   [[nodiscard]] metrology::VoxelUncertainty uncertainty(std::span<const metrology::CameraView> views) const;
   void write(const model::Volume& volume, const std::string& path, const std::vector<std::string>& history) const;
@@ -54,6 +52,8 @@ class Session {
   [[nodiscard]] bool certain() const;
   [[nodiscard]] bool axis_is_given() const;
   void refine_axis(std::span<const metrology::CameraView> views, double stack_pixel_mm);
+  /// The first call finds the axis and sets up the rig.
+  model::Volume reconstruct(std::span<const metrology::CameraView> views, double stack_pixel_mm);
   void set_up(std::span<const metrology::CameraView> views, double stack_pixel_mm);
 
   const cli::App& app_;

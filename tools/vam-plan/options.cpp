@@ -29,8 +29,8 @@ cli::Manual manual() {
       {{"A built-in shape in the default printer:", "vam-plan --shape gyroid:diameter=10,cell=5"},
        {"The figures for a script:", "vam-plan --shape disc-grid --report plan.json >plan.txt"}},
       {"Memory: the part at up to 16 million voxels, 9 bytes each, and the doses and projections of the estimate.",
-       "Walls: the distance between the void on both sides of the part's middle, exceeded in 99 of 100 places; good "
-       "to a voxel or two, which are larger for parts of more than 16 million voxels."},
+       "Wall thickness: the first percentile of the distance across the part at its medial surface, accurate to one "
+       "or two voxels, which are larger for parts of more than 16 million voxels."},
       {"vam-slice", "vam-optimize", "vam-score"}};
 }
 

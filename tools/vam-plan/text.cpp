@@ -56,9 +56,9 @@ std::string print_rows(const Plan& plan) {
                                       ? "not known: the part gets no light in the estimate"
                                       : "not known; set resin.critical_dose_mj_cm3 and resin.absorption_per_mm");
   }
-  return text +
-         row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
-                             " turns, brightest pixel " + number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
+  return text + row("duration", number(plan.exposure->seconds) + " s in " + std::to_string(plan.exposure->turns) +
+                                    (plan.exposure->turns == 1 ? " turn" : " turns") + ", brightest pixel " +
+                                    number(plan.exposure->peak_intensity_mw_cm2) + " mW/cm2");
 }
 
 std::string wall_words(const Plan& plan) {

@@ -48,9 +48,9 @@ Volumes read_volumes(const std::vector<std::string>& paths) {
   }
   const io::SparseVolume* dose = all.find("dose");
   if (dose == nullptr) return all;
-  for (io::SparseVolume& grid : all.grids) {
-    if (grid.name() == "target") {
-      grid.extend_to(dose->grid());
+  for (std::size_t i = 0; i < all.grids.size(); ++i) {
+    if (all.grids[i].name() == "target") {
+      all.grids[i].extend_to(dose->grid(), all.files[i]);
       break;
     }
   }

@@ -37,7 +37,8 @@ Inputs read_grids(const Options& options) {
 
 Inputs read(const Options& options) {
   Inputs in = read_grids(options);
-  in.volumes[in.target_at].extend_to(in.dose().grid());  // around the target there is void
+  const std::string& file = options.target.empty() ? options.input : options.target;
+  in.volumes[in.target_at].extend_to(in.dose().grid(), file);  // around the target there is void
   return in;
 }
 

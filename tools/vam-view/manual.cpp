@@ -21,8 +21,8 @@ cli::Manual manual() {
        "circle are excluded.",
        "--cure-map shows what prints at a threshold: cured as wanted (grey), missing (blue) and overcured (vermilion). "
        "--render shows the same in three dimensions, the print beside the target; without --target it shows the "
-       "surface of any grid. --compare shows two volumes beside each other in the same colours, and by how much the "
-       "second is more. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
+       "surface of any grid. --compare shows two volumes beside each other in the same colours, and their "
+       "difference. Meshes are shown as bodies, in the colours of their vertices if there are any (vam-sdf "
        "--output); the --trace of vam-optimize, a file that ends in .csv, as curves over the iterations.",
        "An insert in the volume, or in that of --target, is hatched. Resin that it shadows from some stage angles is "
        "orange, more saturated with the number of angles (for a horizontal parallel beam).",

@@ -58,9 +58,11 @@ void require(const std::string& path, const StackInfo& info, model::Kind kind) {
 
 void require(const std::string& path, const StackInfo& info, model::Kind kind, model::Space space) {
   if (info.kind == kind && info.space == space) return;
+  const bool resampled = info.kind == kind && info.space == model::Space::virtual_ && space == model::Space::projector;
   throw Error{Fault::data, input_name(path) + ": holds " + exr::kind_name(info.kind) + " (" +
                                exr::space_name(info.space) + "), but " + exr::kind_name(kind) + " (" +
-                               exr::space_name(space) + ") is needed"};
+                               exr::space_name(space) + ") is needed" +
+                               (resampled ? "; convert it by vam-resample" : "")};
 }
 
 }  // namespace vam::io

@@ -14,6 +14,7 @@
 #include "base/parallel.hpp"
 #include "io/exr/private/attributes.hpp"
 #include "io/stream/finite.hpp"
+#include "io/stream/signature.hpp"
 
 namespace vam::io::exr {
 
@@ -86,10 +87,18 @@ void StackParser::begin() {
   as_data_fault([this] { take_first_header(); });
 }
 
+void StackParser::refuse_foreign(std::int32_t first) {
+  std::string head(400, '\0');
+  std::memcpy(head.data(), &first, sizeof first);
+  head.resize(sizeof first + in_.read(head.data() + sizeof first, head.size() - sizeof first));
+  const std::string foreign = foreign_format(head);
+  throw std::runtime_error(foreign.empty() ? "is not OpenEXR" : "is " + foreign + ", not a stack (OpenEXR)");
+}
+
 void StackParser::take_first_header() {
   if (in_.at_end()) throw std::runtime_error("is empty; the program that should have written it failed");
   std::int32_t first = 0;
-  if (in_.read(&first, sizeof first) != sizeof first || first != magic) throw std::runtime_error("is not OpenEXR");
+  if (in_.read(&first, sizeof first) != sizeof first || first != magic) refuse_foreign(first);
   flags_ = take_number<std::int32_t>();
   if ((flags_ & 0xff) != version) throw std::runtime_error("is of an OpenEXR version that is not known");
   if ((flags_ & (tiled_flag | deep_flag)) != 0) throw std::runtime_error("holds tiles or deep pixels");

@@ -80,7 +80,8 @@ struct ViewSource::State {
   }
 
   [[nodiscard]] double needed_step() const {
-    if (step_deg == 0) throw Error{Fault::usage, path + ": the frames have no angles; give their angular step"};
+    if (step_deg == 0)
+      throw Error{Fault::usage, path + ": the frames have no angles; give their angular step by --view-step"};
     return step_deg;
   }
 };

@@ -16,6 +16,7 @@
 #include "io/settings/calibration_record.hpp"
 #include "io/settings/private/printer_fields.hpp"
 #include "io/settings/sealed_text.hpp"
+#include "io/stream/signature.hpp"
 
 namespace vam::io {
 
@@ -42,9 +43,13 @@ std::vector<std::string> section_names() {
   return names;
 }
 
-// "; did you mean radius_mm?" within the section, else the same key in another section, else all that there is.
+// "; did you mean radius_mm?" within the section, else the same key in the section of the nearest name, else in another
+// section, else all that there is.
 std::string suggestion(std::string_view section, std::string_view key) {
   if (std::string instead = replacement(section, key); !instead.empty()) return instead;
+  if (const PrinterField* meant = find_field(nearest(section, section_names()), key); meant != nullptr) {
+    return "; did you mean " + dotted_name(*meant) + "?";
+  }
   std::vector<std::string> here;
   for (const auto& field : printer_fields()) {
     if (section == field.section) here.emplace_back(field.key);
@@ -166,6 +171,9 @@ void check_depth(std::string_view text, const std::string& subject) {
 
 // The reading half of parse_printer, before settings are compared with one another: --set may still mend them.
 Printer read_settings(std::string_view text, const std::string& subject) {
+  if (const std::string foreign = foreign_format(text); !foreign.empty()) {
+    throw Error{Fault::data, subject + ": is " + foreign + ", not a printer file"};
+  }
   check_whole(text, subject);
   check_depth(text, subject);
   const toml::table root = [&] {

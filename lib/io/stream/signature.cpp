@@ -52,6 +52,7 @@ constexpr Signature signatures[] = {
     {0, "\xff\xfe"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
     {0, "\xfe\xff"sv, "text of 16 bits a character; save it as ASCII or UTF-8"},
     {0, "\177ELF"sv, "a program"},
+    {0, "{"sv, "JSON (vam-report shows reports)"},
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "base/index.hpp"
 #include "base/parallel.hpp"
 #include "io/stream/finite.hpp"
+#include "io/stream/input_name.hpp"
 #include "io/vdb/private/grid.hpp"
 #include "model/grid_place.hpp"
 #include "model/grid_size.hpp"
@@ -176,12 +177,12 @@ SparseVolume::~SparseVolume() = default;
 const std::string& SparseVolume::name() const { return state_->name; }
 const model::Grid& SparseVolume::grid() const { return state_->grid; }
 
-void SparseVolume::extend_to(const model::Grid& grid) {
+void SparseVolume::extend_to(const model::Grid& grid, const std::string& file) {
   const auto place = model::place_in(grid, state_->grid);
   if (!place) {
-    throw Error{Fault::data, "the grid '" + state_->name + "' has " + model::place_text(state_->grid) +
-                                 ", which are not among the " + model::place_text(grid) +
-                                 " it is compared with; make both from the same target"};
+    throw Error{Fault::data, input_name(file) + ": the grid '" + state_->name + "' has " +
+                                 model::place_text(state_->grid) + ", which are not among the " +
+                                 model::place_text(grid) + " it is compared with; make both from the same target"};
   }
   state_->first -= Coord((*place)[0], (*place)[1], (*place)[2]);
   state_->grid = grid;

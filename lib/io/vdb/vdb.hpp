@@ -29,8 +29,8 @@ class SparseVolume {
   /// multiple of 8 are fastest.
   void write_slices(int k0, int count, const float* in);
   /// Takes a larger grid of the same voxels, with the background around; nothing is copied. Throws Fault::data where
-  /// the grid does not hold this one or its voxels lie elsewhere.
-  void extend_to(const model::Grid& grid);
+  /// the grid does not hold this one, of that file, or its voxels lie elsewhere.
+  void extend_to(const model::Grid& grid, const std::string& file);
   /// Collapses constant blocks to tiles; done by write_volumes.
   void prune();
 

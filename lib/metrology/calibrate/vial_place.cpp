@@ -38,9 +38,9 @@ std::vector<LitBand> lit_bands(const SweepScan& scan) {
     if (edges.clear) lit.push_back({b, edges});
   }
   if (!lit.empty()) return lit;
-  throw Error{Fault::data, "sweep: at no height is there light between two dark sides in " +
+  throw Error{Fault::data, "sweep: at no height is there light between two dark sides (line positions: " +
                                std::to_string(scan.column.size()) +
-                               " frames; sweep beyond both edges of the vial, and expose the camera longer"};
+                               "); sweep beyond both edges of the vial, and expose the camera longer"};
 }
 
 /// Centre of each lit band, and the means of what they all have.

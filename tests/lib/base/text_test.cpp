@@ -26,13 +26,19 @@ TEST_CASE("nearest finds a misspelt word and no other") {
 
 TEST_CASE("a guess is at most a third of the word away, one letter of a short one") {
   const std::vector<std::string> known{"abcdefghi", "xy"};
-  CHECK(nearest("abcdef", known).empty());         // 3 letters missing, of 6
+  CHECK(nearest("bcdefg", known).empty());         // 3 letters missing, of 6
   CHECK(nearest("ABCdefghi", known) == known[0]);  // 3 of 9 changed
   CHECK(nearest("ABCDefghi", known).empty());
   CHECK(nearest("abcdefghiABC", known) == known[0]);  // 3 of 12 too many
   CHECK(nearest("xz", known) == known[1]);
   CHECK(nearest("zz", known).empty());
   CHECK(nearest("ab", {"ac", "ad"}) == "ac");  // the first of equals
+}
+
+TEST_CASE("a guess for the beginning of one word is that word") {
+  CHECK(nearest("--vo", {"--no", "--voxel"}) == "--voxel");
+  CHECK(nearest("--fit", {"--fit-writable", "--fit-width", "--fix"}) == "--fix");  // begins two of them
+  CHECK(nearest("", {"--voxel"}).empty());
 }
 
 TEST_CASE("wrap breaks at blanks, in lines of at most the width") {

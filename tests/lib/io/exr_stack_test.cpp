@@ -214,6 +214,8 @@ TEST_CASE("the wrong kind or space is an error that names it") {
   std::string line;
   CHECK(status([&] { require("a.exr", info, model::Kind::frames, model::Space::projector); }, &line) == 65);
   CHECK(line == "a.exr: holds sinogram (virtual), but frames (projector) is needed");
+  CHECK(status([&] { require("a.exr", info, model::Kind::sinogram, model::Space::projector); }, &line) == 65);
+  CHECK(line == "a.exr: holds sinogram (virtual), but sinogram (projector) is needed; convert it by vam-resample");
   CHECK(status([&] { require("-", info, model::Kind::frames); }, &line) == 65);
   CHECK(line == "stdin: holds sinogram (virtual), but frames is needed");
 }

@@ -106,6 +106,7 @@ TEST_CASE("wrong types and impossible values name file and line") {
   CHECK(has(refusal("[projector]\nbits = 3\n"), "'3' is not one of 1, 2, 4, 8, 10, 16"));
   CHECK(has(refusal("[projector]\norientation = \"up\"\n"), "not one of normal"));
   CHECK(has(refusal("[vial\n"), "p.toml:1: not TOML"));
+  CHECK(refusal(" BDV") == "p.toml: is a volume (OpenVDB), not a printer file");
   CHECK(has(refusal("[vial]\nwall_mm = 13\n"), "leaves no room"));
   CHECK(has(refusal("[projector]\nlens_distance_mm = 5\n"), "is not outside vial.radius_mm"));
   CHECK(has(refusal("[bath]\nwindow_mm = 5\n"), "cuts into"));
@@ -117,6 +118,9 @@ TEST_CASE("--set overrides, takes text with or without quotes, and is a usage er
   CHECK(printer.resin.name == "acrylate 2");
   CHECK(printer.stage.device == "gcs:/dev/x");
   CHECK(has(set_refusal("vial.radius_m=10"), "did you mean radius_mm?"));
+  CHECK(has(set_refusal("vial.radius=10"), "did you mean radius_mm?"));
+  CHECK(has(set_refusal("rsin.index=1.5"), "did you mean resin.index?"));
+  CHECK(has(set_refusal("glass.index=1.5"), "did you mean bath.index?"));
   CHECK(has(set_refusal("vial.radius_mm"), "not section.key=value"));
   CHECK(has(set_refusal("vial.radius_mm=ten"), "is not a value"));
   CHECK(has(set_refusal("vial.radius_mm=1\nx=2"), "is not a value"));

@@ -1,4 +1,4 @@
-// Private to the array files: the header of an MRC2014 file [CHE15], as electron and X-ray microscopes write them.
+// Private to the array files: the header of an MRC2014 file, as electron and X-ray microscopes write them.
 #pragma once
 
 #include <cstddef>

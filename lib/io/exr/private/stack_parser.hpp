@@ -48,6 +48,7 @@ class StackParser {
   [[nodiscard]] bool multi_part() const { return (flags_ & multi_part_flag) != 0; }
   void begin();
   void take_first_header();
+  [[noreturn]] void refuse_foreign(std::int32_t first);  // its first bytes
   void parse_head();
   void add_part(const Imf::Header& header);
   void refill(bool alone);
