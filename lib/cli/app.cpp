@@ -70,8 +70,10 @@ App& App::positional(const std::string& value_name, std::vector<std::string>& ta
 App& App::option(const std::string& flag, const std::string& value_name, std::string& target, const std::string& help) {
   return declare(
       {flag, value_name, help, target, "", {}},
-      [&target, flag](const std::string& text) {  // as of a shell variable that is not set
-        if (text.empty()) throw Error{Fault::usage, split(flag, ',').back() + ": is empty; give a value, or omit it"};
+      [&target, flag, free_text = value_name == "TEXT"](const std::string& text) {
+        // As of a shell variable that is not set; free text may be empty.
+        if (text.empty() && !free_text)
+          throw Error{Fault::usage, split(flag, ',').back() + ": is empty; give a value, or omit it"};
         target = text;
       },
       [&target] { return target; });
