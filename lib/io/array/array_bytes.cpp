@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,14 @@ void Bytes::unpack() {
 bool Bytes::ended() {
   char more = 0;
   return read_(&more, 1) == 0;
+}
+
+void set_shape(const Bytes& bytes, const std::vector<std::uint64_t>& shape, Head& head) {
+  try {
+    set_shape(shape, head);
+  } catch (const std::runtime_error& problem) {
+    bytes.fail(problem.what());
+  }
 }
 
 }  // namespace vam::io::arrays

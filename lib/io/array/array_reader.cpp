@@ -105,14 +105,12 @@ struct ArrayReader::State {
     }
     if (format == Format::tiff) {
       TiffPages pages(std::move(bytes), file.name());
-      const arrays::Head head{pages.kind(),
-                              pages.value_bytes(),
-                              false,
-                              false,
-                              {count(pages.pages()), count(pages.rows()), count(pages.columns())}};
-      return send(
-          {head, {[&](void* to, std::size_t wanted) { return pages.read(to, wanted); }, file.name()}, options.axes},
-          out);
+      Bytes values([&](void* to, std::size_t wanted) { return pages.read(to, wanted); }, file.name());
+      arrays::Head head;
+      head.kind = pages.kind();
+      head.bytes = pages.value_bytes();
+      set_shape(values, {pages.pages(), pages.rows(), pages.columns()}, head);
+      return send({head, std::move(values), options.axes}, out);
     }
     Bytes front([this](void* to, std::size_t wanted) { return file.read(to, wanted); }, file.name());
     const arrays::Head head = format == Format::npy    ? take_npy_head(front)
@@ -120,8 +118,6 @@ struct ArrayReader::State {
                                                        : take_mrc_head(front);
     send({head, std::move(front), options.axes}, out);
   }
-
-  static std::uint64_t count(int number) { return static_cast<std::uint64_t>(number); }
 
   // What a child sends is not believed.
   void take_size(Receiver& in) {

@@ -1,8 +1,8 @@
 #include "io/array/private/mrc_head.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 
 namespace vam::io::arrays {
@@ -22,26 +22,22 @@ std::uint32_t word(const Header& header, std::size_t n, bool big_endian) {
   return value;
 }
 
-void set_mode(const Bytes& bytes, std::uint32_t mode, Head& head) {
-  switch (mode) {
-    case 0:
-      head.kind = 'i', head.bytes = 1;
-      return;
-    case 1:
-      head.kind = 'i', head.bytes = 2;
-      return;
-    case 2:
-      head.kind = 'f', head.bytes = 4;
-      return;
-    case 6:
-      head.kind = 'u', head.bytes = 2;
-      return;
-    case 12:
-      head.kind = 'f', head.bytes = 2;
-      return;
-    default:
-      bytes.fail("has values of MRC mode " + std::to_string(mode) + "; 0, 1, 2, 6 and 12 are read");
+struct Mode {
+  std::uint32_t number;
+  char kind;
+  int bytes;
+};
+
+constexpr Mode modes[] = {{0, 'i', 1}, {1, 'i', 2}, {2, 'f', 4}, {6, 'u', 2}, {12, 'f', 2}};
+
+void set_mode(const Bytes& bytes, std::uint32_t number, Head& head) {
+  const auto* mode =
+      std::find_if(std::begin(modes), std::end(modes), [&](const Mode& m) { return m.number == number; });
+  if (mode == std::end(modes)) {
+    bytes.fail("has values of MRC mode " + std::to_string(number) + "; 0, 1, 2, 6 and 12 are read");
   }
+  head.kind = mode->kind;
+  head.bytes = mode->bytes;
 }
 
 }  // namespace
@@ -61,11 +57,7 @@ Head take_mrc_head(Bytes& bytes) {
     if (number(16 + axis) == axis) continue;
     bytes.fail("has axes in another order than x, y, z (MAPC, MAPR, MAPS); write it again in this order");
   }
-  try {
-    set_shape({number(3), number(2), number(1)}, head);
-  } catch (const std::runtime_error& problem) {
-    bytes.fail(problem.what());
-  }
+  set_shape(bytes, {number(3), number(2), number(1)}, head);
   constexpr std::uint32_t most_extended = 1U << 30;
   const std::uint32_t extended = number(24);
   if (extended > most_extended) bytes.fail("its header is damaged: " + std::to_string(extended) + " further bytes");

@@ -50,7 +50,7 @@ struct TiffPages::State {
       fail("has pages of " + std::to_string(layout.columns) + " x " + std::to_string(layout.rows) +
            " values; up to 65536 along an axis are read");
     }
-    count = static_cast<int>(TIFFNumberOfDirectories(tiff.get()));
+    count = TIFFNumberOfDirectories(tiff.get());
     if (TIFFSetDirectory(tiff.get(), 0) == 0) fail("is a truncated or damaged TIFF");
     row.resize(std::size_t{layout.columns} * layout.bits / 8);
     require_page();
@@ -88,8 +88,8 @@ struct TiffPages::State {
   std::string name;
   Tiff tiff = open_tiff(file, "rm");
   Layout layout;
-  int count = 0;
-  int page = 0;
+  std::uint32_t count = 0;
+  std::uint32_t page = 0;
   std::uint32_t line = 0;
   std::vector<char> row;
   std::size_t used = 0;  // of the row; all of it, or none is read yet
@@ -101,9 +101,9 @@ TiffPages::TiffPages(std::string bytes, std::string name)
 
 TiffPages::~TiffPages() = default;
 
-int TiffPages::pages() const { return state_->count; }
-int TiffPages::rows() const { return static_cast<int>(state_->layout.rows); }
-int TiffPages::columns() const { return static_cast<int>(state_->layout.columns); }
+std::uint32_t TiffPages::pages() const { return state_->count; }
+std::uint32_t TiffPages::rows() const { return state_->layout.rows; }
+std::uint32_t TiffPages::columns() const { return state_->layout.columns; }
 int TiffPages::value_bytes() const { return state_->layout.bits / 8; }
 
 char TiffPages::kind() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -13,9 +14,9 @@ class TiffPages {
   TiffPages(std::string bytes, std::string name);
   ~TiffPages();
 
-  [[nodiscard]] int pages() const;
-  [[nodiscard]] int rows() const;
-  [[nodiscard]] int columns() const;
+  [[nodiscard]] std::uint32_t pages() const;
+  [[nodiscard]] std::uint32_t rows() const;
+  [[nodiscard]] std::uint32_t columns() const;
   [[nodiscard]] char kind() const;        // u, i or f
   [[nodiscard]] int value_bytes() const;  // 1, 2, 4 or 8
   /// The values of all pages, row by row, in this machine's byte order; fewer than `size` bytes only at the end. Throws

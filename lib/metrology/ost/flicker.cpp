@@ -42,6 +42,11 @@ Readings sum_of(const std::vector<double>& rows, const std::vector<double>& part
   return out;
 }
 
+// A row whose course passes zero gives no ratio.
+bool usable(const Readings& intensity) {
+  return std::all_of(intensity.begin(), intensity.end(), [](double v) { return std::isfinite(v) && v > 0; });
+}
+
 double total(const float* row, int width) {
   double sum = 0;
   for (int t = 0; t < width; ++t) sum += static_cast<double>(row[t]);
@@ -130,7 +135,7 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std:
   std::vector<double> directions_rad;
   for (const double angle : angles_deg) directions_rad.push_back(direction * angle * rad_per_deg + azimuth_rad);
   Readings intensity = apart_from_course(view_totals(level), directions_rad);
-  if (!(*std::min_element(intensity.begin(), intensity.end()) > 0)) return {};
+  if (!usable(intensity)) return {};
 
   make_steady(level, 0, intensity);
   const Turns turns(angles_deg);
@@ -149,8 +154,7 @@ Flicker OstReconstructor::State::flicker(std::span<const CameraView> views, std:
     squares += (value - 1) * (value - 1) / static_cast<double>(intensity.size());
   }
   Flicker found{100 * std::sqrt(squares), {}};
-  const bool usable = *std::min_element(intensity.begin(), intensity.end()) > 0;
-  if (usable && found.percent >= removed_flicker_percent) found.intensity = std::move(intensity);
+  if (usable(intensity) && found.percent >= removed_flicker_percent) found.intensity = std::move(intensity);
   return found;
 }
 

@@ -11,12 +11,17 @@
 #include "io/array/array_writer.hpp"
 #include "io/array/private/array_parser.hpp"
 #include "io/array/private/npy_head.hpp"
+#include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 
 using namespace vam;
 using namespace vam::io;
+using samples::array_refusal;
+using samples::big;
 using samples::little;
+using samples::read_array;
+using samples::ReadArray;
 
 namespace {
 
@@ -31,27 +36,10 @@ std::string array_of(const std::string& head, const std::string& values, int ver
   return "\x93NUMPY" + std::string{static_cast<char>(version), '\0'} + length + text + values;
 }
 
-std::string big(const std::string& bytes) { return {bytes.rbegin(), bytes.rend()}; }
-
-// All values, image by image, and their size.
-struct Read {
-  std::vector<float> values;
-  ArraySize size;
-};
-Read read(const std::string& bytes, const ArrayOptions& options = {}) {
-  const scratch::Folder folder;
-  ArrayReader reader(folder.write("a.npy", bytes), options);
-  Read all{{}, reader.size()};
-  for (Image image; reader.next(image);) all.values.insert(all.values.end(), image.values.begin(), image.values.end());
-  return all;
-}
 float value(const std::string& type, const std::string& bytes) {
-  return read(array_of(dictionary(type, "False", "1, 1, 1"), bytes)).values.at(0);
+  return read_array(array_of(dictionary(type, "False", "1, 1, 1"), bytes)).values.at(0);
 }
-std::string refusal(const std::string& bytes, const ArrayOptions& options = {}) {
-  return error_of([&] { (void)read(bytes, options); }, Fault::data);
-}
-std::string head_refusal(const std::string& head) { return refusal(array_of(head, std::string(24, '\0'))); }
+std::string head_refusal(const std::string& head) { return array_refusal(array_of(head, std::string(24, '\0'))); }
 
 // 0, 1, 2, ... as bytes.
 std::string counted(int count) {
@@ -94,22 +82,23 @@ TEST_CASE("binary16 by its definition: normal, subnormal, signed") {
 TEST_CASE("values that are no finite float are refused, with their place") {
   const std::string three = array_of(dictionary("<f4", "False", "2, 1, 3"), "");
   const std::string five = little(1.0F) + little(2.0F) + little(3.0F) + little(4.0F) + little(5.0F);
-  CHECK(has(refusal(three + five + little(std::numeric_limits<float>::infinity())),
+  CHECK(has(array_refusal(three + five + little(std::numeric_limits<float>::infinity())),
             "column 2, row 0 of image 1 is not a finite number"));
-  CHECK(has(refusal(array_of(dictionary("<f2", "False", "1, 1"), little<std::uint16_t>(0x7c00))), "not a finite"));
-  CHECK(has(refusal(array_of(dictionary("<f8", "False", "1, 1"), little(4e38))), "not a finite"));
-  CHECK(has(refusal(array_of(dictionary("<f8", "False", "1, 1"), little(std::nan("")))), "not a finite"));
+  CHECK(
+      has(array_refusal(array_of(dictionary("<f2", "False", "1, 1"), little<std::uint16_t>(0x7c00))), "not a finite"));
+  CHECK(has(array_refusal(array_of(dictionary("<f8", "False", "1, 1"), little(4e38))), "not a finite"));
+  CHECK(has(array_refusal(array_of(dictionary("<f8", "False", "1, 1"), little(std::nan("")))), "not a finite"));
 }
 
 TEST_CASE("C and Fortran order, axes in any order, planes, and more images than are gathered at a time") {
-  const auto at = [](const Read& all, int image, int row, int column) {
+  const auto at = [](const ReadArray& all, int image, int row, int column) {
     return all.values[(static_cast<std::size_t>(image) * all.size.rows + row) * all.size.columns + column];
   };
   for (const bool fortran : {false, true}) {
     CAPTURE(fortran);
     const std::string bytes = array_of(dictionary("|u1", fortran ? "True" : "False", "20, 3, 4"), counted(240));
     for (const std::array<int, 3>& axes : {std::array{0, 1, 2}, {2, 1, 0}, {1, 0, 2}, {0, 2, 1}}) {
-      const Read all = read(bytes, {"", axes});
+      const ReadArray all = read_array(bytes, {"", axes});
       const std::array sizes{20, 3, 4};
       REQUIRE(all.size.images == sizes[axes[0]]);
       REQUIRE(all.size.rows == sizes[axes[1]]);
@@ -128,19 +117,21 @@ TEST_CASE("C and Fortran order, axes in any order, planes, and more images than 
       }
     }
   }
-  const Read plane = read(array_of(dictionary("|u1", "False", "3, 4"), counted(12), 3));
+  const ReadArray plane = read_array(array_of(dictionary("|u1", "False", "3, 4"), counted(12), 3));
   CHECK(plane.size.images == 1);
   CHECK(plane.size.rows == 3);
   CHECK(plane.size.columns == 4);
   CHECK(plane.values[11] == 11);
   // More than are converted at a time.
-  const Read wide = read(array_of(dictionary("|u1", "False", "2, 300, 301"), std::string(180600, '\7') + ""));
+  const ReadArray wide =
+      read_array(array_of(dictionary("|u1", "False", "2, 300, 301"), std::string(180600, '\7') + ""));
   CHECK(wide.values == std::vector<float>(180600, 7.0F));
 }
 
 TEST_CASE("the header as other programs write it") {
-  CHECK(read(array_of("{\"shape\":(1,2,3,),\"fortran_order\":False,\"descr\":\"|u1\"}", counted(6))).values[5] == 5);
-  CHECK(read(array_of("{ 'descr': '<i2', 'fortran_order': True , 'shape': (1L, 2L)}", std::string(4, '\1'), 2))
+  CHECK(read_array(array_of("{\"shape\":(1,2,3,),\"fortran_order\":False,\"descr\":\"|u1\"}", counted(6))).values[5] ==
+        5);
+  CHECK(read_array(array_of("{ 'descr': '<i2', 'fortran_order': True , 'shape': (1L, 2L)}", std::string(4, '\1'), 2))
             .values[1] == 0x101);
 }
 
@@ -174,43 +165,43 @@ TEST_CASE("headers that are none, or of what cannot be read, are refused") {
 
 TEST_CASE("files that are cut, too long or of another kind are refused") {
   const std::string whole = array_of(dictionary("<f4", "False", "2, 1, 2"), std::string(16, '\0'));
-  CHECK(read(whole).values.size() == 4);
+  CHECK(read_array(whole).values.size() == 4);
   for (std::size_t size = 1; size < whole.size(); ++size) {
-    const std::string line = refusal(whole.substr(0, size));
+    const std::string line = array_refusal(whole.substr(0, size));
     CHECK(has(line, "is cut off after " + std::to_string(size) + " bytes"));
   }
-  CHECK(has(refusal(whole + "x"), "has bytes behind its 4 values"));
-  CHECK(has(refusal(array_of(dictionary("<f4", "True", "2, 1, 2"), std::string(17, '\0'))), "has bytes behind"));
-  CHECK(has(refusal(""), "is empty"));
-  CHECK(has(refusal("hello"), "is not an array (NumPy, NRRD, MRC, TIFF)"));
+  CHECK(has(array_refusal(whole + "x"), "has bytes behind its 4 values"));
+  CHECK(has(array_refusal(array_of(dictionary("<f4", "True", "2, 1, 2"), std::string(17, '\0'))), "has bytes behind"));
+  CHECK(has(array_refusal(""), "is empty"));
+  CHECK(has(array_refusal("hello"), "is not an array (NumPy, NRRD, MRC, TIFF)"));
   for (const int version : {0, 4}) {
     std::string other = whole;
     other[6] = static_cast<char>(version);
-    CHECK(has(refusal(other), "is not a NumPy array of version 1 to 3"));
+    CHECK(has(array_refusal(other), "is not a NumPy array of version 1 to 3"));
   }
   std::string endless = array_of(std::string(65535, ' '), "", 2);  // with its line feed as long as is read
-  CHECK(has(refusal(endless), "its NumPy header is damaged"));
+  CHECK(has(array_refusal(endless), "its NumPy header is damaged"));
   endless = array_of(std::string(65536, ' '), "", 2);
-  CHECK(has(refusal(endless), "its NumPy header is damaged"));
+  CHECK(has(array_refusal(endless), "its NumPy header is damaged"));
 }
 
 TEST_CASE("archives: the only array, one of several by name") {
   samples::Zip one;
   one.add("dose.npy", array_of(dictionary("|u1", "False", "1, 2"), counted(2)));
   one.add("notes", "x");
-  CHECK(read(one.done()).values == std::vector<float>{0, 1});
+  CHECK(read_array(one.done()).values == std::vector<float>{0, 1});
   samples::Zip two = one;
   two.add("plan/e.npy", array_of(dictionary("|u1", "False", "2, 1"), "\5\6"));
-  CHECK(read(two.done(), {"plan/e", {0, 1, 2}}).values == std::vector<float>{5, 6});
-  CHECK(has(error_of([&] { (void)read(two.done()); }, Fault::usage), "holds 2 arrays (dose, plan/e); name one"));
-  CHECK(has(error_of([&] { (void)read(two.done(), {"plan", {0, 1, 2}}); }, Fault::usage), "none is called plan"));
+  CHECK(read_array(two.done(), {"plan/e", {0, 1, 2}}).values == std::vector<float>{5, 6});
+  CHECK(has(error_of([&] { (void)read_array(two.done()); }, Fault::usage), "holds 2 arrays (dose, plan/e); name one"));
+  CHECK(has(error_of([&] { (void)read_array(two.done(), {"plan", {0, 1, 2}}); }, Fault::usage), "none is called plan"));
   samples::Zip none;
   none.add("notes", "x");
-  CHECK(has(refusal(none.done()), "without an array"));
-  CHECK(has(refusal(one.done().substr(0, one.done().size() - 30)), "truncated or damaged"));
+  CHECK(has(array_refusal(none.done()), "without an array"));
+  CHECK(has(array_refusal(one.done().substr(0, one.done().size() - 30)), "truncated or damaged"));
   std::string flipped = one.done();
   flipped[flipped.find('\1', 60)] = '\3';
-  CHECK(has(refusal(flipped), "truncated or damaged"));
+  CHECK(has(array_refusal(flipped), "truncated or damaged"));
 }
 
 TEST_CASE("what is written is what is read, behind a header of whole lines of 64 bytes") {
@@ -223,8 +214,8 @@ TEST_CASE("what is written is what is read, behind a header of whole lines of 64
     writer.commit();
   }
   const std::string bytes = scratch::slurp(folder / "a.npy");
-  CHECK(read(bytes).values == values);
-  CHECK(read(bytes).size.images == 3);
+  CHECK(read_array(bytes).values == values);
+  CHECK(read_array(bytes).size.images == 3);
   CHECK((bytes.size() - 24) % 64 == 0);
   CHECK(bytes.find('\n') == bytes.size() - 25);
   for (const int images : {1, 10, 100, 1000, 10000, 65536}) {  // digits that shift the padding

@@ -8,31 +8,19 @@
 
 #include "fault_of.hpp"
 #include "io/array/array_reader.hpp"
+#include "lib/io/array_samples.hpp"
 #include "lib/io/scratch.hpp"
 #include "lib/io/zip_writer.hpp"
 
 using namespace vam;
 using namespace vam::io;
+using samples::array_refusal;
+using samples::big;
 using samples::little;
+using samples::read_array;
+using samples::ReadArray;
 
 namespace {
-
-std::string big(const std::string& bytes) { return {bytes.rbegin(), bytes.rend()}; }
-
-struct Read {
-  std::vector<float> values;
-  ArraySize size;
-};
-Read read(const std::string& bytes, const ArrayOptions& options = {}) {
-  const scratch::Folder folder;
-  ArrayReader reader(folder.write("volume", bytes), options);
-  Read all{{}, reader.size()};
-  for (Image image; reader.next(image);) all.values.insert(all.values.end(), image.values.begin(), image.values.end());
-  return all;
-}
-std::string refusal(const std::string& bytes) {
-  return error_of([&] { (void)read(bytes); }, Fault::data);
-}
 
 // 1, 2, ... of 2 slices of 3 rows of 4 columns.
 template <class Value>
@@ -45,7 +33,7 @@ std::string counted(bool big_endian = false) {
   return bytes;
 }
 void check_counted(const std::string& bytes) {
-  const Read all = read(bytes);
+  const ReadArray all = read_array(bytes);
   CHECK(all.size.images == 2);
   CHECK(all.size.rows == 3);
   CHECK(all.size.columns == 4);
@@ -53,7 +41,7 @@ void check_counted(const std::string& bytes) {
   for (std::size_t i = 0; i < 24; ++i) CHECK(all.values[i] == static_cast<float>(i + 1));
   // Every beginning of it is refused, in one line.
   for (const std::size_t cut : {bytes.size() - 1, bytes.size() / 2, std::size_t{40}, std::size_t{5}}) {
-    CHECK(!refusal(bytes.substr(0, cut)).empty());
+    CHECK(!array_refusal(bytes.substr(0, cut)).empty());
   }
 }
 
@@ -133,21 +121,21 @@ TEST_CASE("NRRD volumes of every type, byte order and packing") {
 
 TEST_CASE("NRRD files that are not read are refused with a remedy") {
   const std::string raw = "encoding: raw\nendian: little\n";
-  CHECK(
-      has(refusal(nrrd("type: float\nencoding: ascii\nendian: little\n", "1 2 3")), "raw and gzip are read; write it"));
-  CHECK(has(refusal(nrrd("type: float\ndata file: a.raw\n" + raw, "")), "in another file"));
-  CHECK(has(refusal(nrrd("type: float\nbyte skip: -1\n" + raw, counted<float>())), "skips bytes"));
-  CHECK(has(refusal(nrrd("type: block\n" + raw, "")), "'block'"));
-  CHECK(has(refusal(nrrd(raw, counted<float>())), "has no 'type'"));
-  CHECK(has(refusal(nrrd("type: float\nencoding: raw\n", counted<float>())), "has no 'endian'"));
-  CHECK(has(refusal(nrrd("type: float\n" + raw, counted<float>() + "x")), "has bytes behind its 24 values"));
-  CHECK(has(refusal(nrrd("nonsense\n" + raw, counted<float>())), "'nonsense' is no field"));
-  CHECK(has(refusal("NRRD0004\ntype: float\nsizes: 4 x 2\n" + raw + "\n"), "sizes '4 x 2'"));
-  CHECK(has(refusal("NRRD0004\ntype: float\nsizes: 2 4 3 2\n" + raw + "\n"), "has 4 axes (2 x 3 x 4 x 2)"));
+  CHECK(has(array_refusal(nrrd("type: float\nencoding: ascii\nendian: little\n", "1 2 3")),
+            "raw and gzip are read; write it"));
+  CHECK(has(array_refusal(nrrd("type: float\ndata file: a.raw\n" + raw, "")), "in another file"));
+  CHECK(has(array_refusal(nrrd("type: float\nbyte skip: -1\n" + raw, counted<float>())), "skips bytes"));
+  CHECK(has(array_refusal(nrrd("type: block\n" + raw, "")), "'block'"));
+  CHECK(has(array_refusal(nrrd(raw, counted<float>())), "has no 'type'"));
+  CHECK(has(array_refusal(nrrd("type: float\nencoding: raw\n", counted<float>())), "has no 'endian'"));
+  CHECK(has(array_refusal(nrrd("type: float\n" + raw, counted<float>() + "x")), "has bytes behind its 24 values"));
+  CHECK(has(array_refusal(nrrd("nonsense\n" + raw, counted<float>())), "'nonsense' is no field"));
+  CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 4 x 2\n" + raw + "\n"), "sizes '4 x 2'"));
+  CHECK(has(array_refusal("NRRD0004\ntype: float\nsizes: 2 4 3 2\n" + raw + "\n"), "has 4 axes (2 x 3 x 4 x 2)"));
   const std::string packed = nrrd("type: float\nencoding: gzip\nendian: little\n", gzipped(counted<float>()));
   std::string damaged = packed;
   damaged[damaged.size() - 20] = static_cast<char>(damaged[damaged.size() - 20] ^ 0x55);
-  CHECK(!refusal(damaged).empty());
+  CHECK(!array_refusal(damaged).empty());
 }
 
 TEST_CASE("MRC volumes of the modes that are numbers, with and without an extended header") {
@@ -157,9 +145,9 @@ TEST_CASE("MRC volumes of the modes that are numbers, with and without an extend
   check_counted(mrc(1, counted<std::int16_t>()));
   check_counted(mrc(6, counted<std::uint16_t>()));
   check_counted(mrc(1, counted<std::int16_t>(true), 0, true));
-  CHECK(has(refusal(mrc(4, counted<double>())), "MRC mode 4"));
-  CHECK(has(refusal(mrc(2, counted<float>(), 0, false, 2)), "axes in another order"));
-  CHECK(has(refusal(mrc(2, counted<float>(), -5)), "header is damaged"));
+  CHECK(has(array_refusal(mrc(4, counted<double>())), "MRC mode 4"));
+  CHECK(has(array_refusal(mrc(2, counted<float>(), 0, false, 2)), "axes in another order"));
+  CHECK(has(array_refusal(mrc(2, counted<float>(), -5)), "header is damaged"));
 }
 
 TEST_CASE("TIFF files of several pages, whole numbers and floats") {
@@ -170,8 +158,8 @@ TEST_CASE("TIFF files of several pages, whole numbers and floats") {
   check_counted(tiff(32, 2, counted<std::int32_t>()));
   check_counted(tiff(16, 1, counted<std::uint16_t>(true), true));
   check_counted(tiff(32, 3, counted<float>(true), true));
-  CHECK(has(refusal(tiff(16, 1, counted<std::uint16_t>(), false, 0)), "page 0 is not grey in strips"));
-  CHECK(has(refusal(tiff(16, 1, counted<std::uint16_t>(), false, 1, 3)), "page 1 differs from page 0"));
-  CHECK(has(refusal(tiff(12, 1, counted<std::uint16_t>())), "12 bits"));
-  CHECK(has(refusal(tiff(32, 6, counted<double>())), "sample format 6"));
+  CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 0)), "page 0 is not grey in strips"));
+  CHECK(has(array_refusal(tiff(16, 1, counted<std::uint16_t>(), false, 1, 3)), "page 1 differs from page 0"));
+  CHECK(has(array_refusal(tiff(12, 1, counted<std::uint16_t>())), "12 bits"));
+  CHECK(has(array_refusal(tiff(32, 6, counted<double>())), "sample format 6"));
 }

@@ -38,6 +38,16 @@ std::vector<CameraView> views_of(const oracle::ViewBench& bench, const std::vect
   return views;
 }
 
+// The same field in pixels `factor` times as large.
+oracle::ViewBench coarser(oracle::ViewBench bench, int factor) {
+  bench.pixel_mm *= factor;
+  bench.columns /= factor;
+  bench.rows /= factor;
+  bench.axis_column = (bench.columns - 1) / 2.0;
+  bench.axis_row = (bench.rows - 1) / 2.0;
+  return bench;
+}
+
 struct Figures {
   double rms = 0;
   double mean = 0;
@@ -209,12 +219,7 @@ TEST_CASE("of several turns the median counts: bubbles pass in one of them") {
 
 TEST_CASE("flicker is measured; steady light, bubbles and a print that leaves the image are none") {
   const auto bodies = post();
-  oracle::ViewBench bench;
-  bench.columns = 120;
-  bench.rows = 76;
-  bench.pixel_mm = 0.2;
-  bench.axis_column = 59.5;
-  bench.axis_row = 37.5;
+  oracle::ViewBench bench = coarser({}, 4);
   const auto measured = [&](const std::vector<std::vector<float>>& pixels) {
     const OstReconstructor rig(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                                {.axis_row = bench.axis_row});
@@ -254,11 +259,7 @@ TEST_CASE("scattered light that the resin absorbs is restored when its absorptio
   CHECK(f.rms <= 10 * micrometres);
   // MLEM, too, knows of it: it leaves the density as it is, not a map of the way out. Densities do not need the pixels
   // that surfaces do.
-  bench.pixel_mm *= 2;
-  bench.columns /= 2;
-  bench.rows /= 2;
-  bench.axis_column = (bench.columns - 1) / 2.0;
-  bench.axis_row = (bench.rows - 1) / 2.0;
+  bench = coarser(bench, 2);
   const auto views = views_of(bench, oracle::bench_views(bench, bodies, {}, 180));
   const OstReconstructor refined(printer_of(bench), bench.pixel_mm, bench.columns, bench.rows, {bench.axis_column, 0},
                                  {.mlem_iterations = 20, .axis_row = bench.axis_row});

@@ -113,7 +113,8 @@ TEST_CASE("uniform angles from non-uniform ones reproduce a sinusoid") {
 TEST_CASE("views are of several turns when they come in the order of time") {
   const auto turned = [](double turns, double step_deg) {
     std::vector<double> angles;
-    for (int i = 0; step_deg * i < 360 * turns - 1e-9; ++i) angles.push_back(std::fmod(20 + step_deg * i, 360.0));
+    for (int i = 0; std::abs(step_deg) * i < 360 * turns - 1e-9; ++i)
+      angles.push_back(std::fmod(20 + step_deg * i, 360.0));
     return angles;
   };
   CHECK(Turns(turned(1, 2)).all().size() == 1);

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
+
+#include "io/array/private/array_head.hpp"
 
 namespace vam::io::arrays {
 
@@ -30,5 +34,8 @@ class Bytes {
   std::string name_;
   std::size_t taken_ = 0;
 };
+
+/// set_shape() of a head whose values follow. Throws Fault::data.
+void set_shape(const Bytes& bytes, const std::vector<std::uint64_t>& shape, Head& head);
 
 }  // namespace vam::io::arrays

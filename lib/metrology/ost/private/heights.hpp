@@ -40,8 +40,8 @@ class RowOfHeight {
   std::vector<ColumnHeights> columns_;
 };
 
-/// At most so many heights of the grid that see the print, in order, those nearest to the lens' own: there a line is
-/// the same from either end.
+/// Heights of the grid that see the print, in ascending order; `most` is their maximum number, those nearest to the
+/// height of the lens are kept: there a line is the same from either end.
 [[nodiscard]] std::vector<double> print_heights(const Image& mean_view, const RowOfHeight& map, const Eye& eye,
                                                 const model::Grid& grid, std::size_t most);
 

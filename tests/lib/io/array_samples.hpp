@@ -1,0 +1,35 @@
+// Arrays put together in a test, read back whole.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fault_of.hpp"
+#include "io/array/array_reader.hpp"
+#include "lib/io/scratch.hpp"
+
+namespace samples {
+
+inline std::string big(const std::string& bytes) { return {bytes.rbegin(), bytes.rend()}; }
+
+/// All values, image by image, and their size.
+struct ReadArray {
+  std::vector<float> values;
+  vam::io::ArraySize size;
+};
+
+inline ReadArray read_array(const std::string& bytes, const vam::io::ArrayOptions& options = {}) {
+  const scratch::Folder folder;
+  vam::io::ArrayReader reader(folder.write("array", bytes), options);
+  ReadArray all{{}, reader.size()};
+  for (vam::Image image; reader.next(image);) {
+    all.values.insert(all.values.end(), image.values.begin(), image.values.end());
+  }
+  return all;
+}
+
+inline std::string array_refusal(const std::string& bytes, const vam::io::ArrayOptions& options = {}) {
+  return error_of([&] { (void)read_array(bytes, options); }, vam::Fault::data);
+}
+
+}  // namespace samples
