@@ -64,6 +64,13 @@ cli::Manual manual() {
         "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --stretch-z 1 -o print.vdb\n"
         "vam-sdf print.vdb design.vdb --isovalue 0.5 --region top=plane:-2,-2,0.9,2,2,1.3 --region "
         "body=wall:-2,-2,-2,2,2,2 --require 'top.flatness<=0.1,body.thickness>=2' --report regions.json"},
+       {"A face from a mesh of its own, with a closer tolerance than the rest:",
+        "vam-slice --shape box:x=6,y=6,z=2 --stretch-z 1 -o design.vdb\n"
+        "vam-slice --shape box:x=6.2,y=6.2,z=2.2 --stretch-z 1 -o print.vdb\n"
+        "printf 'OFF\\n4 2 0\\n-3 -3 1\\n3 -3 1\\n3 3 1\\n-3 3 1\\n3 0 1 2\\n3 0 2 3\\n' >seat.off\n"
+        "vam-sdf print.vdb design.vdb --isovalue 0.5 --region seat=plane:seat.off --tolerance 0.2 --tolerance "
+        "seat=0.15 "
+        "--require 'within>=95,seat.within>=95'"},
        {"Compare repeated prints:",
         "vam-slice --shape box:x=6,y=6,z=6 --stretch-z 1 -o design.vdb\n"
         "for n in 1 2 3 4; do vam-slice --shape box:x=6.$n,y=6.2,z=6.2 --stretch-z 1 -o print.vdb; vam-sdf print.vdb "
@@ -83,9 +90,11 @@ cli::Manual manual() {
 void declare_inspection(cli::App& app, Options& options) {
   app.group("Regions and uncertainty");
   app.option(
-      "--region", "NAME=KIND:X0,Y0,Z0,X1,Y1,Z1", options.regions,
-      "Also measure the part of the design's surface within this box, in mm of the design. KIND is surface (rms, "
-      "mean, max, within), or, beside these, plane (flatness, tilt, offset), cylinder (diameter, cylindricity, "
+      "--region", "NAME=KIND:X0,Y0,Z0,X1,Y1,Z1|FILE", options.regions,
+      "Also measure the part of the design's surface within this box, in mm of the design, or on the faces of this "
+      "mesh, e.g. those that a CAD program exports of a seat: what is within 0.5 % of the design's largest dimension "
+      "of them and faces the same way. KIND is surface (rms, mean, max, within), or, beside these, plane (flatness, "
+      "tilt, offset), cylinder (diameter, cylindricity, "
       "tilt, offset) or wall (thickness, min_thickness).");
   app.option("--datum", "NAME", options.datum,
              "Align by three regions that are planes: the first fixes its plane, the second its direction about the "
@@ -141,8 +150,10 @@ void declare(cli::App& app, Options& options) {
       "those of regions, e.g. 'rms<=0.2,top.flatness<0.05'.");
   app.flag("--guard-band", options.guard_band,
            "Conditions of --require must hold for all values within the expanded uncertainty (ISO 14253-1).");
-  app.option("--tolerance", "MM", options.tolerance_mm, cli::positive,
-             "Report the fraction of the print's surface within this distance of the design.");
+  app.option(
+      "--tolerance", "[NAME=]MM", options.tolerances,
+      "Report the fraction of the print's surface within this distance of the design; with NAME, of that region, "
+      "which otherwise has the tolerance of the whole print.");
   cli::add_report(app, options.report);
   declare_inspection(app, options);
   cli::add_threads(app);

@@ -58,6 +58,23 @@ holds 'and is turned by nothing' "$(json regions.json regions.top.tilt_deg) < 0.
 holds 'the wall is 4.4 mm thick' "$(json regions.json regions.body.thickness_mm) > 4.399 && $(json regions.json regions.body.thickness_mm) < 4.401"
 holds 'of 4' "$(json regions.json regions.body.design_thickness_mm) > 3.999 && $(json regions.json regions.body.design_thickness_mm) < 4.001"
 fails 1 'top.offset = .* top.offset<=0.1' vam-sdf grown.off design.off --align none $faces --require 'top.offset<=0.1'
+
+# Faces as a CAD program exports them, meshed otherwise than the design, and a tolerance of their own.
+printf 'OFF\n4 2 0\n-4 -3 4\n4 -3 4\n4 3 4\n-4 3 4\n3 0 1 2\n3 0 2 3\n' >seat.off
+own='--region seat=plane:seat.off --region front=-9,-9,-9,9,-2.5,9'
+quiet 'a region on faces' vam-sdf grown.off design.off --align none $own --tolerance 0.25 --tolerance seat=0.1 \
+  --report own.json --require 'seat.offset>=0.199,seat.within<=0,front.within>=90,within>=90'
+is 'is that of the box' "$(json own.json regions.seat.offset_mm)" "$(json regions.json regions.top.offset_mm)"
+is 'and has its tolerance' "$(json own.json regions.seat.tolerance_mm) $(json own.json regions.front.tolerance_mm)" '0.1 0.25'
+quiet 'a tolerance for one region alone' vam-sdf grown.off design.off --align none $own --tolerance seat=0.21 --require 'seat.within>=90'
+fails 64 'front.within: give the tolerance' vam-sdf grown.off design.off $own --tolerance seat=0.1 --require 'front.within>=90'
+fails 64 "'sest' is not a name" vam-sdf grown.off design.off $own --tolerance sest=0.1
+fails 64 'must be more than 0' vam-sdf grown.off design.off $own --tolerance seat=-1
+fails 64 'must be more than 0' vam-sdf grown.off design.off $own --tolerance wide
+fails 64 'given already' vam-sdf grown.off design.off $own --tolerance 1 --tolerance 2
+fails 66 'none.off' vam-sdf grown.off design.off --region seat=plane:none.off
+sed 's/^3 \([0-9]\) \([0-9]\) \([0-9]\)$/3 \1 \3 \2/' seat.off >turned.off
+fails 65 'face the same way' vam-sdf grown.off design.off --align none --region seat=plane:turned.off
 is 'a print without noise is certain' "$(awk "BEGIN { print $(json regions.json expanded_uncertainty.regions.top.offset_mm) < 1e-4 }")" 1
 # A scale that may be off by 1 %: the top at 4.2 mm by 0.042 mm, twice that with k = 2, drawn 20 times (+-16 %).
 quiet 'an uncertain scale' vam-sdf grown.off design.off --align none $faces --scale-uncertainty 1 --report scale.json

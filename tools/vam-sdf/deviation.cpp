@@ -21,6 +21,7 @@
 #include "vam-sdf/figure_names.hpp"
 #include "vam-sdf/options.hpp"
 #include "vam-sdf/pose.hpp"
+#include "vam-sdf/regions.hpp"
 
 namespace vam::sdf_tool {
 
@@ -92,29 +93,20 @@ Json facts(const Options& options, const solid::Alignment& alignment) {
           {"matrix", alignment.transform.matrix()}};
 }
 
-std::vector<metrology::Region> regions_of(const Options& options) {
-  std::vector<metrology::Region> regions;
-  for (const std::string& text : options.regions) {
-    regions.push_back(metrology::parse_region(text));
-    const auto same = [&](const auto& region) { return region.name == regions.back().name; };
-    if (std::count_if(regions.begin(), regions.end(), same) > 1) {
-      throw Error{Fault::usage, "--region " + text + ": a region of this name is given already"};
-    }
-  }
-  constexpr std::size_t faces = 3;
-  if (!options.datum.empty() && options.datum.size() != faces) {
-    throw Error{Fault::usage, "--datum: name three regions, primary first"};
-  }
-  return regions;
+// Of all figures only `within` needs one.
+bool has_tolerance(const std::string& figure, const Toleranced& asked) {
+  if (figure == "within") return asked.tolerance_mm.has_value();
+  return std::all_of(asked.regions.begin(), asked.regions.end(), [&](const metrology::Region& region) {
+    return region.tolerance_mm || region.name + ".within" != figure;
+  });
 }
 
-std::vector<model::Condition> conditions_of(const Options& options, const std::vector<metrology::Region>& regions) {
+std::vector<model::Condition> conditions_of(const Options& options, const Toleranced& asked) {
   if (options.require.empty()) return {};
-  auto conditions = model::parse_conditions(options.require, figure_names(regions));
-  const bool asks_within =
-      std::any_of(conditions.begin(), conditions.end(), [](const auto& c) { return c.name.ends_with("within"); });
-  if (asks_within && !options.tolerance_mm) {
-    throw Error{Fault::usage, "--require within: give the tolerance by --tolerance"};
+  auto conditions = model::parse_conditions(options.require, figure_names(asked.regions));
+  for (const model::Condition& condition : conditions) {
+    if (has_tolerance(condition.name, asked)) continue;
+    throw Error{Fault::usage, "--require " + condition.name + ": give the tolerance by --tolerance"};
   }
   return conditions;
 }
@@ -135,8 +127,13 @@ metrology::SurfaceErrors errors_of(const Options& options, const PrintSurface& p
 }  // namespace
 
 void deviation(const cli::App& app, const Options& options) {
-  const std::vector<metrology::Region> regions = regions_of(options);
-  const std::vector<model::Condition> conditions = conditions_of(options, regions);
+  constexpr std::size_t datum_faces = 3;
+  if (!options.datum.empty() && options.datum.size() != datum_faces) {
+    throw Error{Fault::usage, "--datum: name three regions, primary first"};
+  }
+  const Toleranced asked = read_regions(options);
+  const std::vector<metrology::Region>& regions = asked.regions;
+  const std::vector<model::Condition> conditions = conditions_of(options, asked);
   if (options.scale && !options.volume.empty()) {
     throw Error{Fault::usage, "--fit-scale: the shrinkage would be missing in --volume; omit one of them"};
   }
@@ -156,7 +153,7 @@ void deviation(const cli::App& app, const Options& options) {
   const solid::Surface design(design_mesh);
   const solid::Alignment alignment = align_print(options, regions, design_mesh, design, print);
   metrology::Inspection found = metrology::inspect(print, design_mesh, design, options.samples, regions);
-  found.tolerance_mm = options.tolerance_mm;
+  found.tolerance_mm = asked.tolerance_mm;
   found.pose = {options.align != "none", options.scale, 100 * (1 - 1 / alignment.transform.scale), options.datum};
   const metrology::SurfaceErrors errors = errors_of(options, surface, design, found.distances.largest_dimension_mm);
   Json figures = metrology::figures_json(found);
@@ -172,7 +169,10 @@ void deviation(const cli::App& app, const Options& options) {
   if (!options.volume.empty()) write_deviation_volume(app, options, print, design_mesh, rms_mm);
   const auto failed = failures(options, conditions, figures, uncertainty);
   figures["alignment"] = facts(options, alignment);
-  if (options.tolerance_mm) figures["tolerance_mm"] = *options.tolerance_mm;
+  if (asked.tolerance_mm) figures["tolerance_mm"] = *asked.tolerance_mm;
+  for (const metrology::Region& region : regions) {
+    if (region.tolerance_mm) figures["regions"][region.name]["tolerance_mm"] = *region.tolerance_mm;
+  }
   if (bodies) figures["bodies"] = metrology::to_json(*bodies);
   figures["expanded_uncertainty"] = uncertainty;
   figures["uncertainty_budget"] = metrology::to_json(errors);

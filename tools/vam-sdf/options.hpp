@@ -28,7 +28,7 @@ struct Options {
   std::optional<double> limit_mm;
   std::string require;
   std::string report;
-  std::optional<double> tolerance_mm;
+  std::vector<std::string> tolerances;
   std::vector<std::string> regions;
   std::vector<std::string> datum;
   std::string uncertainty;

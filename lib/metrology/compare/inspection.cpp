@@ -165,8 +165,7 @@ class Trials {
     }
     for (std::size_t r = 0; r < part_.regions.size(); ++r) {
       const RegionErrors errors{by.print_mm, by.design_mm, by.opposite_mm[r]};
-      json["regions"][part_.regions[r].region.name] =
-          region_json(part_.regions[r], part_.distances, part_.tolerance_mm, errors);
+      json["regions"][part_.regions[r].region.name] = region_json(part_.regions[r], part_.distances, errors);
     }
     return json;
   }
@@ -318,8 +317,7 @@ Json figures_json(const Inspection& inspection) {
   }
   json["alignment"]["shrinkage_percent"] = inspection.pose.shrinkage_percent;
   for (const RegionPoints& region : inspection.regions) {
-    json["regions"][region.region.name] =
-        region_json(region, inspection.distances, inspection.tolerance_mm, std::nullopt);
+    json["regions"][region.region.name] = region_json(region, inspection.distances, std::nullopt);
   }
   return json;
 }

@@ -31,11 +31,20 @@ const std::vector<KindName>& kinds() {
   return all;
 }
 
+constexpr double alike = 0.5;     // cosine of 60 degrees
+constexpr double near_it = 5e-3;  // of the design's largest dimension: meshes of one face differ by their chords
+
 bool contains(const solid::Box& box, const Vector3& p) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (p[a] < box.low[a] || p[a] > box.high[a]) return false;
   }
   return true;
+}
+
+bool belongs(const Region& region, double near_mm, const Vector3& point, const Vector3& normal) {
+  if (!region.faces) return contains(region.box, point);
+  const solid::Foot foot = region.faces->closest(point);
+  return length(foot.point - point) <= near_mm && dot(foot.normal, normal) > alike;
 }
 
 double angle_deg(const Vector3& a, const Vector3& b) {
@@ -57,15 +66,17 @@ solid::SurfaceSample other_side(const solid::SurfaceSample& from, const solid::S
   return {foot.point, foot.normal, foot.triangle};
 }
 
-/// Points of the design in the box, and of the print nearest to them; sides of a print that is too large, which an edge
-/// of the design is nearest to, face elsewhere.
+/// Points of the design in the region, and of the print nearest to them; sides of a print that is too large, which an
+/// edge of the design is nearest to, face elsewhere.
 void gather(const Distances& distances, std::span<const solid::Foot> feet, RegionPoints& points) {
+  const double near_mm = near_it * distances.largest_dimension_mm;
   for (std::size_t i = 0; i < feet.size(); ++i) {
-    const bool faces = dot(distances.on_print[i].normal, feet[i].normal) > 0.5;
-    if (faces && contains(points.region.box, feet[i].point)) points.print.push_back(i);
+    const bool faces = dot(distances.on_print[i].normal, feet[i].normal) > alike;
+    if (faces && belongs(points.region, near_mm, feet[i].point, feet[i].normal)) points.print.push_back(i);
   }
   for (std::size_t i = 0; i < distances.on_design.size(); ++i) {
-    if (contains(points.region.box, distances.on_design[i].point)) points.design.push_back(i);
+    const solid::SurfaceSample& at = distances.on_design[i];
+    if (belongs(points.region, near_mm, at.point, at.normal)) points.design.push_back(i);
   }
 }
 
@@ -81,8 +92,11 @@ void require_enough(const RegionPoints& points) {
   constexpr std::size_t fewest = 100;
   const std::size_t least = std::min(points.print.size(), points.design.size());
   if (least >= fewest) return;
+  const std::string& file = points.region.faces_file;
   throw Error{Fault::data, "region '" + points.region.name + "': has " + std::to_string(least) +
-                               " points of the surface; enlarge its box, or --samples"};
+                               " points of the surface; enlarge " + (file.empty() ? "its box" : file) +
+                               ", or --samples" +
+                               (file.empty() ? "" : "; its faces must lie on the design and face the same way")};
 }
 
 void find_walls(const Distances& distances, const solid::Surface& design, const solid::Surface& print,
@@ -94,7 +108,8 @@ void find_walls(const Distances& distances, const solid::Surface& design, const 
   for (std::size_t n = 0; n < points.design.size(); n += every) {
     const auto& from = distances.on_design[points.design[n]];
     const auto there = other_side(from, design, distances.largest_dimension_mm);
-    if (dot(there.normal, from.normal) > opposite || !contains(points.region.box, there.point)) continue;
+    if (dot(there.normal, from.normal) > opposite) continue;
+    if (!belongs(points.region, near_it * distances.largest_dimension_mm, there.point, there.normal)) continue;
     kept.push_back(points.design[n]);
     points.opposite.push_back(there);
     points.opposite_mm.push_back(-print.signed_distance(there.point));
@@ -150,12 +165,12 @@ Json wall_json(const RegionPoints& points, const Distances& distances, const std
 }  // namespace
 
 Region parse_region(const std::string& text) {
-  const std::string example = "; write for example top=plane:-5,-5,4.9,5,5,5.1";
+  const std::string example = "; write for example top=plane:-5,-5,4.9,5,5,5.1 or seat=cylinder:seat.stl";
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || text.find_first_of(".,<> ") < equals) {
     throw Error{Fault::usage, "--region " + text + ": must begin with a name and '='" + example};
   }
-  Region region{text.substr(0, equals), RegionKind::surface, {}};
+  Region region{text.substr(0, equals)};
   std::string corners = text.substr(equals + 1);
   if (const auto colon = corners.find(':'); colon != std::string::npos) {
     const std::string wanted = corners.substr(0, colon);
@@ -166,6 +181,11 @@ Region parse_region(const std::string& text) {
     }
     region.kind = found->kind;
     corners = corners.substr(colon + 1);
+  }
+  const std::string last = trimmed(corners.substr(corners.rfind(',') + 1));
+  if (last.find('.') != std::string::npos && !parse_number(last)) {
+    region.faces_file = corners;
+    return region;
   }
   std::vector<double> values;
   for (const std::string& part : split(corners, ',')) {
@@ -238,14 +258,14 @@ PlaneFit print_plane(const RegionPoints& points, const Distances& distances) {
   return fit_plane(places(points, distances, std::nullopt), points.plane.normal);
 }
 
-Json region_json(const RegionPoints& points, const Distances& distances, const std::optional<double>& tolerance_mm,
-                 const std::optional<RegionErrors>& errors) {
+Json region_json(const RegionPoints& points, const Distances& distances, const std::optional<RegionErrors>& errors) {
   std::vector<float> values;
   for (const std::size_t i : points.print) {
     values.push_back(distances.print_mm[i] + static_cast<float>(errors ? errors->print_mm[i] : 0.0));
   }
   const SurfaceDeviation d = deviation(values);
   Json json{{"mean_mm", d.mean_mm}, {"rms_mm", d.rms_mm}, {"max_mm", d.max_abs_mm}};
+  const std::optional<double>& tolerance_mm = points.region.tolerance_mm;
   if (tolerance_mm) json["within_percent"] = within_percent(values, *tolerance_mm);
   if (points.region.kind == RegionKind::plane) json.update(plane_json(points, places(points, distances, errors)));
   if (points.region.kind == RegionKind::cylinder) json.update(cylinder_json(points, places(points, distances, errors)));

@@ -1,6 +1,7 @@
 // Faces, bores and walls of a part: what of a print belongs to them, and their tolerances [physics §8].
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,15 +16,18 @@ namespace vam::metrology {
 /// What a region is measured as, beside its deviation.
 enum class RegionKind { surface, plane, cylinder, wall };
 
-/// The design's surface within a box, in the design's coordinates.
+/// The design's surface within a box or on some faces, in the design's coordinates.
 struct Region {
   std::string name;
   RegionKind kind = RegionKind::surface;
-  solid::Box box;
+  solid::Box box{};
+  std::string faces_file = {};                       // empty: the box
+  std::shared_ptr<const solid::Surface> faces = {};  // of faces_file
+  std::optional<double> tolerance_mm = {};           // of the figure `within`
 };
 
-/// "top=plane:-5,-5,4.9,5,5,5.1": name, kind and two opposite corners in mm; without "plane:" a surface. Throws
-/// Fault::usage.
+/// "top=plane:-5,-5,4.9,5,5,5.1" or "seat=cylinder:seat.stl": name, kind, and two opposite corners in mm or the name of
+/// a mesh, which is not read; without "plane:" a surface. Throws Fault::usage.
 [[nodiscard]] Region parse_region(const std::string& text);
 
 /// What conditions may say of a region of that kind, after its name and a dot.
@@ -32,7 +36,7 @@ struct Region {
 /// The points of both surfaces that belong to a region.
 struct RegionPoints {
   Region region;
-  // Of Distances::on_print: the nearest point of the design lies in the box, and faces alike within 60 degrees.
+  // Of Distances::on_print: the nearest point of the design lies in the region, and faces alike within 60 degrees.
   std::vector<std::size_t> print;
   std::vector<std::size_t> design;             // of Distances::on_design; of a wall those that have an opposite side
   std::vector<Vector3> print_normals;          // of the design there
@@ -43,7 +47,8 @@ struct RegionPoints {
 };
 
 /// A plane is the part of the region's surface that faces within 10 degrees of its mean direction; a cylinder that
-/// which is within 10 degrees of perpendicular to its axis; a wall has its other side in the box, facing the other way.
+/// which is within 10 degrees of perpendicular to its axis; a wall has its other side in the region, facing the other
+/// way. On faces is what is within 0.5 % of the design's largest dimension of them and faces alike within 60 degrees.
 /// `feet`: nearest points of the design for on_print. Throws Fault::data when less than 100 points of either surface
 /// belong to it.
 [[nodiscard]] RegionPoints find_region(const Region& region, const Distances& distances,
@@ -60,7 +65,7 @@ struct RegionErrors {
 /// The figures of a region, as in the report. Of a wall the thickness is the design's, by the largest ball that fits,
 /// plus the distances on both sides.
 [[nodiscard]] Json region_json(const RegionPoints& points, const Distances& distances,
-                               const std::optional<double>& tolerance_mm, const std::optional<RegionErrors>& errors);
+                               const std::optional<RegionErrors>& errors);
 
 /// The plane of a print's face.
 [[nodiscard]] PlaneFit print_plane(const RegionPoints& points, const Distances& distances);
