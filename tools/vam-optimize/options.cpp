@@ -100,8 +100,11 @@ void declare_stopping(cli::App& app, Options& options) {
   app.default_is(std::string(optimize::automatic_until) +
                  " with --method auto, with --shortest or without --iterations; else no condition")
       .not_in_job();
-  app.option("--patience", "N", options.limits.patience, {0, 1000000},
-             "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it.");
+  app.option(
+      "--patience", "N", options.limits.patience, {0, 1000000},
+      "Stop when IoU + PW has not improved by 1e-4 in this number of iterations; 0 disables it. Where no goal is met, "
+      "the result is that of the iteration with the largest IoU + PW (apg: only with --free-surface), with 0 that of "
+      "the last one.");
   app.not_in_job();
   app.option("--init", "SINOGRAM", options.init, "Initial projections (EXR, of the same size).").reads();
   app.flag(

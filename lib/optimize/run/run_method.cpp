@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "model/figures.hpp"
 #include "optimize/methods/metrics.hpp"
@@ -33,10 +34,11 @@ bool reached(const std::vector<model::Condition>& until, const std::vector<model
 }
 
 /// Nothing has improved for `patience` iterations.
-bool lost_patience(Standing& standing, const Limits& limits, double merit_now) {
+bool lost_patience(Standing& standing, const Limits& limits, double merit_now, const std::vector<Slab>* kept) {
   if (merit_now > standing.best + limits.least_gain) {
     standing.best = merit_now;
     standing.best_at = standing.iteration;
+    if (kept != nullptr) standing.best_light = *kept;
   }
   return limits.patience > 0 && standing.iteration - standing.best_at >= limits.patience;
 }
@@ -64,14 +66,16 @@ bool in_time(const std::optional<Deadline>& deadline, const Standing& standing) 
 
 /// Whether to stop at this iterate, and why.
 std::optional<StopReason> look(const Method& method, const Problem& problem, const light::Operator& light,
-                               const Limits& limits, const Iterate& state, Standing& standing, const Watch& watch) {
+                               const Limits& limits, const Iterate& state, Standing& standing, bool keeps,
+                               const Watch& watch) {
   const bool last = standing.iteration == limits.iterations;
-  if (limits.watch_last || !last) {  // looking costs little, but a plain fbp need not be evaluated
+  if (limits.watch_last || !last || keeps) {  // looking costs little, but a plain fbp need not be evaluated
     auto slices = metrics(state.dose, problem);
     if (watch) watch(standing.iteration, slices);
     if (light.couples_slices()) slices = {body_metrics(state.dose, problem)};  // one threshold prints them all
     if (reached(limits.until, slices) && enough(method, limits, state, standing.iteration)) return StopReason::goal;
-    if (!last && lost_patience(standing, limits, mean_merit(slices))) return StopReason::no_progress;
+    const bool lost = lost_patience(standing, limits, mean_merit(slices), keeps ? &state.g : nullptr);
+    if (!last && lost) return StopReason::no_progress;
   }
   if (!last && !in_time(limits.deadline, standing)) return StopReason::time;
   return last ? std::optional(StopReason::iterations) : std::nullopt;
@@ -107,13 +111,20 @@ Outcome run_method(Method& method, const Problem& problem, const light::Operator
     }
     standing.iteration = 0;
   }
+  const bool keeps = limits.patience > 0 && limits.iterations > 0 && !method.surface_miss(state.dose);
   for (;; ++standing.iteration) {
-    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, standing, watch);
+    const auto stop = looked ? std::nullopt : look(method, problem, light, limits, state, standing, keeps, watch);
     if (stop) return {standing.iteration, *stop};
     if (pause && pause()) return {standing.iteration, StopReason::interrupted};
     method.step(problem, light, state);
     looked = false;
   }
+}
+
+void return_to_best(const light::Operator& light, Standing& standing, Iterate& state) {
+  if (standing.best_light.empty() || standing.best_at == standing.iteration) return;
+  state.g = std::move(standing.best_light);
+  light.adjoint(state.g, state.dose);
 }
 
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,

@@ -24,7 +24,7 @@ struct Limits {
   std::vector<model::Condition> until;    // stop when all hold; names as in SliceFigures::names()
   int at_least = 0;                       // iterations before they count
   int early = 0;                          // so many do where the print's surface is true by then; 0: none
-  int patience = 10;                      // stop when nothing improved in so many iterations; 0 = never
+  int patience = 10;                      // stop when nothing improved in so many iterations, at the best; 0 = never
   double least_gain = 1e-4;               // an improvement of the mean of IoU + PW smaller than this is none
   bool watch_last = false;                // evaluate the last iterate, too, on which nothing depends
   std::optional<Deadline> deadline = {};  // no iteration begins that might end after it
@@ -47,18 +47,22 @@ using Watch = std::function<void(int iteration, const std::vector<model::DoseMet
 /// Asked after every complete iterate whether to break off there.
 using Pause = std::function<bool()>;
 
-/// Where a run stands: after `iteration` complete steps, the best merit so far and when it was reached.
+/// Where a run stands: after `iteration` complete steps, the best merit so far, when it was reached and by which light.
 struct Standing {
   int iteration = -1;  // not begun
   double best = std::numeric_limits<double>::lowest();
   int best_at = 0;
-  double began_s = 0;  // with iteration 0; known where there is a deadline
+  std::vector<Slab> best_light;  // empty: not kept
+  double began_s = 0;            // with iteration 0; known where there is a deadline
 };
 
-/// Runs the method on one pass. When iterate.g is not empty it is where the method starts from; a run that has begun
-/// resumes from where it was interrupted (method and iterate as they were), as if it had not been.
+/// Runs the method on one pass. The light of the best merit is kept where there is patience, unless the method asks for
+/// the surface, of which the merit knows nothing. When iterate.g is not empty it is where the method starts from; a run
+/// that has begun resumes from where it was interrupted (method and iterate as they were), as if it had not been.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate, Standing& standing, const Watch& watch = {}, const Pause& pause = {});
+/// The light of the best iterate and its dose take the place of the last one's, if it is another.
+void return_to_best(const light::Operator& light, Standing& standing, Iterate& iterate);
 /// From the start to the end.
 Outcome run_method(Method& method, const Problem& problem, const light::Operator& light, const Limits& limits,
                    Iterate& iterate);

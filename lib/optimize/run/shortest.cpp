@@ -8,6 +8,7 @@ void Search::exchange(Archive& archive) {
   archive(standing.iteration);
   archive(standing.best);
   archive(standing.best_at);
+  archive(standing.best_light);
   archive(max_intensity);
   archive(until);
 }

@@ -145,6 +145,7 @@ class VolumeRun {
       if (task_.interruption.to != nullptr) keep(*task_.interruption.to, work);
       return false;
     }
+    if (outcome.stop != StopReason::goal) return_to_best(light.blurred(), work.search.standing, work.state);
     ledger_.end(outcome);
     eigenvalue_ = work.method->eigenvalue();
     max_intensity_ = std::max(max_intensity_, work.search.max_intensity);  // the brightest pass sets the duration

@@ -166,6 +166,25 @@ TEST_CASE("the loop stops at its goal, and when it stagnates") {
   CHECK(stalled.outcome.iterations < 500);
 }
 
+TEST_CASE("without a goal the best iterate is the result, whatever comes after it") {
+  const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
+  for (const std::string name : {"cal", "osmo", "pm", "bclp"}) {
+    CAPTURE(name);
+    VolumeTask task;
+    task.watch = true;
+    task.make = [&](double) { return make_method(name, {}); };
+    task.limits = {.iterations = 25, .until = {}, .patience = 25, .least_gain = 0};
+    const auto best = run(slices, task);
+    const auto& trace = best.outcome.trace;
+    const auto at = std::max_element(trace.begin(), trace.end(),
+                                     [](const auto& a, const auto& b) { return a.iou + a.pw < b.iou + b.pw; });
+    CHECK(best.outcome.metrics.iou + best.outcome.metrics.pw == doctest::Approx(at->iou + at->pw).epsilon(2e-4));
+    // The same as ending there.
+    task.limits = {.iterations = static_cast<int>(at - trace.begin()), .until = {}, .patience = 0};
+    CHECK(run(slices, task).images[0].values == best.images[0].values);
+  }
+}
+
 TEST_CASE("initial projections are used") {
   const std::vector<std::vector<float>> slices{vam::oracle::wheel(size)};
   VolumeTask task;
