@@ -136,6 +136,8 @@ fails 65 'falls.csv:3: intensity 1 at grey 10 is below 2' vam-project part.exr -
 fails 66 'none.exr' vam-project none.exr -o x/
 fails 64 'not to .avi' vam-project part.exr -o x.avi
 fails 64 'not one of 1, 2, 4, 8, 10, 16' vam-project part.exr --bits 3 -o x/
+fails 64 "'null2' is no kind of display" vam-project part.exr -o null2:
+quiet 'a folder whose name has a colon' vam-project part.exr -o ./print:2/
 fails 64 'frames a turn' vam-project part.exr --speed 300 -o x/
 fails 64 'part.exr' vam-project part.exr -o part.exr
 mkdir other; echo hello >other/letter.txt

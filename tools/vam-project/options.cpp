@@ -125,7 +125,15 @@ void declare(cli::App& app, Options& options) {
   cli::add_threads(app);
 }
 
+void refuse_unknown_display(const std::string& output) {
+  const auto colon = output.find(':');
+  if (colon == std::string::npos || output.find('/') < colon) return;
+  throw Error{Fault::usage, output + ": '" + output.substr(0, colon) + "' is no kind of display; give -o " +
+                                device::display_devices() + ", or ./" + output + " for files"};
+}
+
 void refuse_live(const cli::App& app, const std::string& output) {
+  refuse_unknown_display(output);
   for (const char* flag : {"--follow", "--light", "--frames-per-turn", "--from", "--latency", "--max-missed",
                            "--max-missed-lit", "--plan", "--log"}) {
     if (!app.given(flag)) continue;

@@ -54,7 +54,7 @@ struct Options {
   PatternOptions pattern;
 };
 
-/// Throws Fault::usage when an option of live output is given.
+/// Of output to files. Throws Fault::usage when an option of live output is given, or it names a display that is none.
 void refuse_live(const cli::App& app, const std::string& output);
 
 [[nodiscard]] cli::Manual manual();
