@@ -22,7 +22,7 @@ TargetDose::TargetDose(const CureLimits& limits, const DoseLimit& limit, int sli
     const double power = std::pow(limits.q, d);
     const auto put = [&](Stretch s, double value) { values_[section(s) + d] = value; };
     const double drained = (1 - lowest * (1 - power)) / power;  // may overflow to inf: no limit
-    const double filled = std::max(1.0, highest * (1 - power) + power);
+    const double filled = highest * (1 - power) + power;        // at least 1
     put(fill, std::min(filled, omega_max));
     put(strong, filled);
     put(drain, std::clamp(drained, 1.0, unlimited_dose));

@@ -33,7 +33,8 @@ struct DoseLimit {
 /// the maximum into a minimum. `below` and `above` change only where the column passes an edge.
 class TargetDose {
  public:
-  /// For columns of up to `slices` slices, the extra ones included. Throws Fault::usage when omega_max is below 1.
+  /// For columns of up to `slices` slices, the extra ones included; the maximum intensity settles above the dose that
+  /// cures. Throws Fault::usage when omega_max is below 1.
   TargetDose(const CureLimits& limits, const DoseLimit& limit, int slices);
 
   [[nodiscard]] const double* table() const { return values_.data(); }
