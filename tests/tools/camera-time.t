@@ -5,6 +5,9 @@
 
 camera_up --maker flir
 python3 "$VAM_SOURCE/tests/device/gvcp.py" 127.0.0.1 >plain
+quiet 'an exposure in parts of a microsecond, which it rounds' \
+  vam-capture --device aravis:127.0.0.1 --fps 20 --exposure 25.6 --frames 1 --timeout 20 -o short/
+is 'is recorded as it is' "$(sed -n 's/.*"exposure_us":\([0-9.]*\).*/\1/p' short/manifest.jsonl | head -n 1)" 25.0
 camera_down
 is 'its maker, and that it is simulated' "$(json plain maker), $(json plain model)" 'Point Grey Research, Grasshopper3 (simulated)'
 is 'gain is automatic at power-on' "$(json plain gain_auto)" true

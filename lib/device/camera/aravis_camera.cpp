@@ -179,8 +179,8 @@ class AravisCamera final : public Camera {
     return arv_camera_is_feature_available(camera_.get(), feature, problem) != 0;
   }
 
-  void same(const std::string& what, double wanted, double got) const {
-    if (std::abs(wanted - got) <= 0.01 * std::abs(wanted)) return;
+  void same(const std::string& what, double wanted, double got, double grain) const {
+    if (std::abs(wanted - got) <= 0.01 * std::abs(wanted) + grain) return;
     throw Error{Fault::protocol, name_ + ": " + what + " reads back as " + format_number(got) + " instead of " +
                                      format_number(wanted) + "; choose a supported value"};
   }
@@ -292,8 +292,8 @@ class AravisCamera final : public Camera {
     if (arv_camera_is_frame_rate_available(camera_.get(), problem) != 0) {
       mode_.fps = arv_camera_get_frame_rate(camera_.get(), problem);
     }
-    if (settings_.exposure_us) same("exposure", *settings_.exposure_us, mode_.exposure_us);
-    if (settings_.fps && settings_.trigger == "free") same("frame rate", *settings_.fps, mode_.fps);
+    if (settings_.exposure_us) same("exposure", *settings_.exposure_us, mode_.exposure_us, 1);
+    if (settings_.fps && settings_.trigger == "free") same("frame rate", *settings_.fps, mode_.fps, 0);
   }
 
   void read_clock() {
